@@ -4,6 +4,7 @@ use bytemuck::Pod;
 use wgpu::util::DeviceExt;
 
 use super::{Gpu, GpuError};
+use geometry::cores::in_ranges;
 
 /// A storage buffer that holds `items`, which passes may write over. Without items it still holds one zeroed element, since
 /// an empty buffer can't be bound.
@@ -18,6 +19,46 @@ pub(super) fn filled<T: Pod>(gpu: &Gpu, what: &'static str, items: &[T]) -> Resu
         contents: bytemuck::cast_slice(if items.is_empty() { &zero } else { items }),
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
     }))
+}
+
+/// The most bytes of a buffer that are made before the device takes them.
+const BLOCK: usize = 16 << 20;
+
+/// The least number of items that are worth a thread.
+const LEAST: usize = 1 << 12;
+
+/// A storage buffer as [`filled`] makes it, of `count` items. They are made on all cores, and block by block: a list of all of them
+/// may take more memory than what it is made from.
+///
+/// # Errors
+/// It would be larger than the adapter binds.
+pub(super) fn filled_by<T: Pod>(
+    gpu: &Gpu,
+    what: &'static str,
+    count: usize,
+    item: impl Fn(usize) -> T + Sync,
+) -> Result<wgpu::Buffer, GpuError> {
+    check_size::<T>(gpu, what, count)?;
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(what),
+        size: (count.max(1) * size_of::<T>()) as u64,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let at_once = BLOCK / size_of::<T>();
+    for first in (0..count).step_by(at_once) {
+        let items = at_once.min(count - first);
+        in_ranges(items, LEAST, |range| {
+            let start = ((first + range.start) * size_of::<T>()) as u64;
+            let made: Vec<T> = range.map(|i| item(first + i)).collect();
+            gpu.queue.write_buffer(&buffer, start, bytemuck::cast_slice(&made));
+        });
+        if items == at_once {
+            // So that the device frees the memory that this block waits in.
+            gpu.queue.submit([]);
+        }
+    }
+    Ok(buffer)
 }
 
 /// A storage buffer with room for `count` elements (at least one) that passes write, and that draws may then read as vertices,
@@ -99,4 +140,23 @@ fn check_size<T>(gpu: &Gpu, what: &'static str, count: usize) -> Result<(), GpuE
     let limits = gpu.device.limits();
     let limit = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     if bytes > limit { Err(GpuError::TooLarge { what, bytes, limit }) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::readback::read_buffer;
+
+    #[test]
+    fn items_that_are_made_in_blocks_all_arrive() {
+        let gpu = Gpu::headless().expect("these tests need a graphics adapter: run ./setup.sh");
+        let in_block = BLOCK / size_of::<[u32; 3]>();
+        for count in [0, 1, LEAST + 1, in_block, 2 * in_block + 5] {
+            let item = |i: usize| [i as u32, !(i as u32), 7];
+            let buffer = filled_by(&gpu, "items", count, item).expect("it isn't too large");
+            let bytes = read_buffer(&gpu, &buffer, 0, buffer.size()).expect("the device isn't lost");
+            let expected: Vec<[u32; 3]> = if count == 0 { vec![[0; 3]] } else { (0..count).map(item).collect() };
+            assert!(bytes == bytemuck::cast_slice::<_, u8>(&expected), "{count}");
+        }
+    }
 }

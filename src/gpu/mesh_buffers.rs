@@ -1,10 +1,10 @@
 //! A mesh in device memory.
 
-use super::buffer::{bytes_of, empty, filled};
+use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
 use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
 use super::{Gpu, GpuError};
-use geometry::mesh::{Curves, Dominance, Mesh, Sharing, Topology};
+use geometry::mesh::{CurveItems, Curves, Dominance, Mesh, Sharing, Topology};
 use geometry::tessellate::texel_lengths;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
@@ -51,12 +51,13 @@ impl MeshBuffers {
     /// # Errors
     /// A buffer would be larger than the adapter binds.
     pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Result<Self, GpuError> {
-        let grouped = Curves::build(mesh, topology, sharing);
         let heights = mesh.heights.as_deref();
-        let mut points: Vec<[f32; 4]> = topology.points.iter().map(|p| p.extend(0.0).to_array()).collect();
-        points.extend(patch_maps(heights, topology).into_iter().map(|map| [0.0, 0.0, 0.0, map]));
+        let is_listed = sharing != Sharing::AllSides || heights.is_some();
+        let lists = is_listed.then(|| Curves::build(mesh, topology, sharing));
+        let grouped = CurveItems { topology, lists: lists.as_ref() };
         let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
-        let dominance = heights.map(|heights| Dominance::new(topology, &grouped, &heights.angles));
+        let dominance = heights.zip(grouped.lists);
+        let dominance = dominance.map(|(heights, lists)| Dominance::new(topology, lists, &heights.angles));
         let relief =
             dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, mesh, topology, dominance)).transpose()?;
         let mut all_shares = Vec::new();
@@ -64,18 +65,19 @@ impl MeshBuffers {
             let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
             all_shares = shares(mesh, dominance, &texel_lengths);
         }
-        let factor_room = 2 * grouped.factor_count() as usize + 5 * topology.patches.len() + SEARCH_COUNTERS as usize;
+        let factor_count = grouped.factor_count() as usize;
+        let factor_room = 2 * factor_count + 5 * topology.patches.len() + SEARCH_COUNTERS as usize;
         Ok(Self {
-            points: filled(gpu, "points", &points)?,
-            corners: filled(gpu, "corners", &corners(mesh))?,
-            corner_details: filled(gpu, "corner details", &corner_details(mesh))?,
-            patches: filled(gpu, "patches", &patches(topology, &grouped))?,
-            curves: filled(gpu, "curves", &grouped.curves)?,
-            curve_sides: filled(gpu, "sides", &grouped.sides)?,
-            factor_curves: filled(gpu, "edges", &grouped.factor_curves)?,
+            points: points(gpu, mesh, topology)?,
+            corners: filled_by(gpu, "corners", mesh.corners.len(), |i| corner(&mesh.corners[i]))?,
+            corner_details: corner_details(gpu, mesh)?,
+            patches: filled_by(gpu, "patches", topology.patches.len(), |i| patch(&topology.patches[i], &grouped))?,
+            curves: filled_by(gpu, "curves", grouped.curve_count(), |i| grouped.curve(i))?,
+            curve_sides: filled_by(gpu, "sides", grouped.side_count(), |i| grouped.side(i))?,
+            factor_curves: filled_by(gpu, "edges", factor_count + 1, |i| grouped.factor_curve(i))?,
             material_patches: filled(gpu, "materials", &material_patches)?,
             textured: filled(gpu, "textured", &textured(mesh, topology))?,
-            curve_nets: empty::<CurveNet>(gpu, "curve nets", grouped.curves.len())?,
+            curve_nets: empty::<CurveNet>(gpu, "curve nets", grouped.curve_count())?,
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 1)?,
             shares: filled(gpu, "shares", &all_shares)?,
@@ -85,7 +87,7 @@ impl MeshBuffers {
             point_count: topology.points.len() as u32,
             patch_count: topology.patches.len() as u32,
             factor_count: grouped.factor_count(),
-            curve_count: grouped.curves.len() as u32,
+            curve_count: grouped.curve_count() as u32,
             material_count: material_patches.len() as u32,
         })
     }
@@ -102,21 +104,23 @@ impl MeshBuffers {
     }
 }
 
-fn corners(mesh: &Mesh) -> Vec<Corner> {
-    let corner = |c: &geometry::mesh::Corner| Corner {
-        normal: c.normal.to_array(),
-        _pad: 0.0,
-        uv: c.uv.to_array(),
-        _pad2: [0.0; 2],
-    };
-    mesh.corners.iter().map(corner).collect()
+/// The positions of points, then room for the centres of patches.
+fn points(gpu: &Gpu, mesh: &Mesh, topology: &Topology) -> Result<wgpu::Buffer, GpuError> {
+    let maps = patch_maps(mesh.heights.as_deref(), topology);
+    filled_by(gpu, "points", topology.points.len() + topology.patches.len(), |i| match topology.points.get(i) {
+        Some(point) => point.extend(0.0).to_array(),
+        None => [0.0, 0.0, 0.0, maps[i - topology.points.len()]],
+    })
 }
 
-fn corner_details(mesh: &Mesh) -> Vec<CornerDetail> {
-    match &mesh.details {
-        Some(details) => details.iter().map(CornerDetail::of).collect(),
-        None => vec![CornerDetail::of(&geometry::mesh::CornerDetail::default())],
-    }
+fn corner(own: &geometry::mesh::Corner) -> Corner {
+    Corner { normal: own.normal.to_array(), _pad: 0.0, uv: own.uv.to_array(), _pad2: [0.0; 2] }
+}
+
+fn corner_details(gpu: &Gpu, mesh: &Mesh) -> Result<wgpu::Buffer, GpuError> {
+    let none = [geometry::mesh::CornerDetail::default()];
+    let details = mesh.details.as_deref().map_or(&none[..], |details| details);
+    filled_by(gpu, "corner details", details.len(), |i| CornerDetail::of(&details[i]))
 }
 
 /// A bit for each patch: whether its material has a texture.
@@ -130,18 +134,18 @@ fn textured(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
     bits
 }
 
-fn patches(topology: &Topology, grouped: &Curves) -> Vec<Patch> {
+fn patch(patch: &geometry::mesh::Patch, grouped: &CurveItems) -> Patch {
+    let topology = grouped.topology;
     let kind = |side: u32| topology.edges[topology.sides[side as usize].edge as usize].kind as u32;
-    topology
-        .patches
-        .iter()
-        .map(|patch| Patch {
-            points: topology.corners(patch).map(|c| topology.corner_points[c as usize]),
-            corners: topology.corners(patch),
-            curves: patch
-                .sides
-                .map(|s| grouped.side_curves[s as usize] << 1 | u32::from(grouped.runs_against(topology, s))),
-            factors: patch.sides.map(|s| grouped.factor(topology, s) << 3 | kind(s)),
-        })
-        .collect()
+    let curve = |side: u32| {
+        let (curve, runs_against) = grouped.curve_of(side);
+        curve << 1 | u32::from(runs_against)
+    };
+    let corners = topology.corners(patch);
+    Patch {
+        points: corners.map(|corner| topology.corner_points[corner as usize]),
+        corners,
+        curves: patch.sides.map(curve),
+        factors: patch.sides.map(|side| grouped.factor(side) << 3 | kind(side)),
+    }
 }

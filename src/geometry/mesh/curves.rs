@@ -172,6 +172,60 @@ impl Curves {
     }
 }
 
+/// What [`Curves`] lists, one by one. Without lists all sides of an edge share a curve: curves and factors then have their edge's number,
+/// and all else follows from the topology, so that a large mesh needs no memory for it.
+pub struct CurveItems<'a> {
+    pub topology: &'a Topology,
+    pub lists: Option<&'a Curves>,
+}
+
+impl CurveItems<'_> {
+    pub fn curve_count(&self) -> usize {
+        self.lists.map_or(self.topology.edges.len(), |lists| lists.curves.len())
+    }
+
+    /// Returns an item of [`Curves::curves`].
+    pub fn curve(&self, curve: usize) -> Curve {
+        if let Some(lists) = self.lists {
+            return lists.curves[curve];
+        }
+        let edge = &self.topology.edges[curve];
+        let side_count = to_u32(self.topology.side_range(edge).len());
+        Curve { points: self.topology.edge_points(edge), first_side: edge.first_side, side_count }
+    }
+
+    /// Returns the length of [`Curves::sides`].
+    pub fn side_count(&self) -> usize {
+        self.lists.map_or(self.topology.sides.len(), |lists| lists.sides.len())
+    }
+
+    /// Returns an item of [`Curves::sides`].
+    pub fn side(&self, side: usize) -> [u32; 2] {
+        self.lists.map_or_else(|| self.topology.side_corners(&self.topology.sides[side]), |lists| lists.sides[side])
+    }
+
+    pub fn factor_count(&self) -> u32 {
+        self.lists.map_or(to_u32(self.topology.edges.len()), Curves::factor_count)
+    }
+
+    /// Returns an item of [`Curves::factor_curves`].
+    pub fn factor_curve(&self, factor: usize) -> u32 {
+        self.lists.map_or(to_u32(factor), |lists| lists.factor_curves[factor])
+    }
+
+    /// Returns the curve of a side of the topology, and whether the side has the opposite direction.
+    pub fn curve_of(&self, side: u32) -> (u32, bool) {
+        let own = &self.topology.sides[side as usize];
+        let lists = self.lists.map(|lists| (lists.side_curves[side as usize], lists.runs_against(self.topology, side)));
+        lists.unwrap_or((own.edge, own.reversed()))
+    }
+
+    /// Returns the factor of a side of the topology.
+    pub fn factor(&self, side: u32) -> u32 {
+        self.lists.map_or(self.topology.sides[side as usize].edge, |lists| lists.factor(self.topology, side))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -221,6 +275,26 @@ mod tests {
                 assert_eq!(asked[0], corners(index), "{shape:?}");
                 assert_eq!(asked.get(1).copied(), other.map(corners), "{shape:?}");
             }
+        }
+    }
+
+    #[test]
+    fn without_lists_the_items_are_those_of_curves_that_all_sides_share() {
+        // A third triangle at an edge, and one alone.
+        let mut fan = Shape::CubeSplit.build();
+        fan.triangles = [[0, 1, 2], [1, 0, 3], [0, 1, 8], [8, 9, 10]].to_vec().into();
+        for mesh in Shape::ALL.iter().map(|shape| shape.build()).chain([fan]) {
+            let topology = Topology::of(&mesh);
+            let lists = Curves::build(&mesh, &topology, Sharing::AllSides);
+            let [own, listed] = [None, Some(&lists)].map(|lists| CurveItems { topology: &topology, lists });
+            let counts = |items: &CurveItems| (items.curve_count(), items.side_count(), items.factor_count());
+            assert_eq!(counts(&own), counts(&listed), "{}", mesh.name);
+            assert!((0..own.curve_count()).all(|i| own.curve(i) == listed.curve(i)), "{}", mesh.name);
+            assert!((0..own.side_count()).all(|i| own.side(i) == listed.side(i)), "{}", mesh.name);
+            assert!((0..=own.curve_count()).all(|i| own.factor_curve(i) == listed.factor_curve(i)), "{}", mesh.name);
+            let of_side = |items: &CurveItems, side| (items.curve_of(side), items.factor(side));
+            let sides = 0..to_u32(topology.sides.len());
+            assert!(sides.into_iter().all(|i| of_side(&own, i) == of_side(&listed, i)), "{}", mesh.name);
         }
     }
 

@@ -301,6 +301,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::cores::on_threads;
     use crate::mesh::build_limits::Budget;
     use crate::mesh::shapes::Shape;
 
@@ -367,5 +368,21 @@ mod tests {
             let [fast, slow] = both(whole, 60.0);
             assert_eq!(bits(&fast), bits(&slow), "{shape:?}");
         }
+    }
+
+    #[test]
+    fn any_number_of_cores_makes_the_same_normals() {
+        let side = 150;
+        let bump = |i: u32| Vec3::new((i % side) as f32, (i / side) as f32, (i.wrapping_mul(i) % 97) as f32 * 0.02);
+        let corner = |i| Corner { position: bump(i), normal: Vec3::NAN, uv: Vec2::ZERO };
+        let squares = (0..side * side).filter(|i| i % side + 1 < side && i / side + 1 < side);
+        let triangles: Vec<_> = squares.flat_map(|i| [[i, i + 1, i + side], [i + side, i + 1, i + side + 1]]).collect();
+        let made = |cores| {
+            let mut mesh = without_normals((0..side * side).map(corner), &triangles);
+            let make = || generate_normals(&mut mesh, 60.0, &Budget::unlimited(), &Progress::new());
+            on_threads(cores, make).unwrap().unwrap();
+            bits(&mesh)
+        };
+        assert_eq!(made(1), made(5));
     }
 }

@@ -2,7 +2,6 @@
 
 use crate::casts::to_u32;
 use std::hash::{BuildHasher, Hash};
-use std::hint::black_box;
 
 use foldhash::fast::RandomState;
 use hashbrown::HashTable;
@@ -18,21 +17,7 @@ impl Interner {
     /// Returns the number of the item with this key, and whether the item is new, in which case the number is the next
     /// one. `key_of` must return the key of each item that has a number.
     pub fn number<K: Hash + Eq>(&mut self, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
-        self.number_of(self.hash(&key), key, key_of)
-    }
-
-    /// Returns the hash of a key for [`number_of`](Self::number_of).
-    pub fn hash(&self, key: impl Hash) -> u64 {
-        self.hasher.hash_one(key)
-    }
-
-    /// Reads the place of this hash, so that the processor has it at hand when the item is looked up soon.
-    pub(crate) fn approach(&self, hash: u64) {
-        black_box(self.table.find(hash, |_| false));
-    }
-
-    /// Returns the number of the item with this key and this hash, as [`number`](Self::number) does.
-    pub fn number_of<K: Hash + Eq>(&mut self, hash: u64, key: K, key_of: impl Fn(u32) -> K) -> (u32, bool) {
+        let hash = self.hasher.hash_one(&key);
         if let Some(&id) = self.table.find(hash, |&id| key_of(id) == key) {
             return (id, false);
         }

@@ -3,8 +3,11 @@
 mod distinct_corners;
 
 use std::ops::Range;
+use std::sync::atomic::AtomicU32;
+use std::sync::atomic::Ordering::Relaxed;
 
 use glam::{Vec2, Vec3};
+use rayon::prelude::*;
 
 use super::build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 use super::generate_normals::generate_normals;
@@ -13,6 +16,7 @@ use super::unfinished_mesh::UnfinishedMesh;
 use super::weld::{plus_zero2, plus_zero3};
 use super::{Corner, Material, Mesh, Repairs};
 use crate::casts::to_u32;
+use crate::cores::{in_ranges, ranges};
 use crate::progress::{Cancelled, Progress};
 
 use distinct_corners::DistinctCorners;
@@ -78,8 +82,14 @@ impl Group {
     }
 }
 
+/// The least number of corners of triangles that are worth a thread.
+const LEAST: usize = 1 << 16;
+
 /// How many corners are looked up one right after the other.
 const TOGETHER: usize = 32;
+
+/// How many corners at once are worth several cores.
+const MANY: usize = 1 << 11;
 
 impl MeshBuilder {
     pub fn new() -> Self {
@@ -125,6 +135,11 @@ impl MeshBuilder {
             _ => (count + count / 2).max(64),
         };
         self.distinct.make_room(corners.max(likely.saturating_sub(count)), budget)
+    }
+
+    /// Returns how many more distinct corners there is room for.
+    pub fn room(&self) -> usize {
+        self.distinct.room()
     }
 
     /// Makes room for `triangles` more triangles of one material, within the budget.
@@ -190,9 +205,26 @@ impl MeshBuilder {
         StoredCorner { id: self.distinct.id(corner, binding), repairs }
     }
 
-    /// Stores corners with their bindings as [`corner`](Self::corner) does, and appends what is stored to `stored`. Equal ones are looked
-    /// up one right after the other: the processor then waits for memory once for several of them.
+    /// Stores corners with their bindings as [`corner`](Self::corner) does, and appends what is stored to `stored`. Many are looked up on all
+    /// cores.
     pub fn corners(&mut self, corners: &[(InputCorner, u32)], stored: &mut Vec<StoredCorner>) {
+        self.offered += corners.len();
+        if corners.len() < MANY || rayon::current_num_threads() == 1 {
+            return self.few_corners(corners, stored);
+        }
+        let (offered, repairs): (Vec<_>, Vec<_>) = corners
+            .par_iter()
+            .map(|&(corner, binding)| {
+                let (corner, repairs) = repaired(corner);
+                ((corner, binding), repairs)
+            })
+            .unzip();
+        let ids = self.distinct.ids(&offered);
+        stored.extend(ids.into_iter().zip(repairs).map(|(id, repairs)| StoredCorner { id, repairs }));
+    }
+
+    /// Equal corners are looked up one right after the other: the processor then waits for memory once for several of them.
+    fn few_corners(&mut self, corners: &[(InputCorner, u32)], stored: &mut Vec<StoredCorner>) {
         for some in corners.chunks(TOGETHER) {
             let none = Corner { position: Vec3::ZERO, normal: Vec3::ZERO, uv: Vec2::ZERO };
             let mut own = [(none, CornerRepairs::default(), 0, 0); TOGETHER];
@@ -205,7 +237,6 @@ impl MeshBuilder {
                 stored.push(StoredCorner { id: self.distinct.id_of(hash, corner, binding), repairs });
             }
         }
-        self.offered += corners.len();
     }
 
     /// Adds a triangle of stored corners.
@@ -223,6 +254,26 @@ impl MeshBuilder {
             run.push(corners.map(|corner| corner.id));
         }
         self.triangles += 1;
+    }
+
+    /// Adds triangles of stored corners as [`stored_triangle`](Self::stored_triangle) does: the corners' numbers, and the repairs of
+    /// them all.
+    ///
+    /// # Panics
+    /// As [`triangle`](Self::triangle).
+    pub fn stored_triangles(&mut self, material: usize, mut triangles: &[[u32; 3]], repairs: &Repairs) {
+        self.repairs.add(repairs);
+        self.triangles += triangles.len();
+        let group = &mut self.groups[material];
+        while !triangles.is_empty() {
+            if group.room() == 0 {
+                let count = group.next_run();
+                group.runs.push(Vec::with_capacity(count));
+            }
+            let (now, later) = triangles.split_at(group.room().min(triangles.len()));
+            group.runs.last_mut().into_iter().for_each(|run| run.extend_from_slice(now));
+            triangles = later;
+        }
     }
 
     /// Returns how many triangles have been added.
@@ -272,7 +323,7 @@ impl MeshBuilder {
         }
         let _scope = Borrowed::from(budget);
         budget.borrow(mesh.corners.len() as u64 * 4)?;
-        renumber(&mut mesh);
+        renumber(&mut mesh, budget);
         progress.check()?;
         let UnfinishedMesh { mut corners, mut bindings, triangles } = mesh;
         bindings.resize(corners.len(), 0);
@@ -310,27 +361,80 @@ impl MeshBuilder {
     }
 }
 
-/// Puts corners in the order of first use, in place, and removes those that no triangle uses.
-fn renumber(mesh: &mut UnfinishedMesh) {
-    let UnfinishedMesh { corners, bindings, triangles } = mesh;
+/// Puts corners in the order of first use, and removes those that no triangle uses. 4 bytes for each corner were borrowed for it.
+fn renumber(UnfinishedMesh { corners, bindings, triangles }: &mut UnfinishedMesh, budget: &Budget) {
     if are_in_order(corners.len(), triangles) {
         return;
     }
-    let mut numbers = vec![u32::MAX; corners.len()];
-    let mut next = 0;
-    for corner in triangles.as_flattened_mut() {
-        let number = &mut numbers[*corner as usize];
-        if *number == u32::MAX {
-            *number = next;
-            next += 1;
+    let (numbers, used) = numbers_by_first_use(corners.len(), triangles.as_flattened());
+    let number = |corner: u32| numbers[corner as usize].load(Relaxed);
+    triangles.par_iter_mut().for_each(|triangle| *triangle = triangle.map(number));
+    if budget.borrow(corners.len() as u64 * 12).is_ok() {
+        let order: Vec<AtomicU32> = (0..used).map(|_| AtomicU32::new(0)).collect();
+        numbers.par_iter().enumerate().for_each(|(corner, number)| {
+            if let Some(place) = order.get(number.load(Relaxed) as usize) {
+                place.store(to_u32(corner), Relaxed);
+            }
+        });
+        drop(numbers);
+        let from: Vec<u32> = order.into_iter().map(AtomicU32::into_inner).collect();
+        // Lists of single attributes can be filled by all cores, and are short beside the corners.
+        reorder(corners, &from, |corner| corner.position, |corner, position| corner.position = position);
+        reorder(corners, &from, |corner| corner.normal, |corner, normal| corner.normal = normal);
+        reorder(corners, &from, |corner| corner.uv, |corner, uv| corner.uv = uv);
+        if !bindings.is_empty() {
+            reorder(bindings, &from, |binding| *binding, |binding, own| *binding = own);
         }
-        *corner = *number;
+    } else {
+        swap_into_order(corners, bindings, numbers.into_iter().map(AtomicU32::into_inner).collect());
     }
-    let used = next as usize;
-    for number in numbers.iter_mut().filter(|number| **number == u32::MAX) {
-        *number = next;
-        next += 1;
-    }
+    corners.truncate(used);
+    bindings.truncate(used);
+}
+
+/// Gives each of the first items an attribute of the item that `from` names for it.
+fn reorder<T: Send + Sync, A: Send>(
+    items: &mut [T],
+    from: &[u32],
+    attribute: impl Fn(&T) -> A + Sync,
+    set: impl Fn(&mut T, A) + Sync,
+) {
+    let new: Vec<A> = from.par_iter().map(|&item| attribute(&items[item as usize])).collect();
+    items.par_iter_mut().zip(new).for_each(|(item, own)| set(item, own));
+}
+
+/// Numbers `count` corners in the order in which `uses` names them first; those that it doesn't name have the number `u32::MAX`. Returns
+/// the numbers, and how many corners are named.
+fn numbers_by_first_use(count: usize, uses: &[u32]) -> (Vec<AtomicU32>, usize) {
+    // First, the first place in `uses` that names each corner.
+    let numbers: Vec<_> = (0..count).map(|_| AtomicU32::new(u32::MAX)).collect();
+    let number_at = |place: usize| &numbers[uses[place] as usize];
+    in_ranges(uses.len(), LEAST, |range| {
+        // Most places are later ones, which only read.
+        for place in range.filter(|&place| to_u32(place) < number_at(place).load(Relaxed)) {
+            number_at(place).fetch_min(to_u32(place), Relaxed);
+        }
+    });
+    let is_first = |place: &usize| number_at(*place).load(Relaxed) == to_u32(*place);
+    let counts = in_ranges(uses.len(), LEAST, |range| range.filter(is_first).count());
+    let mut used = 0;
+    let starts = counts.into_iter().map(|count| {
+        used += count;
+        used - count
+    });
+    let parts: Vec<_> = ranges(uses.len(), LEAST).zip(starts).collect();
+    // A number isn't above the place that it replaces, so that no later place takes it for its own.
+    parts.into_par_iter().for_each(|(range, start)| {
+        range.filter(is_first).zip(start..).for_each(|(place, number)| number_at(place).store(to_u32(number), Relaxed));
+    });
+    (numbers, used)
+}
+
+/// Puts corners where their numbers say, in place. Those without a number come last.
+fn swap_into_order(corners: &mut [Corner], bindings: &mut [u32], mut numbers: Vec<u32>) {
+    let used = numbers.iter().filter(|number| **number != u32::MAX).count();
+    let unnumbered = numbers.iter_mut().filter(|number| **number == u32::MAX);
+    unnumbered.zip(to_u32(used)..).for_each(|(number, next)| *number = next);
     for i in 0..corners.len() {
         while numbers[i] as usize != i {
             let to = numbers[i] as usize;
@@ -341,8 +445,6 @@ fn renumber(mesh: &mut UnfinishedMesh) {
             numbers.swap(i, to);
         }
     }
-    corners.truncate(used);
-    bindings.truncate(used);
 }
 
 /// Whether all corners are used, in the order of their first use.
@@ -374,7 +476,8 @@ impl CornerRepairs {
     /// How many bits are used; callers may use the others.
     pub const BITS: u32 = 4;
 
-    fn count(self, repairs: &mut Repairs) {
+    /// Counts the repairs of a corner.
+    pub fn count(self, repairs: &mut Repairs) {
         if self.0 == 0 {
             return;
         }

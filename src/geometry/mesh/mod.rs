@@ -58,7 +58,7 @@ pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
 pub use build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};
-pub use curves::{Curve, Curves, Sharing};
+pub use curves::{Curve, CurveItems, Curves, Sharing};
 pub use dominance::Dominance;
 pub use heights::{MAX_LEVELS, MAX_MAPS};
 pub use normal_faults::NormalFaults;

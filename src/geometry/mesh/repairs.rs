@@ -14,3 +14,13 @@ pub struct Repairs {
     /// Corners with a coordinate below f32's smallest normal number, about 1.2e-38, which became 0.
     pub denormals: u32,
 }
+
+impl Repairs {
+    /// Adds what was repaired in other corners.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.normals_made += other.normals_made;
+        self.normals_replaced += other.normals_replaced;
+        self.normals_rescaled += other.normals_rescaled;
+        self.denormals += other.denormals;
+    }
+}

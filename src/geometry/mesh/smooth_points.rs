@@ -1,21 +1,24 @@
 //! Computes the normals of points whose faces surely all lie within the crease angle of each other, in one pass over the triangles.
 //! Most points of most meshes are such points, and for them nobody needs a list of their faces.
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
+use rayon::prelude::*;
 
 use super::build_limits::{Budget, BuildError};
 use super::normals::{FAN_LIMIT, faces_of, limit_of, unit_mean};
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
 use crate::casts::{to_f32, to_u32};
-use crate::cores::in_ranges;
+use crate::cores::{in_ranges, ranges, split};
 use crate::progress::Progress;
 
 /// How many triangles have their faces computed before these are added to points.
 const BLOCK: usize = 1 << 14;
 
 /// The least number of triangles that are worth a thread.
-const LEAST: usize = 1 << 12;
+const LEAST: usize = 1 << 10;
 
 /// The memory for each point and for each triangle of a block, in bytes.
 const PER_POINT: u64 = size_of::<PointSum>() as u64 + 1;
@@ -80,20 +83,26 @@ pub(super) fn give_normals(
     // A little less than the square of the distance between unit normals at that angle, for the rounding to f32.
     let chord = to_f32(2.0 - 2.0 * limit_of(crease_angle)) - 2e-6;
     let mut sums = vec![PointSum::NONE; count];
+    let parts: Vec<_> = ranges(count, LEAST).collect();
     for block in mesh.triangles.chunks(BLOCK) {
         progress.check()?;
         let faces = in_ranges(block.len(), LEAST, |range| {
             let corners = block[range].iter().map(|corners| corners.map(|id| mesh.corners[id as usize].position));
             corners.map(faces_of).collect::<Vec<_>>()
         });
-        for (corners, &(normal, angles)) in block.iter().zip(faces.iter().flatten()) {
-            for (&corner, angle) in corners.iter().zip(angles) {
-                sums[points.at(corner)].add(normal, angle);
+        split(&mut sums, parts.iter().map(Range::len)).into_par_iter().zip(&parts).for_each(|(sums, part)| {
+            // Each core looks at all faces, so that those around a point are added in their order.
+            for (corners, (normal, angles)) in block.iter().zip(faces.iter().flatten()) {
+                for (&corner, angle) in corners.iter().zip(angles) {
+                    if let Some(sum) = sums.get_mut(points.at(corner).wrapping_sub(part.start)) {
+                        sum.add(*normal, *angle);
+                    }
+                }
             }
-        }
+        });
     }
-    for (id, corner) in (0..).zip(&mut mesh.corners) {
-        corner.normal = sums[points.at(id)].normal(chord).unwrap_or(Vec3::NAN);
-    }
-    Ok(sums.iter().map(|sum| sum.faces == 0 || sum.normal(chord).is_some()).collect())
+    mesh.corners.par_iter_mut().enumerate().for_each(|(id, corner)| {
+        corner.normal = sums[points.at(to_u32(id))].normal(chord).unwrap_or(Vec3::NAN);
+    });
+    Ok(sums.par_iter().map(|sum| sum.faces == 0 || sum.normal(chord).is_some()).collect())
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use bytemuck::Zeroable;
 use glam::Vec3;
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::build_limits::{Borrowed, Budget, BuildError};
@@ -15,6 +16,9 @@ use super::weld::{WELD_BYTES, weld_alike};
 use super::{Corner, Mesh};
 use crate::casts::to_u32;
 use crate::progress::{Cancelled, Progress};
+
+/// How many patches have their volumes computed on all cores before these are added up.
+const BLOCK: usize = 1 << 16;
 
 /// A mesh's patches and the edges between them.
 ///
@@ -231,12 +235,12 @@ impl Topology {
 
     /// Returns whether every edge has exactly two sides.
     pub fn is_closed(&self) -> bool {
-        !self.edges.is_empty() && self.edges.iter().all(|edge| self.edge_sides(edge).len() == 2)
+        !self.edges.is_empty() && self.edges.par_iter().all(|edge| self.edge_sides(edge).len() == 2)
     }
 
     /// Returns whether the triangles at every edge of two sides are wound the same way.
     pub fn is_oriented(&self) -> bool {
-        self.edges.iter().all(|edge| match self.edge_sides(edge) {
+        self.edges.par_iter().all(|edge| match self.edge_sides(edge) {
             [a, b] => a.reversed() != b.reversed(),
             _ => true,
         })
@@ -250,20 +254,25 @@ impl Topology {
     /// Returns the volume of each part of the mesh that is connected by edges, in cubic object units. It is negative
     /// for a part that is wound inward, and means something only for a closed mesh.
     pub fn part_volumes(&self) -> impl Iterator<Item = f64> {
-        let mut parts = UnionFind::new(self.patches.len());
-        for edge in &self.edges {
-            for pair in self.edge_sides(edge).windows(2) {
-                parts.join(pair[0].patch(), pair[1].patch());
-            }
-        }
-        let mut volumes = vec![None; self.patches.len()];
-        for i in 0..self.patches.len() {
-            let [a, b, c] = self.patch_positions(to_u32(i)).map(Vec3::as_dvec3);
+        let parts = UnionFind::new(self.patches.len());
+        self.edges.par_iter().for_each(|edge| {
+            self.edge_sides(edge).windows(2).for_each(|pair| parts.join(pair[0].patch(), pair[1].patch()));
+        });
+        let volume = |patch: u32| {
+            let part = parts.of(patch);
             // Measured from a corner of the part, so that a part far from the origin loses no precision.
-            let (at, volume) = volumes[parts.of(to_u32(i)) as usize].get_or_insert((a, 0.0));
-            *volume += (a - *at).dot((b - *at).cross(c - *at)) / 6.0;
+            let at = self.patch_positions(part)[0].as_dvec3();
+            let [a, b, c] = self.patch_positions(patch).map(|point| point.as_dvec3() - at);
+            (part, a.dot(b.cross(c)) / 6.0)
+        };
+        let mut volumes = vec![0.0; self.patches.len()];
+        for first in (0..self.patches.len()).step_by(BLOCK) {
+            let block = to_u32(first)..to_u32((first + BLOCK).min(self.patches.len()));
+            // Rounding depends on the order, so that one core adds up.
+            let own: Vec<(u32, f64)> = block.into_par_iter().map(volume).collect();
+            own.into_iter().for_each(|(part, volume)| volumes[part as usize] += volume);
         }
-        volumes.into_iter().flatten().map(|(_, volume)| volume)
+        (0..).zip(volumes).filter(move |&(patch, _)| parts.of(patch) == patch).map(|(_, volume)| volume)
     }
 
     /// Returns the range of an edge's sides in [`Topology::sides`].

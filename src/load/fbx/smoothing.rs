@@ -32,7 +32,7 @@ pub(super) fn normals(mesh: &Mesh, budget: &Budget) -> Result<Option<Vec<Vec3>>,
     }
     budget.borrow(PER_CORNER * mesh.num_indices as u64)?;
     let smooth = smooth_edges(mesh);
-    let mut sets = UnionFind::new(mesh.num_indices);
+    let sets = UnionFind::new(mesh.num_indices);
     let mut sides: HashMap<Vertices, Side, FixedState> = HashMap::default();
     for (i, face) in mesh.faces.iter().enumerate() {
         let (first, count) = (face.index_begin, face.num_indices);
@@ -47,7 +47,7 @@ pub(super) fn normals(mesh: &Mesh, budget: &Budget) -> Result<Option<Vec<Vec3>>,
             }
         }
     }
-    Ok(Some(summed(mesh, &mut sets)))
+    Ok(Some(summed(mesh, &sets)))
 }
 
 /// Returns the edges that the file calls smooth.
@@ -64,7 +64,7 @@ fn sorted(mesh: &Mesh, [a, b]: [u32; 2]) -> Option<(Vertices, [u32; 2])> {
 }
 
 /// Returns for each corner the sum over its set.
-fn summed(mesh: &Mesh, sets: &mut UnionFind) -> Vec<Vec3> {
+fn summed(mesh: &Mesh, sets: &UnionFind) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; mesh.num_indices];
     let corners = |face: &ufbx::Face| (face.index_begin..).take(face.num_indices as usize);
     for face in &mesh.faces {

@@ -73,10 +73,10 @@ impl DataError {
 }
 
 /// Converts the bytes of an element into its value.
-type Decode<'a, T> = Box<dyn Fn(&[u8]) -> T + 'a>;
+type Decode<'a, T> = Box<dyn Fn(&[u8]) -> T + Sync + 'a>;
 
 /// Appends the values of many elements: a call for all of them takes a fraction of the time of a call for each.
-type DecodeAll<'a, T> = Box<dyn Fn(Elements, &mut Vec<T>) + 'a>;
+type DecodeAll<'a, T> = Box<dyn Fn(Elements, &mut Vec<T>) + Sync + 'a>;
 
 /// The values of an accessor. Values that lie in a buffer stay there, and are decoded when they are read.
 pub(crate) struct List<'a, T: Clone> {
@@ -88,7 +88,7 @@ pub(crate) struct List<'a, T: Clone> {
     zero: T,
 }
 
-impl<'a, T: Copy + 'a> List<'a, T> {
+impl<'a, T: Copy + Sync + 'a> List<'a, T> {
     /// Makes a list of values that were decoded before.
     pub(crate) fn of(values: &'a [T], zero: T) -> Self {
         Self::decoded(Cow::Borrowed(values), zero)
@@ -99,7 +99,7 @@ impl<'a, T: Copy + 'a> List<'a, T> {
         Self { decoded: Some(values), ..list }
     }
 
-    fn in_buffer(elements: Elements<'a>, decode: impl Fn(&[u8]) -> T + Copy + 'a, zero: T) -> Self {
+    fn in_buffer(elements: Elements<'a>, decode: impl Fn(&[u8]) -> T + Copy + Sync + 'a, zero: T) -> Self {
         let all = move |elements: Elements, values: &mut Vec<T>| values.extend(elements.iter().map(decode));
         Self { elements, decode: Box::new(decode), decode_all: Box::new(all), decoded: None, zero }
     }
@@ -335,11 +335,11 @@ impl<'a> Accessors<'a> {
         self.document.views().nth(index)
     }
 
-    fn read<'b, T: Copy + 'b>(
+    fn read<'b, T: Copy + Sync + 'b>(
         &'b self,
         accessor: &Accessor,
         zero: T,
-        decode: impl Fn(&[u8]) -> T + Copy + 'b,
+        decode: impl Fn(&[u8]) -> T + Copy + Sync + 'b,
     ) -> Result<List<'b, T>, DataError> {
         let (size, count) = (accessor.size(), accessor.count());
         let elements = match accessor.view() {

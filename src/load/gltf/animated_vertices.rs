@@ -54,8 +54,14 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
         Self { binder, frame, budget, first_weight, deltas: Vec::new(), tangents: Vec::new(), found: 0 }
     }
 
-    /// Returns the number of the binding of the vertex that was read last.
-    pub(super) fn bind(&mut self, i: usize, vertices: &Vertices, corner: &InputCorner) -> u32 {
+    /// Returns the number of the binding of a vertex, which these joints move.
+    pub(super) fn bind(
+        &mut self,
+        i: usize,
+        vertices: &Vertices,
+        joints: Option<&[(usize, f64)]>,
+        corner: &InputCorner,
+    ) -> u32 {
         if let Err(problem) = self.displace(i, vertices) {
             self.binder.give_up(problem);
         }
@@ -63,7 +69,7 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
         let normal = normal.unwrap_or_default();
         let tangent = self.first_weight.and_then(|_| vertices.displaced_tangent(i));
         let tangent = tangent.map(|tangent| (tangent, &mut self.tangents[..]));
-        let (influences, deltas) = (vertices.joints(), &mut self.deltas);
+        let (influences, deltas) = (joints, &mut self.deltas);
         let vertex = UndeformedVertex { position, normal, influences, deltas, tangent };
         self.binder.bind(&self.frame, vertex, corner)
     }

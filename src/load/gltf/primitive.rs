@@ -1,5 +1,10 @@
 //! Reads the triangles of a primitive: lists, strips and fans, with or without indices.
 
+use std::convert::Infallible;
+use std::ops::Range;
+use std::sync::atomic::AtomicU64;
+use std::sync::atomic::Ordering::Relaxed;
+
 use ::gltf::mesh::Mode;
 use ::gltf::{Document, Mesh, Primitive, Semantic};
 
@@ -13,14 +18,15 @@ use crate::Budget;
 use crate::face_builder::{is_near, unplaced};
 use crate::import::Import;
 use geometry::casts::to_u32;
-use geometry::mesh::MemoryRefused;
+use geometry::cores::in_ranges;
 use geometry::mesh::detail_table::DetailTable;
+use geometry::mesh::{CornerDetail, MemoryRefused, Repairs};
 
 use super::vertex_repairs::VertexRepairs;
 pub(super) use super::vertices::NodePose;
-use super::vertices::{Vertex, Vertices};
+use super::vertices::{Findings, Vertex, Vertices};
 use super::{Accessors, GltfError};
-use geometry::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
+use geometry::mesh::mesh_builder::{CornerRepairs, InputCorner, MeshBuilder, StoredCorner};
 
 /// Reads primitives, and counts what was repaired or left out.
 #[derive(Debug, Default)]
@@ -78,12 +84,12 @@ impl<'a> Indices<'a> {
         self.list.as_ref().map_or(to_u32(i), |list| list.get(i))
     }
 
-    /// Calls `take` with the number of the first index, and some indices, until it has had all. All lists but the last have
+    /// Calls `take` with the number of the first index, and some indices, until it has had all of a range. All lists but the last have
     /// [`BLOCK`] indices.
-    fn in_blocks<E>(&self, mut take: impl FnMut(usize, &[u32]) -> Result<(), E>) -> Result<(), E> {
-        let mut block = Vec::with_capacity(BLOCK.min(self.count));
-        for first in (0..self.count).step_by(BLOCK) {
-            let range = first..(first + BLOCK).min(self.count);
+    fn in_blocks<E>(&self, all: Range<usize>, mut take: impl FnMut(usize, &[u32]) -> Result<(), E>) -> Result<(), E> {
+        let mut block = Vec::with_capacity(BLOCK.min(all.len()));
+        for first in all.clone().step_by(BLOCK) {
+            let range = first..(first + BLOCK).min(all.end);
             block.clear();
             match &self.list {
                 Some(list) => list.append(range, &mut block),
@@ -95,7 +101,16 @@ impl<'a> Indices<'a> {
     }
 }
 
-/// How many vertices are read before their corners are stored.
+/// How many of so many vertices, or triangles, are read on all cores before they are stored: so few that they take little memory beside
+/// what is made of them all.
+fn at_once(count: usize) -> usize {
+    (count / 16).clamp(TOGETHER, 1 << 15)
+}
+
+/// The least number of vertices or triangles that are worth a thread.
+const LEAST: usize = 1 << 10;
+
+/// How many corners are stored before there is room for more.
 const TOGETHER: usize = 256;
 
 /// How many indices are decoded at a time: whole triangles.
@@ -141,6 +156,7 @@ impl PrimitiveReader {
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
         let kept = KeptVertices::of(&mut vertices, &used, moving, details, builder, budget)?;
+        drop(used);
         let (mode, count) = (primitive.mode(), indices.count);
         self.repairs = vertices.repairs;
         self.read += 1;
@@ -148,7 +164,7 @@ impl PrimitiveReader {
             self.left_over += count % 3;
         }
         builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
-        let unplaced = self.add_triangles(mode, &indices, &kept, builder, material.index)?;
+        let unplaced = self.add_triangles(mode, &indices, &kept, builder, material.index);
         if unplaced > 0 {
             self.unplaced.0 += unplaced;
             self.unplaced.1.get_or_insert_with(|| name.clone());
@@ -165,26 +181,20 @@ impl PrimitiveReader {
         kept: &KeptVertices,
         builder: &mut MeshBuilder,
         material: usize,
-    ) -> Result<usize, GltfError> {
-        let mut unplaced = 0;
-        let mut add = |[a, b, c]: [u32; 3]| {
-            if [a, b, c].iter().any(|&i| kept.has(i, KeptVertices::UNPLACED)) {
-                unplaced += 1;
-                return;
+    ) -> usize {
+        let (all, mut unplaced) = (most_triangles(mode, indices.count), 0);
+        let at_once = at_once(all);
+        for first in (0..all).step_by(at_once) {
+            let read = in_ranges(at_once.min(all - first), LEAST, |range| {
+                PlacedTriangles::of(mode, indices, kept, first + range.start..first + range.end)
+            });
+            for some in read {
+                unplaced += some.unplaced;
+                self.rescaled += some.rescaled;
+                builder.stored_triangles(material, &some.triangles, &some.repairs);
             }
-            let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
-            self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
-            builder.stored_triangle(material, outward.map(|i| kept.get(i)));
-        };
-        if mode != Mode::Triangles {
-            triangles(mode, indices.count, |i| indices.get(i)).for_each(add);
-            return Ok(unplaced);
         }
-        indices.in_blocks(|_, block| {
-            block.as_chunks().0.iter().for_each(|triangle| add(*triangle));
-            Ok::<_, GltfError>(())
-        })?;
-        Ok(unplaced)
+        unplaced
     }
 
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
@@ -237,6 +247,71 @@ impl PrimitiveReader {
     }
 }
 
+/// Triangles of stored corners.
+#[derive(Default)]
+struct PlacedTriangles {
+    triangles: Vec<[u32; 3]>,
+    repairs: Repairs,
+    /// Their corners whose normal wasn't of unit length in the file.
+    rescaled: u32,
+    /// How many are left out, since they have a position that can't be drawn.
+    unplaced: usize,
+}
+
+impl PlacedTriangles {
+    /// Reads those of a primitive's triangles that have these numbers.
+    fn of(mode: Mode, indices: &Indices, kept: &KeptVertices, numbers: Range<usize>) -> Self {
+        let mut placed = Self { triangles: Vec::with_capacity(numbers.len()), ..Self::default() };
+        if mode != Mode::Triangles {
+            triangles(mode, numbers, |i| indices.get(i)).for_each(|triangle| placed.add(triangle, kept));
+            return placed;
+        }
+        let Ok(()) = indices.in_blocks(3 * numbers.start..3 * numbers.end, |_, block| {
+            block.as_chunks().0.iter().for_each(|triangle| placed.add(*triangle, kept));
+            Ok::<_, Infallible>(())
+        });
+        placed
+    }
+
+    fn add(&mut self, [a, b, c]: [u32; 3], kept: &KeptVertices) {
+        if [a, b, c].iter().any(|&i| kept.has(i, KeptVertices::UNPLACED)) {
+            self.unplaced += 1;
+            return;
+        }
+        let outward = if kept.has(a, KeptVertices::MIRRORED) { [a, c, b] } else { [a, b, c] };
+        self.rescaled += outward.map(|i| u32::from(kept.has(i, KeptVertices::RESCALED))).iter().sum::<u32>();
+        self.triangles.push(outward.map(|i| {
+            let StoredCorner { id, repairs } = kept.get(i);
+            repairs.count(&mut self.repairs);
+            id
+        }));
+    }
+}
+
+/// A vertex that was read, with its mark.
+struct ReadVertex {
+    corner: InputCorner,
+    detail: CornerDetail,
+    binding: u32,
+    mark: u8,
+}
+
+/// Reads vertices one after another, and binds them to what moves them. Returns them with what was repaired.
+fn read_vertices(
+    vertices: &Vertices,
+    range: Range<usize>,
+    mut moving: Option<&mut AnimatedVertices>,
+) -> (Vec<ReadVertex>, VertexRepairs) {
+    let mut findings = Findings::default();
+    let read = range.map(|i| {
+        let vertex = vertices.read(i, &mut findings);
+        let joints = findings.joints.as_deref();
+        let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, vertices, joints, &vertex.corner));
+        ReadVertex { mark: KeptVertices::mark(&vertex), corner: vertex.corner, detail: vertex.detail, binding }
+    });
+    (read.collect(), findings.repairs)
+}
+
 /// The corners of a primitive's vertices in the builder.
 struct KeptVertices {
     ids: Vec<u32>,
@@ -259,54 +334,72 @@ impl KeptVertices {
     /// [`GltfError::Accessor`] and [`GltfError::TooLarge`].
     fn of(
         vertices: &mut Vertices,
-        used: &[u64],
+        used: &[AtomicU64],
         mut moving: Option<AnimatedVertices>,
         mut details: Option<&mut DetailTable>,
         builder: &mut MeshBuilder,
         budget: &Budget,
     ) -> Result<Self, GltfError> {
-        let is_stored =
-            |kept: &Self, i: usize| used[i / 64] & 1 << (i % 64) != 0 && !kept.has(to_u32(i), Self::UNPLACED);
         let mut kept = Self::new(vertices.count);
-        let (mut corners, mut stored) = (Vec::with_capacity(TOGETHER), Vec::with_capacity(TOGETHER));
-        for first in (0..vertices.count).step_by(TOGETHER) {
-            let range = first..(first + TOGETHER).min(vertices.count);
-            corners.clear();
-            for i in range.clone() {
-                let vertex = vertices.read(i);
-                let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, vertices, &vertex.corner));
-                kept.mark(&vertex);
-                if is_stored(&kept, i) {
-                    let binding = match &mut details {
-                        Some(details) => details.number(vertex.detail, binding, budget).map_err(too_large)?,
-                        None => binding,
-                    };
-                    corners.push((vertex.corner, binding));
-                }
-            }
-            builder.make_room(corners.len(), budget).map_err(too_large)?;
-            stored.clear();
-            builder.corners(&corners, &mut stored);
-            let mut stored = stored.iter().copied();
-            range.for_each(|i| {
-                let own = if is_stored(&kept, i) { stored.next() } else { None };
-                kept.push(own.unwrap_or_default());
-            });
+        // What moves a vertex gets its number in the order of the vertices, and its memory before that of later corners.
+        let at_once = if moving.is_some() { TOGETHER } else { at_once(vertices.count) };
+        for first in (0..vertices.count).step_by(at_once) {
+            let block = first..(first + at_once).min(vertices.count);
+            let read = match &mut moving {
+                Some(moving) => vec![read_vertices(vertices, block, Some(moving))],
+                None => in_ranges(block.len(), LEAST, |range| {
+                    read_vertices(vertices, first + range.start..first + range.end, None)
+                }),
+            };
+            read.iter().for_each(|(_, repairs)| vertices.repairs.add(repairs));
+            kept.store(&read, used, details.as_deref_mut(), builder, budget).map_err(too_large)?;
         }
         Ok(kept)
     }
 
-    /// Notes how the next vertex was read.
-    fn mark(&mut self, vertex: &Vertex) {
-        let mark = |is: bool, bit: u8| if is { bit } else { 0 };
-        let unplaced = mark(!is_near(&vertex.corner), Self::UNPLACED);
-        self.marks.push(mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED) | unplaced);
+    /// Stores the corners of the next vertices.
+    fn store(
+        &mut self,
+        read: &[(Vec<ReadVertex>, VertexRepairs)],
+        used: &[AtomicU64],
+        mut details: Option<&mut DetailTable>,
+        builder: &mut MeshBuilder,
+        budget: &Budget,
+    ) -> Result<(), MemoryRefused> {
+        let is_stored = |&(i, own): &(usize, &ReadVertex)| {
+            used[i / 64].load(Relaxed) & 1 << (i % 64) != 0 && own.mark & Self::UNPLACED == 0
+        };
+        let numbered = (self.ids.len()..).zip(read.iter().flat_map(|(read, _)| read));
+        let mut corners = Vec::with_capacity(read.iter().map(|(read, _)| read.len()).sum());
+        for (_, own) in numbered.clone().filter(is_stored) {
+            let binding = match &mut details {
+                Some(details) => details.number(own.detail, own.binding, budget)?,
+                None => own.binding,
+            };
+            corners.push((own.corner, binding));
+        }
+        let (mut rest, mut stored) = (&corners[..], Vec::with_capacity(corners.len()));
+        while !rest.is_empty() {
+            // Corners that turn out not to be distinct need room for a moment.
+            builder.make_room(rest.len().min(TOGETHER), budget)?;
+            let (now, later) = rest.split_at(rest.len().min(builder.room()));
+            builder.corners(now, &mut stored);
+            rest = later;
+        }
+        let mut stored = stored.into_iter();
+        for own in numbered {
+            let corner = if is_stored(&own) { stored.next().unwrap_or_default() } else { StoredCorner::default() };
+            self.marks.push(own.1.mark | corner.repairs.0);
+            self.ids.push(corner.id);
+        }
+        Ok(())
     }
 
-    /// Adds the corner of the first vertex without one.
-    fn push(&mut self, kept: StoredCorner) {
-        self.marks[self.ids.len()] |= kept.repairs.0;
-        self.ids.push(kept.id);
+    /// Returns how a vertex was read.
+    fn mark(vertex: &Vertex) -> u8 {
+        let mark = |is: bool, bit: u8| if is { bit } else { 0 };
+        let unplaced = mark(!is_near(&vertex.corner), Self::UNPLACED);
+        mark(vertex.mirrored, Self::MIRRORED) | mark(vertex.rescaled, Self::RESCALED) | unplaced
     }
 
     fn has(&self, i: u32, mark: u8) -> bool {
@@ -328,21 +421,25 @@ fn too_large(refused: MemoryRefused) -> GltfError {
 ///
 /// # Errors
 /// A clause if an index isn't a vertex.
-fn used(indices: &Indices, count: usize) -> Result<Vec<u64>, String> {
-    if indices.list.is_none() {
-        return Ok(vec![u64::MAX; count.div_ceil(64)]);
-    }
-    let mut used = vec![0; count.div_ceil(64)];
-    indices.in_blocks(|first, block| {
+fn used(indices: &Indices, count: usize) -> Result<Vec<AtomicU64>, String> {
+    let is_listed = indices.list.is_some();
+    let used: Vec<_> = (0..count.div_ceil(64)).map(|_| AtomicU64::new(if is_listed { 0 } else { u64::MAX })).collect();
+    let mark = |first: usize, block: &[u32]| {
         for (i, &index) in (first..).zip(block) {
-            let index = index as usize;
+            let (index, bit) = (index as usize, 1 << (index % 64));
             if index >= count {
                 return Err(format!("uses vertex {index} at index {i}, but has {count} vertices"));
             }
-            used[index / 64] |= 1 << (index % 64);
+            // Most are used already, and are only read.
+            if used[index / 64].load(Relaxed) & bit == 0 {
+                used[index / 64].fetch_or(bit, Relaxed);
+            }
         }
         Ok(())
-    })?;
+    };
+    let listed = if is_listed { indices.count } else { 0 };
+    // The first range that fails has the first index that is none.
+    in_ranges(listed, LEAST, |range| indices.in_blocks(range, mark)).into_iter().collect::<Result<(), _>>()?;
     Ok(used)
 }
 
@@ -357,10 +454,10 @@ pub(super) fn most_triangles(mode: Mode, indices: usize) -> usize {
     if mode == Mode::Triangles { indices / 3 } else { indices.saturating_sub(2) }
 }
 
-/// Converts indices into triangles (specification, section 3.7.2.1). In a strip or fan, a triangle that uses a vertex
+/// Converts indices into the triangles with these numbers (specification, section 3.7.2.1). In a strip or fan, a triangle that uses a vertex
 /// twice only connects parts and is dropped; in a list, it is kept.
-fn triangles(mode: Mode, count: usize, at: impl Fn(usize) -> u32) -> impl Iterator<Item = [u32; 3]> {
-    (0..most_triangles(mode, count)).filter_map(move |i| {
+fn triangles(mode: Mode, numbers: Range<usize>, at: impl Fn(usize) -> u32) -> impl Iterator<Item = [u32; 3]> {
+    numbers.filter_map(move |i| {
         let triangle = match mode {
             Mode::TriangleStrip if i % 2 == 0 => [i, i + 1, i + 2],
             Mode::TriangleStrip => [i, i + 2, i + 1],
@@ -378,7 +475,7 @@ mod tests {
     use super::*;
 
     fn all(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
-        triangles(mode, indices.len(), |i| indices[i]).collect()
+        triangles(mode, 0..most_triangles(mode, indices.len()), |i| indices[i]).collect()
     }
 
     #[test]

@@ -15,8 +15,9 @@ use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
+use geometry::cores::on_threads;
 use geometry::mesh::topology::Topology;
-use geometry::mesh::{Mesh, Repairs};
+use geometry::mesh::{Corner, Mesh, Repairs};
 
 /// A document that is being built: one buffer, with a view and an accessor for each list.
 struct Draft {
@@ -344,4 +345,56 @@ fn primitives_merge_by_material_and_weld() {
     assert_eq!(mesh.materials[0].base_color, [1.0, 0.0, 0.0, 1.0]);
     assert_eq!(mesh.corners.len(), 4);
     assert_eq!(Topology::build(&mesh, &Progress::new()).unwrap().points.len(), 4);
+}
+
+/// Many vertices, in a few of which something is wrong, and some of which nothing uses.
+fn large() -> Draft {
+    let (count, side) = (150_000_u32, 300);
+    let mut draft = Draft::new();
+    let place = |i: u32| [(i % side) as f32, (i / side) as f32, if i % 50_021 == 77 { f32::NAN } else { 0.0 }];
+    let normal = |i: u32| [0.0, (i % 5) as f32, if i.is_multiple_of(3) { 1.0 } else { 0.9 }];
+    let uv = |i: u32| [i as f32, if i.is_multiple_of(40_009) { f32::INFINITY } else { 0.5 }];
+    let places: Vec<_> = (0..count).map(place).collect();
+    let normals: Vec<_> = (0..count).map(normal).collect();
+    let uvs: Vec<_> = (0..count).flat_map(uv).collect();
+    let (places, normals, uvs) = (draft.vectors(&places), draft.vectors(&normals), draft.floats("VEC2", &uvs));
+    let squares = (0..count - side - 1).rev().filter(|i| i % side + 1 < side && i % 1009 > 20);
+    let indices: Vec<u8> = squares
+        .flat_map(|i| [i, i + 1, i + side, i + side, i + 1, i + side + 1])
+        .chain([3])
+        .flat_map(u32::to_le_bytes)
+        .collect();
+    let indices = draft.accessor(&indices, 5125, "SCALAR", indices.len() / 4);
+    let attributes = json!({ "POSITION": places, "NORMAL": normals, "TEXCOORD_0": uvs });
+    draft.primitive(json!({ "attributes": attributes.clone(), "indices": indices }));
+    draft.primitive(json!({ "attributes": attributes, "mode": 5 }));
+    draft.root["nodes"][0]["scale"] = json!([-2.0, 1.0, 3.0]);
+    draft
+}
+
+#[test]
+fn any_number_of_cores_reads_the_same_mesh() {
+    let glb = large().glb();
+    let [one, many] = [1, 7].map(|cores| on_threads(cores, || read_bytes(&glb)).expect("threads").unwrap());
+    let corner = |own: &Corner| (own.position, own.normal, own.uv);
+    assert!(one.mesh.corners.iter().map(corner).eq(many.mesh.corners.iter().map(corner)));
+    assert!(one.mesh.triangles == many.mesh.triangles);
+    assert_eq!((one.mesh.repairs, &one.warnings), (many.mesh.repairs, &many.warnings));
+    let said = one.warnings.join(" ");
+    for kind in ["uvs that aren't finite", "no whole triangle", "isn't a number", "length"] {
+        assert!(said.contains(kind), "{kind}: {said}");
+    }
+}
+
+#[test]
+fn the_first_index_that_is_no_vertex_is_named_by_any_number_of_cores() {
+    let mut draft = Draft::new();
+    let places = draft.vectors(&TRIANGLE);
+    let indices: Vec<u8> = (0..90_000_u32).flat_map(|i| (if i > 20_000 { i } else { i % 3 }).to_le_bytes()).collect();
+    let indices = draft.accessor(&indices, 5125, "SCALAR", 90_000);
+    draft.primitive(json!({ "attributes": { "POSITION": places }, "indices": indices }));
+    for cores in [1, 7] {
+        let said = on_threads(cores, || message(&draft)).expect("threads");
+        assert!(said.contains("uses vertex 20001 at index 20001, but has 3 vertices"), "{said}");
+    }
 }

@@ -21,3 +21,17 @@ pub(super) struct VertexRepairs {
     /// The largest part of a vertex's weights that was left out, of 1.
     pub largest_cut: f64,
 }
+
+impl VertexRepairs {
+    /// Adds what was repaired in other vertices.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.without_normals += other.without_normals;
+        self.bad_uvs += other.bad_uvs;
+        self.missing_uvs += other.missing_uvs;
+        self.bad_colors += other.bad_colors;
+        self.bad_tangents += other.bad_tangents;
+        self.bad_weights += other.bad_weights;
+        self.cut_weights += other.cut_weights;
+        self.largest_cut = self.largest_cut.max(other.largest_cut);
+    }
+}

@@ -52,6 +52,14 @@ impl MorphTarget<'_> {
     }
 }
 
+/// What is found out while vertices are read one after another.
+#[derive(Default)]
+pub(super) struct Findings {
+    pub repairs: VertexRepairs,
+    /// The joints that move the vertex that was read last; none if they are unusable.
+    pub joints: Option<Vec<(usize, f64)>>,
+}
+
 /// A vertex in the scene's space.
 pub(super) struct Vertex {
     pub corner: InputCorner,
@@ -146,8 +154,6 @@ pub(super) struct Vertices<'a> {
     /// What keeps a clip from changing the weights.
     pub unmorphed: Option<String>,
     influences: Option<Influences<'a>>,
-    /// The joints of the vertex that was read last; none if they are unusable.
-    joints: Option<Vec<(usize, f64)>>,
     /// What corners have beside that; none if no material needs it.
     details: Option<VertexDetails<'a>>,
     pub repairs: VertexRepairs,
@@ -185,7 +191,6 @@ impl<'a> Vertices<'a> {
             targets: Vec::new(),
             unmorphed: None,
             influences: Influences::read(source, pose, count, notes)?,
-            joints: None,
             details,
             repairs,
         };
@@ -234,11 +239,6 @@ impl<'a> Vertices<'a> {
         self.influences.is_some()
     }
 
-    /// Returns the joints that move the vertex that was read last.
-    pub(super) fn joints(&self) -> Option<&[(usize, f64)]> {
-        self.joints.as_deref()
-    }
-
     /// Returns a vertex's position and normal in the file; with the morph targets' displacements at rest if
     /// `is_morphed`.
     pub(super) fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {
@@ -257,8 +257,8 @@ impl<'a> Vertices<'a> {
     }
 
     /// Reads a vertex. Each must be read only once, since repairs are counted. Its position may be too far away, or not be finite.
-    pub(super) fn read(&mut self, i: usize) -> Vertex {
-        let matrix = self.matrix(i);
+    pub(super) fn read(&self, i: usize, findings: &mut Findings) -> Vertex {
+        let matrix = self.matrix(i, findings);
         let (position, normal) = self.undeformed(i, true);
         // The normal before morphing, which doesn't preserve unit length.
         let own = if self.is_morphed() { self.undeformed(i, false).1 } else { normal }.map(GivenNormal::new);
@@ -272,11 +272,11 @@ impl<'a> Vertices<'a> {
         }
         if !uv.is_finite() {
             uv = Vec2::ZERO;
-            self.repairs.bad_uvs += 1;
+            findings.repairs.bad_uvs += 1;
         }
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
-        let detail = self.detail(i, &linear);
+        let detail = self.detail(i, &linear, &mut findings.repairs);
         Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled }
     }
 
@@ -300,13 +300,13 @@ impl<'a> Vertices<'a> {
     }
 
     /// Reads the details of a vertex. Morph targets change its tangent, and then `linear` transforms its directions into the scene's space.
-    fn detail(&mut self, i: usize, linear: &DMat3) -> CornerDetail {
+    fn detail(&self, i: usize, linear: &DMat3, repairs: &mut VertexRepairs) -> CornerDetail {
         let Some(details) = &self.details else { return CornerDetail::default() };
         let tangent = details.tangents.as_ref().map(|list| self.tangent(i, list.get(i), linear));
-        self.repairs.bad_tangents += usize::from(tangent == Some(None));
+        repairs.bad_tangents += usize::from(tangent == Some(None));
         let (tangent, bitangent_sign) = tangent.flatten().unwrap_or((Vec3::ZERO, 1.0));
-        let uvs = [0, 1].map(|set| details.uv(set, i, &mut self.repairs));
-        CornerDetail { uvs, color: details.color(i, &mut self.repairs), tangent, bitangent_sign }
+        let uvs = [0, 1].map(|set| details.uv(set, i, repairs));
+        CornerDetail { uvs, color: details.color(i, repairs), tangent, bitangent_sign }
     }
 
     /// Transforms the tangent of a vertex; none if it has no direction. A map that mirrors turns the bitangent, whose sign this is, around:
@@ -340,18 +340,18 @@ impl<'a> Vertices<'a> {
 
     /// Returns the matrix of a vertex: the weighted mean of its joints' matrices, or the node's transform if it isn't
     /// skinned.
-    fn matrix(&mut self, i: usize) -> DMat4 {
+    fn matrix(&self, i: usize, Findings { repairs, joints: found }: &mut Findings) -> DMat4 {
         let Some(influences) = &self.influences else { return self.pose.global };
-        let mut joints = self.joints.take().unwrap_or_default();
+        let mut joints = found.take().unwrap_or_default();
         let Some(cut) = influences.of(i, self.pose.joints.len(), &mut joints) else {
-            self.repairs.bad_weights += 1;
+            repairs.bad_weights += 1;
             return DMat4::IDENTITY;
         };
-        self.repairs.cut_weights += usize::from(cut > 0.0);
-        self.repairs.largest_cut = self.repairs.largest_cut.max(cut);
+        repairs.cut_weights += usize::from(cut > 0.0);
+        repairs.largest_cut = repairs.largest_cut.max(cut);
         let weighed = |sum, &(joint, weight): &(usize, f64)| sum + self.pose.joints[joint] * weight;
         let matrix = joints.iter().fold(DMat4::ZERO, weighed);
-        self.joints = Some(joints);
+        *found = Some(joints);
         matrix
     }
 }

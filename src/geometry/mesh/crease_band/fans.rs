@@ -22,7 +22,7 @@ pub(super) struct Fans {
 impl Fans {
     pub(super) fn of(mesh: &Mesh, topology: &Topology) -> Self {
         let count = 3 * topology.patches.len();
-        let mut parts = UnionFind::new(count);
+        let parts = UnionFind::new(count);
         for edge in &topology.edges {
             for pair in topology.edge_sides(edge).windows(2) {
                 for end in 0..2 {

@@ -1,6 +1,7 @@
 //! Building meshes: corners are merged, repaired and put in order.
 
 use super::*;
+use crate::cores::on_threads;
 
 fn corner(x: f32, y: f32) -> InputCorner {
     InputCorner { position: Vec3::new(x, y, 0.0), normal: Some(Vec3::Z), uv: Vec2::ZERO }
@@ -116,4 +117,56 @@ fn room_that_was_not_needed_is_returned_and_the_copy_is_accounted_for() {
     let (joined, copied) = (98 * 12, 100 * (4 + size_of::<Corner>() as u64));
     assert_eq!([built(100, joined), built(500, copied)], [Ok((100, 100)); 2]);
     assert!(built(100, joined - 1).is_err() && built(500, copied - 1).is_err());
+}
+
+#[test]
+fn any_number_of_cores_and_any_memory_put_corners_in_the_same_order() {
+    let count = 50_000_u32;
+    // Some corners are used often, and some never.
+    let triangles: Vec<_> =
+        (0..70_000_u32).map(|i| [7919, 104_729, 15].map(|k| i.wrapping_mul(k) % (count + 11 * (k % 3)))).collect();
+    let mesh = || {
+        let corners = (0..count + 50).map(|i| repaired(corner(i as f32, 0.0)).0).collect();
+        UnfinishedMesh { corners, bindings: (0..count + 50).collect(), triangles: triangles.clone() }
+    };
+    let ordered = |cores, memory| {
+        let (mut mesh, budget) = (mesh(), || Budget::new(0, memory));
+        on_threads(cores, || renumber(&mut mesh, &budget())).expect("threads");
+        (mesh.corners, mesh.bindings, mesh.triangles)
+    };
+    let (mut order, mut is_named) = (Vec::new(), vec![false; count as usize + 50]);
+    for &corner in triangles.as_flattened() {
+        if !std::mem::replace(&mut is_named[corner as usize], true) {
+            order.push(corner);
+        }
+    }
+    for (cores, memory) in [(1, u64::MAX), (7, u64::MAX), (1, 0), (7, 0)] {
+        let (corners, bindings, numbered) = ordered(cores, memory);
+        assert_eq!(bindings, order, "{cores} cores, {memory} bytes");
+        assert!(corners.iter().zip(&order).all(|(corner, old)| corner.position.x == *old as f32));
+        assert!(
+            numbered.as_flattened().iter().zip(triangles.as_flattened()).all(|(new, old)| order[*new as usize] == *old)
+        );
+        assert_eq!(corners.len(), order.len());
+    }
+}
+
+#[test]
+fn many_corners_at_once_get_the_numbers_of_one_after_another() {
+    let offered: Vec<_> = (0..30_000_u32)
+        .map(|i| (corner((i.wrapping_mul(i) % 9001) as f32, (i % 2) as f32), if i > 10_000 { i % 3 / 2 } else { 0 }))
+        .collect();
+    let stored = |cores, at_once| {
+        let store = || {
+            let (mut builder, mut stored) = (MeshBuilder::new(), Vec::new());
+            offered.chunks(at_once).for_each(|some| builder.corners(some, &mut stored));
+            (stored, builder.distinct.corners, builder.distinct.bindings)
+        };
+        on_threads(cores, store).expect("threads")
+    };
+    let expected = stored(1, 100);
+    assert!(expected.1.len() > 9_000 && expected.1.len() < 30_000, "some are equal, and some aren't");
+    for (cores, at_once) in [(2, 30_000), (7, 30_000), (7, 5_000)] {
+        assert_eq!(stored(cores, at_once), expected, "{cores} cores, {at_once} at once");
+    }
 }
