@@ -3,7 +3,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::survey::LEAST;
+use super::visitor::LEAST;
 use geometry::cores::in_ranges;
 use geometry::mesh::Topology;
 use geometry::tessellate::Vertex;

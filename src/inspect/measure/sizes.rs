@@ -7,8 +7,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::survey::LEAST;
-use super::visitor::{EmittedChunk, Visitor};
+use super::visitor::{EmittedChunk, LEAST, Visitor};
 use geometry::cores::in_ranges;
 use geometry::tessellate::{Vertex, beyond_near, planes_outside};
 use geometry::view::ScreenView;

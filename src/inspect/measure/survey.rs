@@ -7,7 +7,7 @@ use super::cracks::Cracks;
 use super::folds::{self, FoldedPatch};
 use super::outlines::Outlines;
 use super::seams::Seams;
-use super::visitor::{EmittedChunk, Visitor};
+use super::visitor::{EmittedChunk, LEAST, Visitor};
 use geometry::cores::in_ranges;
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{FACING_AWAY, OUT_OF_VIEW, PatchFactors, Tessellated, Vertex, patch_is_culled};
@@ -104,9 +104,6 @@ impl<'a> Survey<'a> {
         }
     }
 }
-
-/// How many vertices or triangles are worth a core.
-pub(super) const LEAST: usize = 1 << 14;
 
 /// How many vertices have an infinite or NaN position or uv, and the least and greatest coordinates of the others.
 fn extent_of(vertices: &[Vertex]) -> (u64, [Vec3; 2]) {

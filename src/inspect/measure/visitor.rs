@@ -3,6 +3,9 @@
 use geometry::tessellate::Vertex;
 use gpu::put_together;
 
+/// How many vertices or triangles are worth a core.
+pub(super) const LEAST: usize = 1 << 14;
+
 /// The output of one chunk: whole patches, in order.
 #[derive(Clone, Copy, Debug)]
 pub struct EmittedChunk<'a> {
