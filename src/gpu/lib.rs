@@ -52,7 +52,7 @@ pub use own_functions::{OwnPipelines, OwnReport, OwnShader};
 pub use own_lod::{Given, LodShader};
 pub use own_surface::SurfaceShader;
 pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
-pub use readback::{Readback, read_buffer, read_buffers, read_texture, with_buffers};
+pub use readback::{Readback, read_buffer, read_buffers, read_texture};
 pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};
 pub use tessellator::{ChunkBuffers, Tessellator};
 pub use wgsl::WgslModule;

@@ -113,12 +113,20 @@ impl Readback {
     /// # Errors
     /// The device was lost, or it has refused a command that nobody was told of yet.
     pub fn wait(&mut self, gpu: &Gpu) -> Result<Vec<u8>, GpuError> {
-        self.arrive(gpu, PATIENCE)?;
+        self.arrive(gpu)?;
         self.bytes()
     }
 
-    /// Waits for the bytes, no longer than `patience` once the device has done all that was submitted.
-    fn arrive(&mut self, gpu: &Gpu, patience: Duration) -> Result<(), GpuError> {
+    /// Waits for the bytes as [`Self::wait`] does, and leaves them where they are.
+    ///
+    /// # Errors
+    /// The same.
+    pub fn arrive(&mut self, gpu: &Gpu) -> Result<(), GpuError> {
+        self.arrive_within(gpu, PATIENCE)
+    }
+
+    /// The same, if the bytes come before `patience` has passed once the device has done all that was submitted.
+    fn arrive_within(&mut self, gpu: &Gpu, patience: Duration) -> Result<(), GpuError> {
         self.request();
         gpu.wait();
         // A command that was refused explains more than the mapping that failed because of it.
@@ -186,20 +194,6 @@ pub fn read_buffers<'a>(
     if parts.is_empty() { Ok(Vec::new()) } else { Readback::start(gpu, parts).wait(gpu) }
 }
 
-/// Reads ranges of bytes of buffers as [`read_buffers`] does, and gives them to `take` without a copy.
-///
-/// # Errors
-/// The device was lost.
-pub fn with_buffers<'a, R>(
-    gpu: &Gpu,
-    parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>,
-    take: impl FnOnce(&[u8]) -> R,
-) -> Result<R, GpuError> {
-    let mut readback = Readback::start(gpu, parts);
-    readback.arrive(gpu, PATIENCE)?;
-    readback.with_bytes(take)
-}
-
 /// Reads a texture's texels row by row, waiting for them: see [`Readback::of_texture`].
 ///
 /// # Errors
@@ -233,7 +227,7 @@ mod tests {
         let (sender, receiver) = channel();
         let state = State::Requested(Mutex::new(receiver));
         let mut readback = Readback { staging, layout: Layout::Packed(4), state };
-        let read = readback.arrive(&gpu, Duration::from_millis(1));
+        let read = readback.arrive_within(&gpu, Duration::from_millis(1));
         assert!(matches!(read, Err(GpuError::Readback(_))), "{read:?}");
         drop(sender);
     }

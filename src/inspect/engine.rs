@@ -19,6 +19,7 @@ use gpu::{AdapterChoice, ComputePipelines, Gpu, GpuError, Recorder, Timing};
 
 pub use loading::{Loaded, Preparation, load};
 pub use measurements::{MeasurementResults, Measurements};
+pub use readbacks::CopiedChunk;
 pub use silhouette::{SilhouetteDrawing, SilhouetteView};
 pub use timing::Runs;
 

@@ -5,9 +5,9 @@ use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, TrySendError, sync_cha
 
 use super::background_job::{Stopped, caught, sent};
 use geometry::progress::Progress;
-use geometry::tessellate::Vertex;
-use gpu::{Gpu, GpuError, Readback, Recorder, Timing};
-use inspect::measure::{Visitor, visit_bytes};
+use gpu::{Gpu, GpuError, Readback};
+use inspect::engine::CopiedChunk;
+use inspect::measure::Visitor;
 use inspect::render::Scene;
 
 /// How many parts may wait for the thread: each is as large as the arena.
@@ -35,8 +35,7 @@ struct Copying {
 enum Part {
     /// What a walk needs besides what is emitted.
     First(Readback),
-    /// The output of patches from `first_patch` on: `vertex_bytes` bytes of vertices, then indices.
-    Chunk { first_patch: u32, vertex_bytes: usize, readback: Readback },
+    Chunk(CopiedChunk),
 }
 
 /// What the thread receives, in order.
@@ -114,7 +113,7 @@ impl<T> Walk<T> {
 impl Copying {
     /// Sends the part to the thread once it has been copied, and starts to copy the next chunk.
     fn go_on(mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Self>, GpuError> {
-        let (Part::First(readback) | Part::Chunk { readback, .. }) = &mut self.part;
+        let (Part::First(readback) | Part::Chunk(CopiedChunk { readback, .. })) = &mut self.part;
         if !readback.poll()? {
             return Ok(Some(self));
         }
@@ -137,17 +136,7 @@ fn copy_chunk(
     if index >= scene.tessellator.chunk_count() {
         return Ok(None);
     }
-    let mut timing = Timing::Off;
-    let mut recorder = Recorder::new(gpu, &mut timing);
-    scene.tessellator.emit(&mut recorder, index)?;
-    recorder.submit();
-    let chunk = scene.tessellator.chunk(index);
-    let vertex_bytes = u64::from(chunk.chunk.vertex_count) * size_of::<Vertex>() as u64;
-    let index_bytes = u64::from(chunk.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
-    let [first, second] = chunk.vertices();
-    let readback = Readback::start(gpu, [first, second, (chunk.indices, 0..index_bytes)]);
-    let first_patch = chunk.chunk.first_patch;
-    let part = Part::Chunk { first_patch, vertex_bytes: vertex_bytes as usize, readback };
+    let part = Part::Chunk(CopiedChunk::start(gpu, scene, index)?);
     Ok(Some(Copying { part, next_chunk: index + 1, parts }))
 }
 
@@ -163,8 +152,8 @@ impl Parts<'_> {
         let (mut count, mut vertices) = (0, Vec::new());
         for part in &self.received {
             self.wanted.check().ok()?;
-            let Part::Chunk { first_patch, vertex_bytes, readback } = part else { continue };
-            readback.with_bytes(|bytes| visit_bytes(first_patch, vertex_bytes, bytes, &mut vertices, visitors)).ok()?;
+            let Part::Chunk(chunk) = part else { continue };
+            chunk.visit(&mut vertices, visitors).ok()?;
             count += 1;
         }
         self.wanted.check().ok()?;

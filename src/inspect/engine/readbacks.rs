@@ -5,13 +5,56 @@ use std::sync::atomic::Ordering;
 use glam::Vec3;
 
 use super::Engine;
-use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor, visit_bytes};
+use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor};
 use crate::render::Scene;
 use geometry::mesh::Curves;
 use geometry::progress::Progress;
-use geometry::tessellate::{HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation};
+use geometry::tessellate::{HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation, Vertex};
+use gpu::layout::Chunk;
 use gpu::layout::CurveNet;
-use gpu::{Given, GpuError, Recorder, Timing, read_buffer, read_buffers, with_buffers};
+use gpu::{Given, Gpu, GpuError, Readback, Recorder, Timing, put_together, read_buffer, read_buffers};
+
+/// A chunk on its way back from the device.
+pub struct CopiedChunk {
+    first_patch: u32,
+    vertex_bytes: usize,
+    /// The first halves of its vertices, the second halves, and its triangles.
+    pub readback: Readback,
+}
+
+impl CopiedChunk {
+    /// Emits a chunk and asks for it. The counts must be known.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn start(gpu: &Gpu, scene: &mut Scene, index: usize) -> Result<Self, GpuError> {
+        let mut timing = Timing::Off;
+        let mut recorder = Recorder::new(gpu, &mut timing);
+        scene.tessellator.emit(&mut recorder, index)?;
+        recorder.submit();
+        let buffers = scene.tessellator.chunk(index);
+        let Chunk { first_patch, vertex_count, triangle_count, .. } = buffers.chunk;
+        let triangle_bytes = u64::from(triangle_count) * size_of::<[u32; 3]>() as u64;
+        let [first, second] = buffers.vertices();
+        let readback = Readback::start(gpu, [first, second, (buffers.indices, 0..triangle_bytes)]);
+        Ok(Self { first_patch, vertex_bytes: vertex_count as usize * size_of::<Vertex>(), readback })
+    }
+
+    /// Gives the chunk, which must be here, to every visitor. `vertices` is where its vertices are put together, a list that may be used
+    /// again. It may be called on any thread.
+    ///
+    /// # Errors
+    /// The chunk isn't here, or the device was lost.
+    pub fn visit(&self, vertices: &mut Vec<Vertex>, visitors: &mut [&mut dyn Visitor]) -> Result<(), GpuError> {
+        self.readback.with_bytes(|bytes| {
+            let (halves, indices) = bytes.split_at(self.vertex_bytes);
+            put_together(halves, vertices);
+            let chunk =
+                EmittedChunk { first_patch: self.first_patch, vertices, triangles: bytemuck::cast_slice(indices) };
+            visitors.iter_mut().for_each(|visitor| visitor.take(&chunk));
+        })
+    }
+}
 
 impl Engine {
     /// Walks once over everything that is emitted: each chunk is emitted, read back once, and given to every visitor. Reads
@@ -36,21 +79,18 @@ impl Engine {
         let chunks = if visitors.is_empty() { 0 } else { scene.tessellator.chunk_count() };
         // Of all chunks, since memory that is new takes longer than the copy.
         let mut vertices = Vec::new();
-        for index in (0..chunks).take_while(|_| progress.check().is_ok()) {
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&self.gpu, &mut timing);
-            scene.tessellator.emit(&mut recorder, index)?;
-            recorder.submit();
-            let buffers = scene.tessellator.chunk(index);
-            let triangle_bytes = u64::from(buffers.chunk.triangle_count) * size_of::<[u32; 3]>() as u64;
-            let triangles = (buffers.indices, 0..triangle_bytes);
-            let [first, second] = buffers.vertices();
-            let vertex_bytes = (first.1.end - first.1.start) + (second.1.end - second.1.start);
-            with_buffers(&self.gpu, [first, second, triangles], |bytes| {
-                visit_bytes(buffers.chunk.first_patch, vertex_bytes as usize, bytes, &mut vertices, visitors);
-            })?;
+        let mut next = if chunks > 0 { Some(CopiedChunk::start(&self.gpu, scene, 0)?) } else { None };
+        let mut index = 0;
+        while let Some(mut chunk) = next.take() {
+            chunk.readback.arrive(&self.gpu)?;
             self.chunks_read.fetch_add(1, Ordering::Relaxed);
-            progress.set((index + 1) as f32 / chunks as f32);
+            index += 1;
+            // The device goes on while the visitors look at this one.
+            if index < chunks && progress.check().is_ok() {
+                next = Some(CopiedChunk::start(&self.gpu, scene, index)?);
+            }
+            chunk.visit(&mut vertices, visitors)?;
+            progress.set(index as f32 / chunks as f32);
         }
         Ok(())
     }

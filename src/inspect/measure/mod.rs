@@ -43,4 +43,4 @@ pub(crate) use sizes::SMALL_PX;
 pub use sizes::Sizes;
 pub use survey::{Culled, Measured, Survey};
 pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};
-pub use visitor::{EmittedChunk, Visitor, visit_bytes};
+pub use visitor::{EmittedChunk, Visitor};
