@@ -8,7 +8,7 @@ use inspect::shader_files::{Language, shader_files};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    // Is read before the language, without which it has LOD by error.
+    // Comes before the language, which stands for uniform LOD: an argument is gone from what was given once it was read.
     #[command(flatten)]
     pub tessellation: TessellationOptions,
     /// Language of the shaders

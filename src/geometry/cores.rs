@@ -97,6 +97,18 @@ mod tests {
     }
 
     #[test]
+    fn lists_are_filled_and_errors_come_back() {
+        for threads in [1, 2, 7] {
+            let mut list = vec![0; 1000];
+            on_threads(threads, || fill(&mut list, 1, |i| 3 * i)).expect("threads");
+            assert!(list.iter().enumerate().all(|(i, item)| *item == 3 * i), "{threads}");
+            let done = |&item: &usize| if item == 3 * 700 { Err(item) } else { Ok(()) };
+            assert_eq!(on_threads(threads, || each(&list, done)).expect("threads"), Err(3 * 700));
+            assert_eq!(on_threads(threads, || each(&list[..700], done)).expect("threads"), Ok(()));
+        }
+    }
+
+    #[test]
     fn as_many_threads_start_as_the_system_gives() {
         for given in 1..=4 {
             let started = Cell::new(0);
