@@ -77,9 +77,6 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (
         &[
             "LARGE_PATCHES",
-            "LIST_COUNTERS",
-            "ASKING",
-            "GIVEN",
             "SMALL_PATCHES",
             "WORKGROUPS_DONE",
             "SEARCHES_OVER",
