@@ -60,7 +60,7 @@ fn row_location(row: DomainRow, p: u32) -> u32 {
     return select(x, FIXED_ONE - x, mirrored);
 }
 
-// Returns where point `p` of a row of so many equal segments, at most 64, lies: as `row_location` of a whole factor. `step` is
+// Returns where point `p` of a row of so many equal segments, at most 127, lies: as `row_location` of a whole factor. `step` is
 // the segment_length.
 fn whole_location(segments: u32, step: u32, p: u32) -> u32 {
     if 2u * p == segments {

@@ -19,13 +19,15 @@ const SUBTRIANGULATED: u32 = 0x40000000u;
 const ROWS: u32 = 0x20000000u;
 const ROW_BASE_SHIFT: u32 = 24u;
 const ROW_FLIP_SHIFT: u32 = 26u;
-const ROW_BASE_STEP: u32 = 128u;
+const ROW_BASE_STEP: u32 = 256u;
+const MOST_ROWS: u32 = 127u;
 
 const BITS_ONE: u32 = 0x3f800000u;
 const BITS_TWO: u32 = 0x40000000u;
 const BITS_63: u32 = 0x427c0000u;
 const BITS_64: u32 = 0x42800000u;
-const BITS_896: u32 = 0x44600000u;
+const BITS_127: u32 = 0x42fe0000u;
+const BITS_1792: u32 = 0x44e00000u;
 const BITS_INFINITY: u32 = 0x7f800000u;
 const BITS_ONE_AND_HALF_STEP: u32 = 0x3f800040u;
 const BITS_ONE_AND_STEP: u32 = 0x3f800080u;
@@ -48,10 +50,16 @@ fn factor_lower_bound(partitioning: u32) -> u32 {
 
 // Returns the largest factor of a partitioning, as `f32` bits.
 fn factor_upper_bound(partitioning: u32) -> u32 {
-    return select(BITS_64, BITS_63, partitioning == PARTITIONING_FRACTIONAL_ODD);
+    let most = select(BITS_64, BITS_127, partitioning == PARTITIONING_ROWS);
+    return select(most, BITS_63, partitioning == PARTITIONING_FRACTIONAL_ODD);
 }
 
-// Returns the word of a factor of 1 to 64, given as `f32` bits. The factor is rounded up to a whole number or, in the
+// Returns the largest factor of a partitioning.
+fn last_factor(partitioning: u32) -> f32 {
+    return bitcast<f32>(factor_upper_bound(partitioning));
+}
+
+// Returns the word of a factor of at least 1, given as `f32` bits. The factor is rounded up to a whole number or, in the
 // fractional partitionings, to the nearest 1/65536 with ties to even. Its parity is that of the partitioning, or of the
 // whole number.
 fn factor_word(partitioning: u32, bits: u32) -> u32 {
@@ -114,15 +122,15 @@ fn process(partitioning: u32, edges: vec3<f32>, inside: f32) -> PatchFactors {
 }
 
 // Returns what becomes of the words of a patch's edges and its inside factor under rows. The smallest width is 1, and the
-// largest 64.
+// largest MOST_ROWS.
 fn process_rows(outside: vec3<u32>, inside: u32) -> PatchFactors {
     let positive = select(BITS_ONE, max(inside, BITS_ONE), positive_bits(inside));
-    let rounded = (factor_word(PARTITIONING_ROWS, min(positive, BITS_896)) >> 16u) & 0x7fffu;
+    let rounded = (factor_word(PARTITIONING_ROWS, min(positive, BITS_1792)) >> 16u) & 0x7fffu;
     var step = rounded / ROW_BASE_STEP;
-    var width = clamp(rounded % ROW_BASE_STEP, 1u, 64u);
+    var width = clamp(rounded % ROW_BASE_STEP, 1u, MOST_ROWS);
     if step > 6u {
         step = 0u;
-        width = 64u;
+        width = MOST_ROWS;
     }
     var base = (step + 2u) % 3u;
     if step == 0u {
@@ -138,7 +146,7 @@ fn base_by_edges(outside: vec3<u32>) -> u32 {
     let u = segments(outside.x);
     let v = segments(outside.y);
     let w = segments(outside.z);
-    // Numbers of segments are at most 64.
+    // Numbers of segments are below 128.
     let unlike = vec3<u32>(
         (max(v, w) - min(v, w)) * 128u + u,
         (max(w, u) - min(w, u)) * 128u + v,

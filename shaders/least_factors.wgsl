@@ -6,7 +6,7 @@
 const BOUND_SHARE: f32 = 0.999;
 
 // A factor that is asked for if none is enough.
-const BEYOND_LAST: f32 = 64.5;
+const BEYOND_LAST: f32 = 127.5;
 
 // Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number, a
 // power of two, or an odd or even number.
@@ -22,11 +22,6 @@ fn whole_segments(partitioning: u32, least: f32) -> f32 {
         return 2.0 * ceil(0.5 * (least - 1.0)) + 1.0;
     }
     return 2.0 * ceil(0.5 * least);
-}
-
-// Returns the largest factor of a partitioning.
-fn last_factor(partitioning: u32) -> f32 {
-    return select(64.0, 63.0, partitioning == PARTITIONING_FRACTIONAL_ODD);
 }
 
 // Returns the least factor of a partitioning, `least` or more; BEYOND_LAST if it has none.
@@ -105,7 +100,7 @@ fn least_edge_factor(
     let end = clip_point(view, scale, b);
     let near = near_depth(view) * scale;
     var factor = whole_segments(partitioning, 1.0);
-    while factor <= 64.0 {
+    while factor <= last_factor(partitioning) {
         let error = sampled_edge_error(view.half_viewport, near, start, after_start, before_end, end, factor);
         if error <= tolerance {
             return factor;
@@ -153,7 +148,7 @@ fn part_counts(factors: PatchFactors) -> vec4<u32> {
 }
 
 // A prime beyond the number of turns in which a pattern's triangles are looked at: its multiples are spread over them.
-const SPREAD: u32 = 1009u;
+const SPREAD: u32 = 2027u;
 
 // Returns the largest error, in px, of each wanted part of a pattern, and 0 for the others. TOGETHER triangles are looked at in
 // one turn, by one invocation each (see search_group.wgsl). They are spread over all parts. That ends early with the first turn
@@ -257,7 +252,7 @@ fn without_search(seen: ptr<function, SeenPatch>, within: f32, partitioning: u32
         return select(1.0, f32(ROW_BASE_STEP + 1u), partitioning == PARTITIONING_ROWS);
     }
     let most = max(max(max(sought.least.x, sought.least.y), sought.least.z), sought.inside);
-    return select(0.0, BEYOND_LAST, most > 64.0);
+    return select(0.0, BEYOND_LAST, most > last_factor(partitioning));
 }
 
 // A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones are
@@ -293,7 +288,7 @@ fn next_step(partitioning: u32, inside: f32, inner: f32, error: f32, tolerance: 
 }
 
 // Returns the factors with which a patch is within the tolerance and has the fewest triangles. If no factors are enough, it
-// returns the least ones and BEYOND_LAST. Not for patches of which one triangle suffices, or with a least factor above 64.
+// returns the least ones and BEYOND_LAST. Not for patches of which one triangle suffices, or with a least factor above the last one.
 fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning: u32, sought: Sought) -> Chosen {
     let within = BOUND_SHARE * tolerance;
     let slides = may_slide(seen, within);
@@ -304,7 +299,7 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
     var step = first_step(partitioning, sought.inside, sought.inner);
     var edges = sought.least;
     var rows = vec3<bool>(true);
-    var goes_on = step.inside <= 64.0;
+    var goes_on = step.inside <= last_factor(partitioning);
     while any_team(goes_on) {
         let inside = step.inside;
         let looked_at = vec4<bool>(rows & vec3<bool>(!step.is_inner), step.is_inner) & vec4<bool>(goes_on);
@@ -323,7 +318,7 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
             }
         }
         let cost = pattern_cost(edges, inside, segment);
-        var is_over = fails.w || cost >= fewest || max(max(edges.x, edges.y), edges.z) > 64.0;
+        var is_over = fails.w || cost >= fewest || max(max(edges.x, edges.y), edges.z) == BEYOND_LAST;
         rows = fails.xyz;
         if !any(fails) {
             best.inner = select(best.inner, inside, step.is_inner && best.inner == 0.0);
@@ -340,7 +335,7 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
             step = next_step(partitioning, inside, best.inner, errors.w, within);
             edges = sought.least;
             rows = vec3<bool>(true);
-            goes_on = step.inside <= 64.0 && pattern_cost(sought.least, step.inside, segment) < fewest;
+            goes_on = step.inside <= last_factor(partitioning) && pattern_cost(sought.least, step.inside, segment) < fewest;
         }
     }
     return best;
@@ -349,7 +344,7 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
 // Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger than
 // the one that it has chosen.
 fn asks_again(chosen: f32, inside: f32) -> bool {
-    return inside > 64.0 || inside > 1.1 * chosen + 1.0;
+    return inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0;
 }
 
 // Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.

@@ -89,7 +89,7 @@ fn least_segments(sought: Sought, base: u32, width: f32) -> f32 {
 
 // Returns an expected number rounded down, or the least one.
 fn expected_at_least(number: f32, least: f32) -> f32 {
-    return select(least, floor(min(number, 64.0)), number > least);
+    return select(least, floor(min(number, f32(MOST_ROWS))), number > least);
 }
 
 // Returns the rows with which the search beside a base starts.
@@ -133,10 +133,10 @@ fn inside_of_rows(tried: Tried) -> f32 {
 // the largest one passes that over.
 fn next_number(number: f32, part: f32, estimate: f32) -> f32 {
     let next = max(max(number + 1.0, floor(number * (1.0 + part))), floor(estimate));
-    return select(BEYOND_LAST, min(next, 64.0), number < 64.0);
+    return select(BEYOND_LAST, min(next, f32(MOST_ROWS)), number < f32(MOST_ROWS));
 }
 
-// Returns rows that may be enough, after some that have this error; more than 64, if none will be.
+// Returns rows that may be enough, after some that have this error; more than MOST_ROWS, if none will be.
 fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tolerance: f32) -> Tried {
     let root = sqrt(error / tolerance);
     let ratio = select(100.0, root, root < 100.0);
@@ -251,12 +251,12 @@ fn fewest_rows(seen: ptr<function, SeenPatch>, tolerance: f32, sought: Sought) -
     var at = 0u;
     var tried = first_rows(sought, order.x, all_expected[order.x], shares.x);
     var enough = tried;
-    var goes_on = max(max(max(sought.least.x, sought.least.y), sought.least.z), sought.inside) <= 64.0;
+    var goes_on = max(max(max(sought.least.x, sought.least.y), sought.least.z), sought.inside) <= f32(MOST_ROWS);
     while any_team(goes_on) {
         let edges = edges_of_rows(sought, tried);
         let factors = process(PARTITIONING_ROWS, edges, inside_of_rows(tried));
         let cost = cost_of_rows(factors, segment_cost(sought));
-        let is_worth = goes_on && tried.rows <= 64.0 && tried.width <= 64.0 && cost < fewest;
+        let is_worth = goes_on && max(tried.rows, tried.width) <= f32(MOST_ROWS) && cost < fewest;
         let errors = part_errors(seen, within, factors, vec4<bool>(is_worth));
         if !goes_on {
             continue;

@@ -41,20 +41,20 @@ fn search_later(patch_index: u32, edges: vec3<f32>, inside: f32) {
 }
 
 // What a patch knows: the factors of the edges U == 0, V == 0 and W == 0 beside which it has its inside factor, or beside which one
-// is searched for; and `inner` as in `Chosen`. As whole numbers, and 65 for larger ones, they take 28 bits.
+// is searched for; and `inner` as in `Chosen`. As whole numbers, and 128 for BEYOND_LAST, they take 8 bits each.
 struct Known {
     edges: vec3<f32>,
     inner: f32,
 }
 
 fn known_from(word: u32) -> Known {
-    let numbers = (vec4<u32>(word) >> vec4<u32>(0u, 7u, 14u, 21u)) & vec4<u32>(127u);
+    let numbers = (vec4<u32>(word) >> vec4<u32>(0u, 8u, 16u, 24u)) & vec4<u32>(255u);
     return Known(min(vec3<f32>(numbers.xyz), vec3<f32>(BEYOND_LAST)), f32(numbers.w));
 }
 
 fn set_known(patch_index: u32, edges: vec3<f32>, inner: f32) {
-    let numbers = vec3<u32>(min(ceil(edges), vec3<f32>(65.0)));
-    let word = numbers.x | (numbers.y << 7u) | (numbers.z << 14u) | (u32(inner) << 21u);
+    let numbers = vec3<u32>(min(ceil(edges), vec3<f32>(128.0)));
+    let word = numbers.x | (numbers.y << 8u) | (numbers.z << 16u) | (u32(inner) << 24u);
     atomicStore(&edge_factors[known_at(patch_index)], word);
 }
 

@@ -62,7 +62,7 @@ fn frames_main(invocation: Invocation) {
     shares[first + 1u].direction = v * share;
 }
 
-// An edge's factor, clamped to 1 to 64. Of given factors it is that of the dominant side, and may be NaN; NaN is found by
+// An edge's factor, clamped to those that there are. Of given factors it is that of the dominant side, and may be NaN; NaN is found by
 // its bits, which as integers are in the order of the numbers if those aren't negative.
 fn segments_of(index: u32, dominant: u32) -> f32 {
     var bits = bitcast<u32>(1.0);
@@ -78,7 +78,7 @@ fn segments_of(index: u32, dominant: u32) -> f32 {
     if bits > 0x7f800000u {
         return 1.0;
     }
-    return bitcast<f32>(clamp(bits, bitcast<u32>(1.0), bitcast<u32>(64.0)));
+    return bitcast<f32>(clamp(bits, bitcast<u32>(1.0), factor_upper_bound(params.partitioning)));
 }
 
 @compute @workgroup_size(256)

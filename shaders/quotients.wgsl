@@ -6,12 +6,12 @@ fn quotient(number: u32, by: u32) -> u32 {
     return u32((f32(number) + 0.5) / f32(by));
 }
 
-// Returns a number for `divided`. `by` is 1 to 4096.
+// Returns a number for `divided`. `by` is 1 to 2^14.
 fn inverse(by: u32) -> f32 {
     return 1.0 / f32(by);
 }
 
-// Returns `number / by`, rounded down, for the inverse of `by`. `number` is at most 2^18.
+// Returns `number / by`, rounded down, for the inverse of `by`. `number` is at most 2^20.
 fn divided(number: u32, inverse: f32) -> u32 {
     return u32((f32(number) + 0.5) * inverse);
 }

@@ -12,7 +12,7 @@ use super::layout::Vertex;
 use super::mesh_buffers::MeshBuffers;
 use super::{Gpu, GpuError};
 use geometry::cores::fill;
-use geometry::tessellate::{Partitioning, point_count, process, triangle_count};
+use geometry::tessellate::{largest_patch, point_count, triangle_count};
 
 /// How many chunks an arena is divided into on a software adapter, where output doesn't fit it at once.
 const CHUNKS_IN_SOFTWARE: u32 = 8;
@@ -44,7 +44,7 @@ pub(super) struct Room {
 impl Room {
     /// Room for the largest patch.
     fn of_patch() -> Self {
-        let factors = process(Partitioning::Integer, [64.0; 3], 64.0);
+        let factors = largest_patch();
         Self { vertices: point_count(factors), triangles: triangle_count(factors) }
     }
 

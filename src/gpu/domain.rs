@@ -19,10 +19,10 @@ pub struct DomainParams {
     pub set_count: u32,
 }
 
-/// The most points that a set of factors gives, at factor 64; `DOMAIN_POINTS` in the shader.
-pub const DOMAIN_POINTS: usize = 3169;
+/// The most points that a set of factors gives, at 127 rows; `DOMAIN_POINTS` in the shader.
+pub const DOMAIN_POINTS: usize = 8256;
 /// The most triangles likewise; `DOMAIN_TRIANGLES` in the shader.
-pub const DOMAIN_TRIANGLES: usize = 6144;
+pub const DOMAIN_TRIANGLES: usize = 16129;
 
 /// What the tessellator makes of one set of factors.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -83,7 +83,7 @@ pub struct Context {
 /// The memory for a mesh's output. A vertex takes 32 bytes, a triangle 12.
 ///
 /// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles. Smaller numbers are raised to those of one
-/// patch at factor 64: 3,169 vertices and 6,144 triangles. WebGPU's default limits allow 4,194,304 vertices and
+/// patch: 8,256 vertices and 16,129 triangles. WebGPU's default limits allow 4,194,304 vertices and
 /// 11,184,810 triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Room {
@@ -158,7 +158,7 @@ impl TessellatedMesh {
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] if the mesh or its output is larger than the device binds, and [`GpuError::TooManyPatches`] if
-    /// the mesh has more than 524,288 triangles.
+    /// the mesh has more than 262,144 triangles.
     pub fn new(context: &Context, mesh: Mesh, room: Room) -> Result<Self, GpuError> {
         let topology = Topology::of(&mesh);
         let (gpu, pipelines) = (&context.gpu, context.pipelines.clone());

@@ -26,8 +26,8 @@ use geometry::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, P
 pub use output::ChunkBuffers;
 use own_surface::OwnSurface;
 
-/// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits at factor 64.
-const SLAB_PATCHES: u32 = 1 << 19;
+/// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits with the most rows.
+const SLAB_PATCHES: u32 = 1 << 18;
 
 /// A tessellated mesh on the device.
 pub struct Tessellator {

@@ -33,7 +33,6 @@ struct Frame {
     drawing: f64,
     all: f64,
     triangles: u64,
-    times: Vec<PassTime>,
 }
 
 impl Frame {
@@ -42,11 +41,10 @@ impl Frame {
             times.iter().filter(|time| is_counted(time.pass)).map(|time| time.ms).sum()
         };
         Self {
-            factors: sum(&|pass| pass == "factors" || pass.starts_with('f')),
+            factors: sum(&|pass| pass == "factors"),
             drawing: sum(&|pass| DRAWING.contains(&pass)),
             all: sum(&|_| true),
             triangles,
-            times: times.to_vec(),
         }
     }
 }
@@ -92,14 +90,6 @@ fn measure(engine: &Engine, name: &str, mesh: Mesh) -> Result<(), Box<dyn Error>
                 of(|frame| frame.drawing, 0.5),
                 of(|frame| frame.all, 0.5),
             );
-            let line: Vec<String> = gpu::recorder::FPASSES
-                .iter()
-                .filter_map(|name| {
-                    let ms = percentile(frames.iter().map(|frame| frame.times.iter().find(|t| t.pass == *name).map_or(0.0, |t| t.ms)), 0.5);
-                    (ms > 0.0).then(|| format!("{:.0}", ms * 1e3))
-                })
-                .collect();
-            println!("    {}", line.join(" "));
         }
     }
     Ok(())

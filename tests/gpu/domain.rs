@@ -248,9 +248,9 @@ fn all_cases() -> Vec<Factors> {
         }
     }
     // Rows beside every edge, as wide as LOD by error may find.
-    for (n, base) in (1..=64).flat_map(|n| [1, 2, 3].map(|base| (n, base))) {
-        let width = (128 * base + 1 + n * 37 % 64) as f32;
-        for edges in [[n, 65 - n, 7], [9, n, 64], [n, 1, n]] {
+    for (n, base) in (1..=127).flat_map(|n| [1, 2, 3].map(|base| (n, base))) {
+        let width = (256 * base + 1 + n * 37 % 127) as f32;
+        for edges in [[n, 128 - n, 7], [9, n, 127], [n, 1, n]] {
             cases.push(Factors { partitioning: Partitioning::Rows, edges: edges.map(|n| n as f32), inside: width });
         }
     }

@@ -296,7 +296,7 @@ fn what_was_set_stays_when_more_is_refused() {
 fn a_mesh_of_too_many_patches_is_refused_with_their_number() {
     let (device, queue) = host();
     let context = Context::new(&device, &queue).expect("default limits are enough");
-    let error = TessellatedMesh::new(&context, strip((1 << 19) + 1), ROOM).err();
+    let error = TessellatedMesh::new(&context, strip((1 << 18) + 1), ROOM).err();
     let Some(GpuError::TooManyPatches { patches, limit }) = error else { panic!("{error:?}") };
     assert_eq!((patches, limit), (524_289, 524_288));
 }

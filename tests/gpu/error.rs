@@ -25,8 +25,8 @@ use crate::{engine, loaded, scene};
 const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 
 /// Whether anything asks for more segments than there are, so that no promise is made.
-fn is_capped(written: &[HullFactors]) -> bool {
-    written.iter().any(|factors| factors.inside_is_capped() || factors.edges.iter().any(|&factor| factor > 64.0))
+fn is_capped(written: &[HullFactors], partitioning: Partitioning) -> bool {
+    written.iter().any(|factors| factors.is_capped(partitioning))
 }
 
 fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {
@@ -82,7 +82,7 @@ fn keeps_its_promise(trial: Trial, tolerance: f32, on_device: bool) -> Result<()
     } else {
         (tessellate(&mesh, &topology, &inputs, None), hull_factors(&mesh, &topology, &inputs))
     };
-    if !is_capped(&written) {
+    if !is_capped(&written, settings.tessellation.partitioning) {
         let px = deviation_px(&mesh, &topology, &inputs, &out);
         let flushed = if on_device { flushing_px(&inputs) } else { 0.0 };
         let most = f64::from(tolerance) + rounding_px(&mesh, &inputs) + flushed;
@@ -140,7 +140,7 @@ fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
             let settings =
                 by_error(Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() }), tolerance);
             let (inputs, out) = on_device(&mut scene, &settings, &camera);
-            if is_capped(&scene.tessellator.hull_factors().expect("a readback")) {
+            if is_capped(&scene.tessellator.hull_factors().expect("a readback"), inputs.tessellation.partitioning) {
                 continue;
             }
             let px = deviation_px(&loaded.mesh, &loaded.topology, &inputs, &out);
@@ -279,7 +279,7 @@ fn rows_on_the_device_are_within_the_tolerance_and_fewer_than_rings() {
             let triangles = on_device(&mut scene, &with(Partitioning::Integer), &camera).1.triangles.len();
             let (inputs, out) = on_device(&mut scene, &with(Partitioning::Rows), &camera);
             let what = format!("{shape:?} {surface:?}, camera {index}");
-            if is_capped(&scene.tessellator.hull_factors().expect("a readback")) {
+            if is_capped(&scene.tessellator.hull_factors().expect("a readback"), inputs.tessellation.partitioning) {
                 continue;
             }
             let px = deviation_px(&loaded.mesh, &loaded.topology, &inputs, &out);

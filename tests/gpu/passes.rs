@@ -338,7 +338,7 @@ pub(super) fn sheet(columns: u32, rows: u32) -> Loaded {
 #[test]
 fn more_patches_than_one_scan_covers_are_one_mesh() {
     let loaded = sheet(600, 500);
-    assert!(loaded.topology.patches.len() > 1 << 19, "more than one slab");
+    assert!(loaded.topology.patches.len() > 1 << 18, "more than one slab");
     let mut scene = engine().scene(&loaded, 1 << 28).expect("it fits");
     let settings =
         Settings::from(Tessellation { factor: 1.7, partitioning: Partitioning::Integer, ..Tessellation::default() });

@@ -154,7 +154,7 @@ impl ShownExplanation<'_> {
             factor_text(least.inside)
         );
         if !is_enough(least.inside) {
-            hover += " 64 segments aren't enough for it, so that these are the most that there are.";
+            hover += " The most segments that there are aren't enough for it, and these are as many.";
         }
         ui.label(dense(format!("{:<12}{:>6} triangles", "own least", least.triangles))).on_hover_text(hover);
         let has = triangle_count(factors);
@@ -196,7 +196,7 @@ fn by_text(edge: &ExplainedEdge) -> &'static str {
 
 /// A factor that LOD by error asks for: a whole number, or more than there are.
 fn factor_text(factor: f32) -> String {
-    if is_enough(factor) { format!("{factor:.0}") } else { ">64".to_owned() }
+    if is_enough(factor) { format!("{factor:.0}") } else { ">max".to_owned() }
 }
 
 fn px_text(px: f32) -> String {
@@ -215,8 +215,9 @@ mod tests {
     #[test]
     fn numbers_fit_their_columns() {
         assert_eq!([0.0, 0.4871, 12.34, 4321.0, f32::INFINITY].map(px_text), ["0.000", "0.487", "12.3", "4e3", "∞"]);
-        assert_eq!([1.0, 64.0, 64.5].map(factor_text), ["1", "64", ">64"]);
-        let rows = [row("edge", "own", "others", "got", "by", "px"), row("0-1", ">64", ">64", ">64", "curve", "0.487")];
+        assert_eq!([1.0, 64.0, 127.5].map(factor_text), ["1", "64", ">max"]);
+        let rows =
+            [row("edge", "own", "others", "got", "by", "px"), row("0-1", ">max", ">max", ">max", "curve", "0.487")];
         assert!(rows.iter().all(|row| row.chars().count() == 34), "{rows:?}");
     }
 }

@@ -7,12 +7,9 @@ use crate::app::jobs::measure_job::MeasureJob;
 use crate::app::text::{counted, grouped, mebibytes, short};
 use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::commands::{Action, key_name};
+use geometry::tessellate::{largest_patch, point_count, triangle_count};
 use gpu::DRAWING;
 use inspect::render::layout::CRACK_COLOR;
-
-/// The triangles and vertices that a patch has at most: rings whose factors are all 64.
-const MOST_TRIANGLES: u64 = 6_144;
-const MOST_VERTICES: u64 = 3_169;
 
 impl App {
     pub(in crate::app) fn status_line(&mut self, ui: &mut egui::Ui) {
@@ -42,7 +39,7 @@ impl App {
             let before = (document.loaded.mesh.triangles.len() as u64, document.loaded.mesh.corners.len() as u64);
             // A field has the width of the largest numbers that this mesh can have.
             let widest = |ui: &egui::Ui, text: String| text_width(ui, &text).max(120.0);
-            let most = grouped(patches * MOST_TRIANGLES);
+            let most = grouped(patches * u64::from(triangle_count(largest_patch())));
             status(
                 ui,
                 widest(ui, format!("{} to {most} triangles", grouped(before.0))),
@@ -56,7 +53,7 @@ impl App {
                 format!("{drawn} of {} patches", grouped(patches)),
                 "Patches that are drawn, out of all, counted while the picture rests. The others are out of view or face away.",
             );
-            let most = grouped(patches * MOST_VERTICES);
+            let most = grouped(patches * u64::from(point_count(largest_patch())));
             status(
                 ui,
                 widest(ui, format!("{} to {most} vertices", grouped(before.1))),

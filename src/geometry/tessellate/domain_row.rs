@@ -74,7 +74,7 @@ pub(crate) fn row_location(row: DomainRow, p: u32) -> u32 {
     if mirrored { FIXED_ONE - x } else { x }
 }
 
-/// Returns where point `p` of a row of so many equal segments, at most 64, lies: as [`row_location`] of a whole factor. `step` is
+/// Returns where point `p` of a row of so many equal segments, at most 127, lies: as [`row_location`] of a whole factor. `step` is
 /// the [`segment_length`].
 pub(super) fn whole_location(segments: u32, step: u32, p: u32) -> u32 {
     if 2 * p == segments {
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn points_of_equal_segments_lie_where_those_of_whole_factors_do() {
-        for segments in 1..=64 {
+        for segments in 1..=127 {
             let row = domain_row(segments << 16 | segments << 31);
             let step = segment_length(segments);
             for p in 0..=segments {

@@ -30,7 +30,9 @@ pub const ROW_FLIP_SHIFT: u32 = 26;
 
 /// Under rows the inside factor is the width and this times 1, 2 or 3 if the base is the edge U == 0, V == 0 or W == 0; or times
 /// 4, 5 or 6 if diagonals are flipped, too. Without that the factors of the edges choose the base.
-pub const ROW_BASE_STEP: u32 = 128;
+pub const ROW_BASE_STEP: u32 = 256;
+/// The most segments that an edge or a row has under rows. More would not fit what `quotients.rs` can divide.
+pub const MOST_ROWS: u32 = 127;
 
 /// Bit patterns of `f32` numbers. Those of positive numbers are in the order of the numbers; those of NaN and of
 /// negative numbers are greater than all of them.
@@ -38,8 +40,10 @@ pub const BITS_ONE: u32 = 0x3f80_0000;
 pub const BITS_TWO: u32 = 0x4000_0000;
 pub const BITS_63: u32 = 0x427c_0000;
 pub const BITS_64: u32 = 0x4280_0000;
-/// 896, from which on inside factors under rows name no base.
-pub const BITS_896: u32 = 0x4460_0000;
+/// [`MOST_ROWS`].
+pub const BITS_127: u32 = 0x42fe_0000;
+/// 1792, or 7 times [`ROW_BASE_STEP`], from which on inside factors under rows name no base.
+pub const BITS_1792: u32 = 0x44e0_0000;
 pub const BITS_INFINITY: u32 = 0x7f80_0000;
 /// 1 + 2^-17, the largest edge factor that rounds to 1 in fixed point.
 pub const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
@@ -75,7 +79,7 @@ impl Partitioning {
     pub const DIRECT3D: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
 }
 
-/// A patch's factors as the tessellator uses them. Each word is a factor of 1 to 64 in 16.16 fixed point, clamped and
+/// A patch's factors as the tessellator uses them. Each word is a factor of 1 to 64 (of rows 127) in 16.16 fixed point, clamped and
 /// rounded, with bit 31 set if its parity is odd.
 ///
 /// In a culled patch the edges' words are 0, and the inside's word says why (see `cull.rs`): 0 if its own factors cull
@@ -102,10 +106,19 @@ fn factor_lower_bound(partitioning: Partitioning) -> u32 {
 
 /// Returns the largest factor of a partitioning, as `f32` bits.
 fn factor_upper_bound(partitioning: Partitioning) -> u32 {
-    if partitioning == Partitioning::FractionalOdd { BITS_63 } else { BITS_64 }
+    match partitioning {
+        Partitioning::FractionalOdd => BITS_63,
+        Partitioning::Rows => BITS_127,
+        _ => BITS_64,
+    }
 }
 
-/// Returns the word of a factor of 1 to 64, given as `f32` bits. The factor is rounded up to a whole number or, in the
+/// Returns the largest factor of a partitioning.
+pub fn last_factor(partitioning: Partitioning) -> f32 {
+    f32::from_bits(factor_upper_bound(partitioning))
+}
+
+/// Returns the word of a factor of at least 1, given as `f32` bits. The factor is rounded up to a whole number or, in the
 /// fractional partitionings, to the nearest 1/65536 with ties to even. Its parity is that of the partitioning, or of
 /// the whole number.
 fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
@@ -163,13 +176,13 @@ pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> Patc
 }
 
 /// Returns what becomes of the words of a patch's edges and its inside factor under rows. The smallest width is 1, and the
-/// largest 64.
+/// largest [`MOST_ROWS`].
 fn process_rows(outside: [u32; 3], inside: u32) -> PatchFactors {
     let positive = if positive_bits(inside) { inside.max(BITS_ONE) } else { BITS_ONE };
-    let rounded = factor_word(Partitioning::Rows, positive.min(BITS_896)) >> 16 & 0x7fff;
-    let (mut step, mut width) = (rounded / ROW_BASE_STEP, (rounded % ROW_BASE_STEP).clamp(1, 64));
+    let rounded = factor_word(Partitioning::Rows, positive.min(BITS_1792)) >> 16 & 0x7fff;
+    let (mut step, mut width) = (rounded / ROW_BASE_STEP, (rounded % ROW_BASE_STEP).clamp(1, MOST_ROWS));
     if step > 6 {
-        (step, width) = (0, 64);
+        (step, width) = (0, MOST_ROWS);
     }
     let base = if step == 0 { base_by_edges(outside) } else { (step - 1) % 3 };
     let chosen = base << ROW_BASE_SHIFT | u32::from(step > 3) << ROW_FLIP_SHIFT;
@@ -180,7 +193,7 @@ fn process_rows(outside: [u32; 3], inside: u32) -> PatchFactors {
 /// segments, so that the fewest rows share points; of several the one with the fewest segments, or the first.
 pub(crate) fn base_by_edges(outside: [u32; 3]) -> u32 {
     let [u, v, w] = outside.map(segments);
-    // Numbers of segments are at most 64.
+    // Numbers of segments are below 128.
     let unlike = [v.abs_diff(w) * 128 + u, w.abs_diff(u) * 128 + v, u.abs_diff(v) * 128 + w];
     let least = unlike[0].min(unlike[1]).min(unlike[2]);
     u32::from(unlike[0] != least) + u32::from(unlike[0] != least && unlike[1] != least)
@@ -202,6 +215,11 @@ pub fn round_pow2(factor: f32) -> f32 {
     let clamped = bits.clamp(BITS_ONE, BITS_64);
     // The sum carries from the mantissa into the exponent.
     f32::from_bits((clamped + 0x7f_ffff) & 0x7f80_0000)
+}
+
+/// Returns the factors of a patch that has as many points and triangles as any: 127 rows of 127 segments.
+pub fn largest_patch() -> PatchFactors {
+    process(Partitioning::Rows, [MOST_ROWS as f32; 3], MOST_ROWS as f32)
 }
 
 /// Returns whether the patch is culled: it has no points and no triangles.

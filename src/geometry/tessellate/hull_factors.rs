@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::factors::ROW_BASE_STEP;
+use super::factors::{ROW_BASE_STEP, last_factor};
 use super::{Convention, Partitioning, PatchFactors, domain_side, factor_side, patch_is_culled, process, round_pow2};
 
 /// A patch's tessellation factors before the tessellator clamps and rounds them.
@@ -50,9 +50,15 @@ impl HullFactors {
         self.culls() || self.edges.into_iter().all(|factor| factor == self.inside)
     }
 
-    /// Returns whether LOD by error found no inside factor that is enough.
-    pub fn inside_is_capped(self) -> bool {
-        self.inside % ROW_BASE_STEP as f32 > 64.0
+    /// Returns whether the inside factor asks for more segments than a partitioning has, as where LOD by error found none that is
+    /// enough.
+    pub fn inside_is_capped(self, partitioning: Partitioning) -> bool {
+        self.inside % ROW_BASE_STEP as f32 > last_factor(partitioning)
+    }
+
+    /// Returns whether any factor asks for more segments than a partitioning has.
+    pub fn is_capped(self, partitioning: Partitioning) -> bool {
+        self.inside_is_capped(partitioning) || self.edges.iter().any(|&factor| factor > last_factor(partitioning))
     }
 
     /// Returns whether the tessellator culls the patch: the factor of an edge isn't greater than zero.
@@ -119,12 +125,12 @@ mod tests {
     fn what_an_inside_factor_says_under_rows_reads_back_to_the_bit() {
         for (inside, base, width) in [
             (7.5, None, 7.5),
-            (131.0, Some((0, false)), 3.0),
-            (256.0 + 64.0, Some((1, false)), 64.0),
-            (384.25, Some((2, false)), 0.25),
-            (512.1, Some((0, true)), 512.1 - 512.0),
-            (895.0, Some((2, true)), 127.0),
-            (896.0, None, 896.0),
+            (259.0, Some((0, false)), 3.0),
+            (512.0 + 64.0, Some((1, false)), 64.0),
+            (768.25, Some((2, false)), 0.25),
+            (1024.1, Some((0, true)), 1024.1 - 1024.0),
+            (1791.0, Some((2, true)), 255.0),
+            (1792.0, None, 1792.0),
             (f32::INFINITY, None, f32::INFINITY),
             (-3.0, None, -3.0),
         ] {
@@ -133,8 +139,8 @@ mod tests {
         }
         assert!(RowChoice::of(f32::NAN).inside().is_nan());
         // D3d11 writes side 1 as factor 0; edge order writes it as factor 1.
-        assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 131.0)), [131.0, 259.0]);
-        assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 515.0)), [515.0, 643.0]);
+        assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 259.0)), [259.0, 515.0]);
+        assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 1027.0)), [1027.0, 1283.0]);
         assert_eq!(inside_of_base(Convention::EdgeOrder, 3.0), 3.0);
     }
 

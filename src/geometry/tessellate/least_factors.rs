@@ -13,8 +13,8 @@ use glam::{Vec2, Vec3};
 
 use super::domain::{DomainPlan, domain_plan, domain_triangle_places};
 use super::factors::{
-    FIXED_ONE, Partitioning, PatchFactors, ROW_BASE_STEP, inside_segments, patch_has_rows, patch_is_minimal, process,
-    round_pow2, segments, triangle_count,
+    FIXED_ONE, Partitioning, PatchFactors, ROW_BASE_STEP, inside_segments, last_factor, patch_has_rows,
+    patch_is_minimal, process, round_pow2, segments, triangle_count,
 };
 use super::lod::LodView;
 use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, near_depth, piece_error};
@@ -23,7 +23,7 @@ use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, 
 pub const BOUND_SHARE: f32 = 0.999;
 
 /// A factor that is asked for if none is enough.
-pub const BEYOND_LAST: f32 = 64.5;
+pub const BEYOND_LAST: f32 = 127.5;
 
 /// Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number,
 /// a power of two, or an odd or even number.
@@ -34,11 +34,6 @@ pub(super) fn whole_segments(partitioning: Partitioning, least: f32) -> f32 {
         Partitioning::FractionalOdd => 2.0 * (0.5 * (least - 1.0)).ceil() + 1.0,
         Partitioning::FractionalEven => 2.0 * (0.5 * least).ceil(),
     }
-}
-
-/// Returns the largest factor of a partitioning.
-pub(super) fn last_factor(partitioning: Partitioning) -> f32 {
-    if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 }
 }
 
 /// Returns the least factor of a partitioning, `least` or more; [`BEYOND_LAST`] if it has none.
@@ -97,7 +92,7 @@ pub(super) fn least_edge_factor(
     let curve = control_points.map(|p| clip_point(view, scale, p));
     let near = near_depth(view) * scale;
     let mut factor = whole_segments(partitioning, 1.0);
-    while factor <= 64.0 {
+    while factor <= last_factor(partitioning) {
         let error = sampled_edge_error(view.half_viewport, near, curve, factor);
         if error <= tolerance {
             return factor;
@@ -133,7 +128,7 @@ fn single_suffices(
 pub const TOGETHER: u32 = 8;
 
 /// A prime beyond the number of turns in which a pattern's triangles are looked at: its multiples are spread over them.
-pub const SPREAD: u32 = 1009;
+pub const SPREAD: u32 = 2027;
 
 /// Returns the numbers of triangles of a pattern's parts, which follow each other: the rows along its edges U == 0, V == 0 and
 /// W == 0, and its inner triangles, which lie along no edge. Of rows all are counted as inner ones.
@@ -249,7 +244,7 @@ pub(super) fn without_search(
         return Some(if partitioning == Partitioning::Rows { (ROW_BASE_STEP + 1) as f32 } else { 1.0 });
     }
     let most = least[0].max(least[1]).max(least[2]).max(inside);
-    if most > 64.0 { Some(BEYOND_LAST) } else { None }
+    if most > last_factor(partitioning) { Some(BEYOND_LAST) } else { None }
 }
 
 /// A step of a search: an inside factor; whether its inner triangles are looked at, or its rows; and whether the other ones
@@ -304,7 +299,7 @@ pub(super) fn fewest_triangles(
     let mut fewest = 3.4e38;
     let mut step = first_step(partitioning, least_inside, inner);
     let (mut edges, mut rows) = (least, [true; 3]);
-    while step.inside <= 64.0 && pattern_cost(least, step.inside, segment) < fewest {
+    while step.inside <= last_factor(partitioning) && pattern_cost(least, step.inside, segment) < fewest {
         let Step { inside, is_inner, is_last } = step;
         let looked_at = if is_inner { [false, false, false, true] } else { [rows[0], rows[1], rows[2], false] };
         let errors = part_errors(patch, within, process(partitioning, edges, inside), looked_at);
@@ -317,7 +312,7 @@ pub(super) fn fewest_triangles(
             };
         }
         let cost = pattern_cost(edges, inside, segment);
-        let mut is_over = fails[3] || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) > 64.0;
+        let mut is_over = fails[3] || cost >= fewest || edges[0].max(edges[1]).max(edges[2]) == BEYOND_LAST;
         rows = [fails[0], fails[1], fails[2]];
         if !fails.contains(&true) {
             best.inner = if is_inner && best.inner == 0.0 { inside } else { best.inner };
@@ -340,7 +335,7 @@ pub(super) fn fewest_triangles(
 /// Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger
 /// than the one that it has chosen.
 pub(super) fn asks_again(chosen: f32, inside: f32) -> bool {
-    inside > 64.0 || inside > 1.1 * chosen + 1.0
+    inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0
 }
 
 /// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.

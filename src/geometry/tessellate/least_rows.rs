@@ -12,7 +12,7 @@
 
 use glam::Vec2;
 
-use super::factors::{Partitioning, PatchFactors, ROW_BASE_STEP, outer_count, point_count, process};
+use super::factors::{MOST_ROWS, Partitioning, PatchFactors, ROW_BASE_STEP, outer_count, point_count, process};
 use super::least_factors::{BEYOND_LAST, BOUND_SHARE, Chosen, Sought, Wanted, part_errors, without_search};
 use super::piece_error::{SecondForms, SeenPatch, may_slide, second_forms, triangle_error};
 
@@ -98,7 +98,7 @@ fn least_segments(sought: &Sought, base: usize, width: f32) -> f32 {
 
 /// Returns an expected number rounded down, or the least one.
 fn expected_at_least(number: f32, least: f32) -> f32 {
-    if number > least { number.min(64.0).floor() } else { least }
+    if number > least { number.min(MOST_ROWS as f32).floor() } else { least }
 }
 
 /// Returns the rows with which the search beside a base starts.
@@ -146,10 +146,10 @@ fn inside_of_rows(tried: &Tried) -> f32 {
 /// the largest one passes that over.
 fn next_number(number: f32, part: f32, estimate: f32) -> f32 {
     let next = (number + 1.0).max((number * (1.0 + part)).floor()).max(estimate.floor());
-    if number < 64.0 { next.min(64.0) } else { BEYOND_LAST }
+    if number < MOST_ROWS as f32 { next.min(MOST_ROWS as f32) } else { BEYOND_LAST }
 }
 
-/// Returns rows that may be enough, after some that have this error; more than 64, if none will be.
+/// Returns rows that may be enough, after some that have this error; more than [`MOST_ROWS`], if none will be.
 fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, tolerance: f32) -> Tried {
     let ratio = (error / tolerance).sqrt();
     let ratio = if ratio < 100.0 { ratio } else { 100.0 };
@@ -278,7 +278,7 @@ pub(super) fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) ->
         let edges = edges_of_rows(sought, &tried);
         let factors = process(Partitioning::Rows, edges, inside_of_rows(&tried));
         let cost = cost_of_rows(factors, segment_cost(sought));
-        let is_worth = tried.rows <= 64.0 && tried.width <= 64.0 && cost < fewest;
+        let is_worth = tried.rows.max(tried.width) <= MOST_ROWS as f32 && cost < fewest;
         let errors = part_errors(patch, within, factors, [is_worth; 4]);
         let error = errors[0].max(errors[1]).max(errors[2]).max(errors[3]);
         let lessened = tried.lessened;

@@ -9,7 +9,7 @@ use super::displace::{
     uv_gradients,
 };
 use super::displacement_factor::{displacement_factor, edge_bounds};
-use super::factors::inside_value;
+use super::factors::{inside_value, last_factor};
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
 use super::surface::{UNIT, linear_uv, patch_tangents};
@@ -45,6 +45,8 @@ pub(super) struct MeshDisplacement<'a> {
     /// The distance between black and white, in object units.
     scale: f32,
     midlevel: f32,
+    /// The largest factor that there is.
+    last_factor: f32,
     dominance: Dominance,
     /// The unit direction of displacement of each point.
     directions: Vec<Vec3>,
@@ -92,6 +94,7 @@ impl<'a> MeshDisplacement<'a> {
             normals: inputs.tessellation.normals,
             scale: height_units(heights, inputs),
             midlevel: inputs.tessellation.midlevel,
+            last_factor: last_factor(inputs.tessellation.partitioning),
             directions: directions(mesh, &dominance),
             frames: frames(mesh, topology),
             texel_lengths: texel_lengths(heights, mesh, topology, &dominance),
@@ -174,7 +177,7 @@ impl<'a> MeshDisplacement<'a> {
         segment_level(
             map,
             texel_length(map, uvs[side], uvs[(side + 1) % 3]),
-            if segments >= 1.0 { segments.min(64.0) } else { 1.0 },
+            if segments >= 1.0 { segments.min(self.last_factor) } else { 1.0 },
         )
     }
 

@@ -8,8 +8,8 @@ use super::factors::base_factor;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::hull_factors::inside_of_base;
 use super::least_factors::{
-    BEYOND_LAST, Chosen, Sought, Wanted, asks_again, fewest_triangles, last_factor, least_edge_factor,
-    uniform_suffices, whole_segments,
+    BEYOND_LAST, Chosen, Sought, Wanted, asks_again, fewest_triangles, least_edge_factor, uniform_suffices,
+    whole_segments,
 };
 use super::least_rows::{fewest_rows, rows_ask_again};
 use super::mesh_displacement::MeshDisplacement;
@@ -17,7 +17,7 @@ use super::piece_error::{SeenPatch, may_slide, seen_patch};
 use super::texel_lengths::Maps;
 use super::{
     HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor, edge_length_factor,
-    paper_edge_factor, process, round_pow2, triangle_count,
+    last_factor, paper_edge_factor, process, round_pow2, triangle_count,
 };
 
 /// The factors that LOD gives to a mesh.

@@ -73,8 +73,8 @@ pub use explained_patch::{
 };
 pub use factors::FACTOR_ODD;
 pub use factors::{
-    FACTOR_VALUE, FIXED_ONE, outer_count, patch_is_culled, patch_is_low, point_count, process, round_pow2, segments,
-    triangle_count,
+    FACTOR_VALUE, FIXED_ONE, MOST_ROWS, largest_patch, last_factor, outer_count, patch_has_rows, patch_is_culled,
+    patch_is_low, point_count, process, round_pow2, segments, triangle_count,
 };
 pub use hull_factors::{HullFactors, RowChoice};
 pub use inputs::{own_sharing, sharing};
@@ -107,9 +107,9 @@ pub mod shared_constants {
     pub use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
     pub use super::domain::FIXED_TWO_THIRDS;
     pub use super::factors::{
-        BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO,
-        FACTOR_ODD, FACTOR_VALUE, FIXED_HALF, FIXED_ONE, ROW_BASE_SHIFT, ROW_BASE_STEP, ROW_FLIP_SHIFT, ROWS,
-        SUBTRIANGULATED,
+        BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP,
+        BITS_TWO, FACTOR_ODD, FACTOR_VALUE, FIXED_HALF, FIXED_ONE, MOST_ROWS, ROW_BASE_SHIFT, ROW_BASE_STEP,
+        ROW_FLIP_SHIFT, ROWS, SUBTRIANGULATED,
     };
     pub use super::flat_patch::{AGREEING, TWO_POINTS};
     pub use super::least_factors::{BEYOND_LAST, BOUND_SHARE, ROW_REACH, SPREAD, TOGETHER};

@@ -9,12 +9,12 @@ pub(super) fn quotient(number: u32, by: u32) -> u32 {
     ((number as f32 + 0.5) / by as f32) as u32
 }
 
-/// Returns a number for [`divided`]. `by` is 1 to 4096.
+/// Returns a number for [`divided`]. `by` is 1 to 2^14.
 pub(super) fn inverse(by: u32) -> f32 {
     1.0 / by as f32
 }
 
-/// Returns `number / by`, rounded down, for the [`inverse`] of `by`, as [`quotient`] does. `number` is at most 2^18.
+/// Returns `number / by`, rounded down, for the [`inverse`] of `by`, as [`quotient`] does. `number` is at most 2^20.
 pub(super) fn divided(number: u32, inverse: f32) -> u32 {
     ((number as f32 + 0.5) * inverse) as u32
 }
@@ -58,11 +58,11 @@ mod tests {
 
     #[test]
     fn products_with_inverses_are_rounded_down() {
-        for by in 1..=4096u32 {
+        for by in 1..=1 << 14u32 {
             // WGSL lets an inverse be wrong by 2.5 ULP.
             for off in [-3, 0, 3] {
                 let inverse = f32::from_bits(inverse(by).to_bits().wrapping_add_signed(off));
-                for multiple in (0..=64).map(|times| times * by).take_while(|&multiple| multiple <= 1 << 18) {
+                for multiple in (0..=1 << 20).map(|times| times * by).take_while(|&multiple| multiple + by <= 1 << 20) {
                     assert_eq!(divided(multiple, inverse), multiple / by, "{multiple} / {by}");
                     assert_eq!(divided(multiple + by - 1, inverse), multiple / by, "{multiple} + {by} - 1");
                 }
@@ -81,9 +81,9 @@ mod tests {
 
     #[test]
     fn common_divisors_are_the_greatest() {
-        for (one, other) in (1..=64).flat_map(|one| (1..=64).map(move |other| (one, other))) {
+        for (one, other) in (1..=127).flat_map(|one| (1..=127).map(move |other| (one, other))) {
             let divides = |by: &u32| one % by == 0 && other % by == 0;
-            assert_eq!((1..=64).rev().find(divides), Some(common_divisor(one, other)), "{one} and {other}");
+            assert_eq!((1..=127).rev().find(divides), Some(common_divisor(one, other)), "{one} and {other}");
         }
     }
 }

@@ -198,7 +198,7 @@ impl Engine {
             return Ok(edges);
         }
         let written = scene.tessellator.hull_factors()?;
-        Ok(edges + written.iter().filter(|factors| factors.inside_is_capped()).count() as u64)
+        Ok(edges + written.iter().filter(|factors| factors.inside_is_capped(tessellation.partitioning)).count() as u64)
     }
 
     /// The own least of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error,

@@ -1,7 +1,7 @@
 //! The tessellation factors that were asked for, before the tessellator clamped and rounded them.
 
 use geometry::mesh::Topology;
-use geometry::tessellate::{Convention, Edges, HullFactors, Partitioning, domain_side, factor_side};
+use geometry::tessellate::{Convention, Edges, HullFactors, Partitioning, domain_side, factor_side, last_factor};
 
 /// Factors before clamping and rounding, and the convention under which they were given.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,7 +43,7 @@ impl AskedFactors {
 
     /// How many factors are larger than the largest of a partitioning.
     pub fn beyond(&self, partitioning: Partitioning) -> u64 {
-        let most = if partitioning == Partitioning::FractionalOdd { 63.0 } else { 64.0 };
+        let most = last_factor(partitioning);
         self.factors.iter().filter(|&&factor| factor > most).count() as u64
     }
 

@@ -284,8 +284,7 @@ pub struct Compared {
 pub fn compare_with_optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, searches: bool) -> Compared {
     let own = tessellate(mesh, topology, inputs, None);
     let triangles = own.triangles.len() as u64;
-    let capped =
-        |factors: &HullFactors| factors.inside_is_capped() || factors.edges.iter().any(|&factor| factor > 64.0);
+    let capped = |factors: &HullFactors| factors.is_capped(inputs.tessellation.partitioning);
     let error_px = (!hull_factors(mesh, topology, inputs).iter().any(capped)).then(|| {
         let mut measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, triangles);
         measurement.take(&EmittedChunk::whole(&own.vertices, &own.triangles));

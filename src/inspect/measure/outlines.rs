@@ -7,8 +7,8 @@ use glam::{DVec3, Vec3};
 use super::asked_factors::AskedFactors;
 use geometry::mesh::{EdgeKind, Side, Topology};
 use geometry::tessellate::{
-    Convention, FIXED_ONE, PatchFactors, Vertex, domain_plan, domain_point, domain_side, outer_count, patch_is_culled,
-    patch_is_low, point_count, segments,
+    Convention, FIXED_ONE, MOST_ROWS, PatchFactors, Vertex, domain_plan, domain_point, domain_side, outer_count,
+    patch_has_rows, patch_is_culled, patch_is_low, point_count, segments,
 };
 
 /// A vertex on a patch's outline.
@@ -133,10 +133,12 @@ impl Outlines {
         }
     }
 
-    /// The number of emitted patches with a factor of 63 or more, which may have asked for a larger one than there is.
+    /// The number of emitted patches with a factor of 63 or more (of rows the largest), which may have asked for a larger one than
+    /// there is.
     pub fn at_limit(&self) -> u32 {
-        let is_last = |word: u32| segments(word) >= 63;
         let any = |factors: &&PatchFactors| {
+            let last = if patch_has_rows(**factors) { MOST_ROWS } else { 63 };
+            let is_last = |word: u32| segments(word) >= last;
             !patch_is_culled(**factors) && (is_last(factors.inside) || factors.outside.into_iter().any(is_last))
         };
         self.factors.iter().filter(any).count() as u32

@@ -58,7 +58,7 @@ pub struct Measured {
     pub culled: Culled,
     /// Emitted patches whose factors are all below 2.
     pub patches_low: u32,
-    /// Emitted patches with a factor of 63 or more: see [`Outlines::at_limit`].
+    /// Emitted patches with a factor at the largest: see [`Outlines::at_limit`].
     pub patches_at_limit: u32,
     pub cracks: Cracks,
     pub seams: Seams,

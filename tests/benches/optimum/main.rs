@@ -1,5 +1,6 @@
 //! Compares LOD by error with the fewest triangles that keep the same tolerance: `cargo bench --bench optimum`. Arguments after
-//! `--` are mesh files that are measured too; `cameras=N`, the number of random cameras beside the default one; and
+//! `--` are mesh files that are measured too; `cameras=N`, the number of random cameras beside the default one; `close=yes`, which
+//! brings them as near to a patch as a tenth of its size; and
 //! `only=NAME,NAME`, which measures these meshes alone. Rows are compared with the optimum of integer partitioning. With `search=no` no
 //! optimum is searched for: then all partitionings are measured that LOD by error has, and what the table tells is whether the
 //! tolerance is kept, of all of them or of the one that `partitioning=NAME` names. With `device=gpu` the same is told of what
@@ -91,10 +92,32 @@ fn cameras(mesh: &Mesh, count: usize) -> Vec<Camera> {
     std::iter::once(framing).chain((0..count).map(other)).collect()
 }
 
-fn cases(meshes: &[(String, Arc<Mesh>)], cameras_each: usize, partitionings: &[Partitioning]) -> Vec<Case> {
+/// The default camera, then random ones that are as far from a point of a triangle as a tenth of its longest side.
+fn close_cameras(mesh: &Mesh, count: usize) -> Vec<Camera> {
+    let mut random = fastrand::Rng::with_seed(2);
+    let close = |_| {
+        let triangle = mesh.triangles[random.usize(..mesh.triangles.len())];
+        let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize].position);
+        let (along, across) = (random.f32(), random.f32());
+        Camera {
+            target: a.lerp(b.lerp(c, along), across),
+            azimuth: 360.0 * random.f32(),
+            elevation: 80.0 * (2.0 * random.f32() - 1.0),
+            distance: 0.1 * a.distance(b).max(b.distance(c)).max(c.distance(a)),
+            ..Camera::default()
+        }
+    };
+    std::iter::once(Camera::framing(&mesh.bounds(), VIEWPORT)).chain((0..count).map(close)).collect()
+}
+
+fn cases(
+    meshes: &[(String, Arc<Mesh>)],
+    cameras: impl Fn(&Mesh) -> Vec<Camera>,
+    partitionings: &[Partitioning],
+) -> Vec<Case> {
     let mut cases = Vec::new();
     for (index, (_, mesh)) in meshes.iter().enumerate() {
-        for (number, camera) in cameras(mesh, cameras_each).into_iter().enumerate() {
+        for (number, camera) in cameras(mesh).into_iter().enumerate() {
             for (k, tolerance) in TOLERANCES.into_iter().enumerate() {
                 // The default camera with every tolerance, the others with one each.
                 if number == 0 || number % 4 == k {
@@ -140,8 +163,7 @@ impl Device {
         self.engine.count(scene, &inputs, &mut Timing::Off).expect("room for factors");
         let (_, triangles) = scene.tessellator.totals();
         let written = scene.tessellator.hull_factors().expect("factors");
-        let capped =
-            |factors: &HullFactors| factors.inside_is_capped() || factors.edges.iter().any(|&factor| factor > 64.0);
+        let capped = |factors: &HullFactors| factors.is_capped(inputs.tessellation.partitioning);
         let error_px = (!written.iter().any(capped)).then(|| {
             let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
             let measured = self.engine.measure_all(scene, &wanted).expect("room for what is emitted");
@@ -204,14 +226,19 @@ fn print_worst(meshes: &[(String, Arc<Mesh>)], rows: &[Row]) {
     println!("| --- | ---: | --- | --- | ---: | ---: | ---: | ---: |");
     let is_listed = |row: &&Row| {
         let is_capped = row.compared.error_px.is_none();
-        is_capped || row.exceeds_uniform() || row.times().is_some_and(|times| times > LISTED)
+        let is_beyond = row.compared.error_px.is_some_and(|px| px > f64::from(row.case.tolerance));
+        is_capped || is_beyond || row.exceeds_uniform() || row.times().is_some_and(|times| times > LISTED)
     };
     for row in rows.iter().filter(is_listed) {
         let Case { mesh, number, camera, tolerance, partitioning } = row.case;
         let best = row.compared.best.as_ref().map_or_else(|| "-".to_owned(), |best| best.triangles.to_string());
         let uniform = row.compared.best.as_ref().and_then(|best| best.uniform);
         let uniform = uniform.map_or_else(|| "-".to_owned(), |(_, triangles)| triangles.to_string());
-        let capped = if row.compared.error_px.is_none() { " (capped)" } else { "" };
+        let capped = match row.compared.error_px {
+            None => " (capped)".to_owned(),
+            Some(px) if px > f64::from(tolerance) => format!(" ({px:.2} px)"),
+            _ => String::new(),
+        };
         let Compared { triangles, .. } = row.compared;
         println!(
             "| {} | {number} | {} | {partitioning:?} | {tolerance} | {triangles}{capped} | {best} | {uniform} |",
@@ -275,7 +302,12 @@ fn main() {
         value("partitioning=").is_none_or(|name| format!("{partitioning:?}").eq_ignore_ascii_case(name))
     };
     let partitionings: Vec<Partitioning> = partitionings.iter().filter(named).copied().collect();
-    let cases = cases(&meshes, cameras_each, &partitionings);
+    let is_close = arguments.iter().any(|argument| argument == "close=yes");
+    let cameras = |mesh: &Mesh| match is_close {
+        true => close_cameras(mesh, cameras_each),
+        false => cameras(mesh, cameras_each),
+    };
+    let cases = cases(&meshes, cameras, &partitionings);
     let (next, rows) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, |cores| cores.get()) {

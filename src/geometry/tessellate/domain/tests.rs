@@ -7,6 +7,7 @@ use crate::tessellate::domain_row::segment_length;
 use crate::tessellate::factors::{
     FACTOR_VALUE, Partitioning, outer_count, patch_is_culled, point_count, process, triangle_count,
 };
+use crate::tessellate::last_factor;
 
 fn closed_form(f: PatchFactors) -> serial::Patch {
     let plan = domain_plan(f);
@@ -244,7 +245,7 @@ proptest! {
     fn words_hold_a_factor_in_range_or_zero(p in prop::sample::select(Partitioning::ALL.to_vec()), x in any_factor()) {
         let f = process(p, [x; 3], x);
         for word in f.outside.into_iter().chain([f.inside]) {
-            prop_assert!(word == 0 || (FIXED_ONE..=64 << 16).contains(&(word & FACTOR_VALUE)));
+            prop_assert!(word == 0 || (FIXED_ONE..=(last_factor(p) as u32) << 16).contains(&(word & FACTOR_VALUE)));
         }
     }
 }

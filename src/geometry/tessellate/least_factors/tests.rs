@@ -2,6 +2,7 @@ use glam::{Mat4, vec3};
 use proptest::prelude::*;
 
 use super::*;
+use crate::tessellate::largest_patch;
 
 fn asked_factors(
     patch: &SeenPatch,
@@ -201,4 +202,14 @@ fn patches_ask_again_if_their_inside_is_much_larger_than_they_chose() {
     assert!(!asks_again(1.0, 2.0) && asks_again(1.0, 3.0));
     assert!(!asks_again(18.0, 20.0) && asks_again(18.0, 21.0));
     assert!(asks_again(64.0, BEYOND_LAST));
+}
+
+#[test]
+fn all_triangles_of_the_largest_pattern_are_looked_at() {
+    let most = triangle_count(largest_patch()).div_ceil(TOGETHER);
+    for turns in [1, 2, 512, most - 1, most] {
+        let order: std::collections::HashSet<u32> = (0..turns).map(|turn| turn * SPREAD % turns).collect();
+        assert_eq!(order.len(), turns as usize, "{turns} turns");
+    }
+    assert!((2..SPREAD).all(|divisor| SPREAD % divisor > 0) && most < SPREAD);
 }

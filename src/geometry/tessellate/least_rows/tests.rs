@@ -16,7 +16,7 @@ fn own_least_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f3
 fn rows_beside(patch: &SeenPatch, tolerance: f32, edges: [f32; 3], inside: f32) -> f32 {
     fewest_rows(patch, tolerance, &Sought { least: edges, inside, inner: 0.0, wanted: Wanted::Given }).inside
 }
-use crate::tessellate::factors::{row_count, row_width, segments, triangle_count};
+use crate::tessellate::factors::{ROW_BASE_STEP, row_count, row_width, segments, triangle_count};
 use crate::tessellate::piece_error::seen_patch;
 use crate::tessellate::{ControlNet, LodView};
 
@@ -80,10 +80,10 @@ fn a_patch_that_is_bent_in_one_direction_has_no_points_inside() {
 #[test]
 fn a_patch_that_one_triangle_shows_is_one_triangle() {
     let patch = seen_patch(&VIEW, &lifted([0.0; 7]));
-    let one = Chosen { edges: [1.0; 3], inside: 129.0, inner: 0.0 };
+    let one = Chosen { edges: [1.0; 3], inside: (ROW_BASE_STEP + 1) as f32, inner: 0.0 };
     assert_eq!(asked_rows(&patch, 0.01, [1.0; 3], 1.0), one);
     assert_eq!(own_least_rows(&patch, 0.01, [1.0; 3], 1.0), one);
-    assert_eq!(rows_beside(&patch, 0.01, [1.0; 3], 1.0), 129.0);
+    assert_eq!(rows_beside(&patch, 0.01, [1.0; 3], 1.0), one.inside);
     // Heights may need more rows than the surface does.
     let factors = |chosen: Chosen| process(Partitioning::Rows, chosen.edges, chosen.inside);
     let raised = factors(asked_rows(&patch, 0.01, [1.0; 3], 5.0));
@@ -97,18 +97,28 @@ fn what_no_rows_suffice_for_says_so() {
     let patch = seen_patch(&VIEW, &lifted([0.1, -0.1, 0.1, 0.2, -0.1, 0.1, 0.3]));
     let none = |least| Chosen { edges: least, inside: BEYOND_LAST, inner: 0.0 };
     assert_eq!(asked_rows(&patch, 1e-6, [2.0, 3.0, 1.0], 1.0), none([2.0, 3.0, 1.0]));
-    assert_eq!(asked_rows(&patch, 0.5, [65.0, 1.0, 1.0], 1.0), none([65.0, 1.0, 1.0]));
-    assert_eq!(rows_beside(&patch, 1e-6, [64.0; 3], 1.0), BEYOND_LAST);
+    assert_eq!(asked_rows(&patch, 0.5, [127.5, 1.0, 1.0], 1.0), none([127.5, 1.0, 1.0]));
+    assert_eq!(rows_beside(&patch, 1e-6, [127.0; 3], 1.0), BEYOND_LAST);
     assert_eq!(asked_rows(&patch, 0.5, [1.0; 3], BEYOND_LAST).inside, BEYOND_LAST);
     let lost = seen_patch(&VIEW, &lifted([f32::NAN; 7]));
     assert_eq!(asked_rows(&lost, 0.5, [1.0; 3], 1.0), none([1.0; 3]));
 }
 
 #[test]
+fn patches_that_are_near_get_more_rows_than_rings_have_segments() {
+    let patch = seen_patch(&VIEW, &lifted([0.1, -0.1, 0.1, 0.2, -0.1, 0.1, 0.3]));
+    let chosen = asked_rows(&patch, 4e-3, [1.0; 3], 1.0);
+    let factors = process(Partitioning::Rows, chosen.edges, chosen.inside);
+    assert!(row_count(factors).max(row_width(factors)) > 64, "{chosen:?}");
+    assert!(within(&patch, 4e-3, chosen.edges, chosen.inside));
+}
+
+#[test]
 fn patches_ask_again_if_they_have_many_more_points_inside_than_they_chose() {
-    let chosen = Chosen { edges: [8.0; 3], inside: 128.0 + 8.0, inner: 0.0 };
-    assert!(!rows_ask_again(&chosen, [8.0; 3], 136.0) && !rows_ask_again(&chosen, [10.0, 8.0, 8.0], 136.0));
-    assert!(rows_ask_again(&chosen, [8.0, 12.0, 12.0], 136.0) && rows_ask_again(&chosen, [8.0; 3], BEYOND_LAST));
+    let chosen = Chosen { edges: [8.0; 3], inside: (ROW_BASE_STEP + 8) as f32, inner: 0.0 };
+    let again = |edges, inside| rows_ask_again(&chosen, edges, inside);
+    assert!(!again([8.0; 3], chosen.inside) && !again([10.0, 8.0, 8.0], chosen.inside));
+    assert!(again([8.0, 12.0, 12.0], chosen.inside) && again([8.0; 3], BEYOND_LAST));
 }
 
 /// Returns the fewest triangles of all rows whose two edges beside the base have the same number of segments, where segments of
@@ -121,7 +131,7 @@ fn fewest_of_all(patch: &SeenPatch, tolerance: f32) -> Option<f32> {
             for (width, segments) in (1..=24u8).flat_map(|width| (1..=24u8).map(move |segments| (width, segments))) {
                 let mut edges = [rows; 3];
                 edges[base % 3] = segments.into();
-                let inside = (128 * (base + 1)) as f32 + f32::from(width);
+                let inside = (ROW_BASE_STEP as usize * (base + 1)) as f32 + f32::from(width);
                 all.push((cost_of_rows(process(Partitioning::Rows, edges, inside), ASKED_SEGMENT), edges, inside));
             }
         }

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::*;
-use crate::tessellate::factors::{Partitioning, process, triangle_count};
+use crate::tessellate::factors::{Partitioning, ROW_BASE_STEP, process, triangle_count};
 use crate::tessellate::{domain_plan, domain_point, domain_triangle};
 
 /// What is drawn: the segments of the first edge, of the second, of the base, the width, and 1 if diagonals are flipped.
@@ -27,7 +27,8 @@ const MARGIN: f64 = 20.0;
 
 /// Returns a pattern with its apex at the top and its base at the bottom, and what it is.
 fn drawn([a, b, c, width, flip]: [u32; 5], [left, top]: [f64; 2]) -> String {
-    let factors = process(Partitioning::Rows, [c as f32, b as f32, a as f32], (128 + 384 * flip + width) as f32);
+    let factors =
+        process(Partitioning::Rows, [c as f32, b as f32, a as f32], (ROW_BASE_STEP * (1 + 3 * flip) + width) as f32);
     let plan = domain_plan(factors);
     // U is the weight of the apex and V that of the base's start.
     let place = |i: u32| {

@@ -3,12 +3,19 @@ use std::collections::HashSet;
 use proptest::prelude::*;
 
 use super::*;
-use crate::tessellate::factors::{Partitioning, base_by_edges, patch_has_rows, point_count, process, triangle_count};
+use crate::tessellate::factors::{
+    MOST_ROWS, Partitioning, ROW_BASE_STEP, base_by_edges, patch_has_rows, point_count, process, triangle_count,
+};
 use crate::tessellate::{domain_plan, domain_point, domain_triangle};
 
 /// Returns what becomes of whole factors of the edges, a base and a width. Bases 3 to 5 are 0 to 2 with flipped diagonals.
 fn rows([u, v, w]: [u32; 3], base: u32, width: u32) -> PatchFactors {
-    process(Partitioning::Rows, [u as f32, v as f32, w as f32], (128 * (base + 1) + width) as f32)
+    process(Partitioning::Rows, [u as f32, v as f32, w as f32], (ROW_BASE_STEP * (base + 1) + width) as f32)
+}
+
+/// Numbers of segments: all small ones, and some up to the largest.
+fn numbers() -> impl Iterator<Item = u32> + Clone {
+    (1..=64).chain([65, 66, 81, 96, 97, 113, 126, MOST_ROWS])
 }
 
 /// Returns a patch's points and triangles.
@@ -82,7 +89,7 @@ fn few_segments_are_cut_as_by_hand() {
 
 #[test]
 fn equal_numbers_give_equal_triangles() {
-    for n in 1..=64 {
+    for n in 1..=MOST_ROWS {
         let (points, triangles) = pattern(rows([n; 3], 1, n));
         assert_eq!(triangles.len() as u32, n * n);
         let each = f64::from(FIXED_ONE).powi(2) / f64::from(n * n);
@@ -110,8 +117,8 @@ fn all_small_numbers_cover_the_domain_once() {
 
 #[test]
 fn very_unequal_numbers_cover_the_domain_once() {
-    for (u, v) in [1, 2, 63, 64].into_iter().flat_map(|u| [1, 2, 63, 64].map(|v| (u, v))) {
-        for (w, width) in [1, 64].into_iter().flat_map(|w| [1, 2, 33, 63, 64].map(|width| (w, width))) {
+    for (u, v) in [1, 2, 63, 64, 127].into_iter().flat_map(|u| [1, 2, 63, 64, 127].map(|v| (u, v))) {
+        for (w, width) in [1, 64, 127].into_iter().flat_map(|w| [1, 2, 33, 64, 127].map(|width| (w, width))) {
             for base in 0..6 {
                 let found = fault(rows([u, v, w], base, width));
                 assert_eq!(found, None, "{u}, {v}, {w}, base {base}, width {width}");
@@ -129,14 +136,14 @@ fn the_manuals_table_is_right() {
     assert_eq!([counts([1; 3], 1), counts([1, 1, 5], 1), counts([1, 1, 5], 9)], [[0, 1], [0, 5], [0, 5]]);
     assert_eq!([counts([5, 5, 1], 1), counts([2; 3], 2), counts([2, 2, 6], 6)], [[0, 9], [0, 4], [2, 12]]);
     assert_eq!(counts([6, 3, 4], 4), [7, 25]);
-    for n in 1..=64 {
+    for n in 1..=MOST_ROWS {
         assert_eq!(counts([n; 3], n), [(n - 1) * n.saturating_sub(2) / 2, n * n]);
     }
 }
 
 #[test]
 fn every_point_inside_has_one_number() {
-    for (n, width) in (1..=64).flat_map(|n| (1..=64).map(move |width| (n, width))) {
+    for (n, width) in numbers().flat_map(|n| numbers().map(move |width| (n, width))) {
         let numbered = numbered_rows(rows([1, n, n], 0, width));
         let segments = |row: u32| (width * row).div_ceil(n);
         assert_eq!(numbered.inside, (1..n).map(|row| segments(row) - 1).sum::<u32>(), "{n} rows, to {width}");
@@ -151,8 +158,8 @@ fn every_point_inside_has_one_number() {
 
 #[test]
 fn every_triangle_has_one_number() {
-    for (n, width) in (1..=64).flat_map(|n| (1..=64).map(move |width| (n, width))) {
-        let others = [5, 11].map(|k| (1 + (k * n + 3 * width) % n, 1 + (k * n + width) % 64));
+    for (n, width) in numbers().flat_map(|n| numbers().map(move |width| (n, width))) {
+        let others = [5, 11].map(|k| (1 + (k * n + 3 * width) % n, 1 + (k * n + width) % MOST_ROWS));
         for (fewer, c) in [(n, width), (1, 1), others[0], others[1]] {
             let edges = if (n + width) % 2 == 0 { [c, n, fewer] } else { [c, fewer, n] };
             let factors = rows(edges, 0, width);
@@ -249,26 +256,31 @@ fn inside_factors_say_base_and_width() {
     for nothing in [0.0, -3.0, f32::NAN, f32::NEG_INFINITY, 1e-40, 1.0] {
         assert_eq!(of(nothing), (0, 1), "{nothing}");
     }
-    assert_eq!([3.2, 64.0, 70.0, 1e9, f32::INFINITY].map(of), [(0, 4), (0, 64), (0, 64), (0, 64), (0, 64)]);
-    assert_eq!([128.0, 129.0, 131.5, 128.0 + 64.5, 255.0].map(of), [(0, 1), (0, 1), (0, 4), (0, 64), (0, 64)]);
-    assert_eq!([257.0, 256.0 + 64.0, 385.0, 384.0 + 7.0].map(of), [(1, 1), (1, 64), (2, 1), (2, 7)]);
-    // From 4 times 128 on, diagonals are flipped.
+    assert_eq!([3.2, 127.0, 127.5, 1e9, f32::INFINITY].map(of), [(0, 4), (0, 127), (0, 127), (0, 127), (0, 127)]);
+    let step = |times: u32, width: f32| (times * ROW_BASE_STEP) as f32 + width;
+    let first = [0.0, 1.0, 3.5, 127.5, 255.0].map(|width| of(step(1, width)));
+    assert_eq!(first, [(0, 1), (0, 1), (0, 4), (0, 127), (0, 127)]);
+    let others = [(2, 1.0), (2, 64.0), (3, 1.0), (3, 7.0)].map(|(times, width)| of(step(times, width)));
+    assert_eq!(others, [(1, 1), (1, 64), (2, 1), (2, 7)]);
+    // From 4 times the step on, diagonals are flipped.
     let flips = |inside: f32| row_flip(process(Partitioning::Rows, [3.0, 8.0, 8.0], inside));
-    assert_eq!([512.0, 511.5, 517.0, 641.0, 775.0, 895.0].map(of), [(0, 1), (0, 1), (0, 5), (1, 1), (2, 7), (2, 64)]);
-    assert_eq!([3.0, 130.0, 511.0, 512.0, 517.0, 895.0, 896.0, f32::NAN].map(flips), [0, 0, 0, 1, 1, 1, 0, 0]);
-    assert_eq!([896.0, 895.5, 900.0].map(of), [(0, 64), (0, 64), (0, 64)]);
-    assert!(!patch_has_rows(process(Partitioning::Rows, [3.0, 0.0, 8.0], 131.0)));
+    let flipped = [1024.0, 1023.5, 1029.0, 1281.0, 1543.0, 1791.0].map(of);
+    assert_eq!(flipped, [(0, 1), (0, 1), (0, 5), (1, 1), (2, 7), (2, 127)]);
+    let few = [3.0, 258.0, 1023.0, 1024.0, 1029.0, 1791.0, 1792.0, f32::NAN].map(flips);
+    assert_eq!(few, [0, 0, 0, 1, 1, 1, 0, 0]);
+    assert_eq!([1792.0, 1791.5, 1800.0].map(of), [(0, 127), (0, 127), (0, 127)]);
+    assert!(!patch_has_rows(process(Partitioning::Rows, [3.0, 0.0, 8.0], 259.0)));
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
     #[test]
-    fn rows_cover_the_domain_once(edges in prop::array::uniform3(1u32..=64), base in 0u32..6, width in 1u32..=64) {
+    fn rows_cover_the_domain_once(edges in prop::array::uniform3(1u32..=MOST_ROWS), base in 0u32..6, width in 1u32..=MOST_ROWS) {
         prop_assert_eq!(fault(rows(edges, base, width)), None);
     }
 
     #[test]
-    fn triangles_lie_where_their_points_do(edges in prop::array::uniform3(1u32..=64), base in 0u32..6, width in 1u32..=64) {
+    fn triangles_lie_where_their_points_do(edges in prop::array::uniform3(1u32..=MOST_ROWS), base in 0u32..6, width in 1u32..=MOST_ROWS) {
         let factors = rows(edges, base, width);
         let (points, triangles) = pattern(factors);
         let plan = row_plan(factors);

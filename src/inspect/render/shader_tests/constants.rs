@@ -23,12 +23,12 @@ use crate::settings::{Colors, Overlays, ToneCurve};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, MOST_LIGHTS, Slot};
 use geometry::tessellate::shared_constants::{
-    AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_896, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
-    BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING,
-    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, FLAT_ANGLE, LESSENINGS, NOT_CULLED,
-    OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT,
-    ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD, SUBTRIANGULATED, SURFACE_SHARE, TOGETHER,
-    TURN_SHARE, TWO_POINTS, UNIT,
+    AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE,
+    BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY,
+    FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS,
+    FLAT_ANGLE, LESSENINGS, MOST_ROWS, NOT_CULLED, OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS,
+    POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT, ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD,
+    SUBTRIANGULATED, SURFACE_SHARE, TOGETHER, TURN_SHARE, TWO_POINTS, UNIT,
 };
 use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
@@ -75,14 +75,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     ),
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
     (
-        &[
-            "LARGE_PATCHES",
-            "SMALL_PATCHES",
-            "WORKGROUPS_DONE",
-            "SEARCHES_OVER",
-            "TRIANGLES",
-            "NOT_TAKEN",
-        ],
+        &["LARGE_PATCHES", "SMALL_PATCHES", "WORKGROUPS_DONE", "SEARCHES_OVER", "TRIANGLES", "NOT_TAKEN"],
         "counters of passes",
     ),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
@@ -250,7 +243,9 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("ROW_BASE_SHIFT", number(ROW_BASE_SHIFT)),
         ("ROW_BASE_STEP", number(ROW_BASE_STEP)),
         ("ROW_FLIP_SHIFT", number(ROW_FLIP_SHIFT)),
-        ("BITS_896", number(BITS_896)),
+        ("BITS_127", number(BITS_127)),
+        ("BITS_1792", number(BITS_1792)),
+        ("MOST_ROWS", number(MOST_ROWS)),
         ("BITS_ONE", number(BITS_ONE)),
         ("BITS_TWO", number(BITS_TWO)),
         ("BITS_63", number(BITS_63)),
