@@ -26,6 +26,7 @@
 
 const PARTITIONING_FRACTIONAL_ODD: u32 = 2u;
 const PARTITIONING_FRACTIONAL_EVEN: u32 = 3u;
+const PARTITIONING_ROWS: u32 = 5u;
 const FIXED_ONE: u32 = 0x10000u;
 const FIXED_HALF: u32 = 0x8000u;
 const FACTOR_ODD: u32 = 0x80000000u;
@@ -34,6 +35,7 @@ const BITS_ONE: u32 = 0x3f800000u;
 const BITS_TWO: u32 = 0x40000000u;
 const BITS_63: u32 = 0x427c0000u;
 const BITS_64: u32 = 0x42800000u;
+const BITS_127: u32 = 0x42fe0000u;
 const BITS_INFINITY: u32 = 0x7f800000u;
 const BITS_ONE_AND_HALF_STEP: u32 = 0x3f800040u;
 const BITS_ONE_AND_STEP: u32 = 0x3f800080u;
@@ -56,10 +58,11 @@ fn factor_lower_bound(partitioning: u32) -> u32 {
 
 // Returns the largest factor of a partitioning, as `f32` bits.
 fn factor_upper_bound(partitioning: u32) -> u32 {
-    return select(BITS_64, BITS_63, partitioning == PARTITIONING_FRACTIONAL_ODD);
+    let most = select(BITS_64, BITS_127, partitioning == PARTITIONING_ROWS);
+    return select(most, BITS_63, partitioning == PARTITIONING_FRACTIONAL_ODD);
 }
 
-// Returns the word of a factor of 1 to 64, given as `f32` bits. The factor is rounded up to a whole number or, in the
+// Returns the word of a factor of at least 1, given as `f32` bits. The factor is rounded up to a whole number or, in the
 // fractional partitionings, to the nearest 1/65536 with ties to even. Its parity is that of the partitioning, or of the
 // whole number.
 fn factor_word(partitioning: u32, bits: u32) -> u32 {

@@ -58,12 +58,17 @@ impl Room {
     }
 
     /// A bound on the number of chunks of this size that any tessellation of so many patches takes. It follows from this: every
-    /// chunk but the last has no room left for the vertices, or for the triangles, of one more patch.
+    /// chunk but the last has no room left for the vertices, or for the triangles, of one more patch; and two that follow each other
+    /// would not fit one.
     fn most_chunks(self, patch_count: u32) -> u32 {
         let patch = Self::of_patch();
         let full = |capacity: u32, patch: u32| {
             let needed = u64::from(patch) * u64::from(patch_count);
-            if needed <= u64::from(capacity) { 0 } else { needed.div_ceil(u64::from(capacity - patch + 1)) as u32 }
+            if needed <= u64::from(capacity) {
+                0
+            } else {
+                needed.div_ceil(u64::from((capacity - patch + 1).max(capacity / 2))) as u32
+            }
         };
         full(self.vertices, patch.vertices) + full(self.triangles, patch.triangles) + 1
     }

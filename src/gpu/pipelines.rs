@@ -69,6 +69,8 @@ impl Default for ComputePipelines {
 
 /// Fewer patches than this don't fill a GPU with 32 invocations each.
 const FEW_PATCHES: u32 = 512;
+/// Of fewer patches than this each may need thousands of triangles.
+const LARGE_PATCHES: u32 = 128;
 
 impl ComputePipelines {
     /// Compiles nothing yet.
@@ -76,7 +78,8 @@ impl ComputePipelines {
         Self::in_groups([8, 32, 128])
     }
 
-    /// The same with workgroups of these sizes for searches: on a software driver, for many patches, and for few.
+    /// The same with workgroups of these sizes for searches, of which the device and the number of patches choose one: see
+    /// [`Self::search`].
     pub fn in_groups(groups: [u32; 3]) -> Self {
         Self {
             groups,
@@ -99,14 +102,15 @@ impl ComputePipelines {
     }
 
     /// A pass that searches factors of so many patches (see `shaders/search_group.wgsl`). Its workgroups may have any size. A
-    /// software driver computes the invocations of a workgroup one after the other, and those that were in vain take time; if
-    /// patches alone don't fill a GPU, larger workgroups do.
+    /// software driver computes the invocations of a workgroup one after the other, and those that were in vain take time; but it ends
+    /// the loops of an invocation after some time, which large patches need, so that those share it. On a GPU that patches alone don't
+    /// fill, larger workgroups do.
     pub(super) fn search(&self, gpu: &Gpu, pass: Pass, patches: u32) -> Pass {
-        let [on_software, many_patches, few_patches] = self.groups;
-        let size = match patches {
-            _ if gpu.is_software() => on_software,
-            ..FEW_PATCHES => few_patches,
-            _ => many_patches,
+        let [small, medium, large] = self.groups;
+        let size = match (gpu.is_software(), patches) {
+            (true, LARGE_PATCHES..) => small,
+            (false, ..FEW_PATCHES) => large,
+            _ => medium,
         };
         pass.with("GROUP", size)
     }

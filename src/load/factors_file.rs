@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn rows_have_columns_of_their_own() {
-        let own = [[4.0, 6.0, 3.0, 128.0 + 4.0], [2.0, 2.5, 1.0, 768.0 + 7.25]];
+        let own = [[4.0, 6.0, 3.0, 256.0 + 4.0], [2.0, 2.5, 1.0, 1536.0 + 7.25]];
         let own = own.map(|[u, v, w, inside]| HullFactors { edges: [u, v, w], inside });
         let text = to_csv(&topology(), &own, Partitioning::Rows);
         assert_eq!(text, "patch,e0,e1,e2,base,width,flipped\n0,4,6,3,0,4,0\n2,2,2.5,1,2,7.25,1\n");
@@ -198,7 +198,7 @@ mod tests {
         let text = to_csv(&topology(), &free, Partitioning::Rows);
         assert!(text.contains("\n0,4,6,3,,5,0\n"), "{text}");
         assert_eq!(read_rows(&text), Ok(free.to_vec()));
-        assert_eq!(read_rows("patch,e0,e1,e2,inside\n0,4,6,3,132\n2,2,2.5,1,775.25\n"), Ok(own.to_vec()));
+        assert_eq!(read_rows("patch,e0,e1,e2,inside\n0,4,6,3,260\n2,2,2.5,1,1543.25\n"), Ok(own.to_vec()));
         let fault = |text: &str| {
             read_rows(&text.replace("ROWS", "patch,e0,e1,e2,base,width,flipped")).map_err(|e| (e.line, e.fault))
         };

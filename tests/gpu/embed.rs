@@ -298,7 +298,7 @@ fn a_mesh_of_too_many_patches_is_refused_with_their_number() {
     let context = Context::new(&device, &queue).expect("default limits are enough");
     let error = TessellatedMesh::new(&context, strip((1 << 18) + 1), ROOM).err();
     let Some(GpuError::TooManyPatches { patches, limit }) = error else { panic!("{error:?}") };
-    assert_eq!((patches, limit), (524_289, 524_288));
+    assert_eq!((patches, limit), (262_145, 262_144));
 }
 
 #[test]

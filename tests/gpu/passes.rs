@@ -281,9 +281,9 @@ fn pn_tears_where_normals_are_split_and_nowhere_else() {
 fn a_small_arena_gives_the_same_mesh_in_chunks() {
     let loaded = loaded(Shape::Torus);
     let mut whole = engine().scene(&loaded, 1 << 28).expect("small");
-    // Room for a little more than one patch at the largest factor: 3169 vertices of 32 bytes, 6144 triangles of 12.
-    let mut cut = engine().scene(&loaded, 2 * 110_000).expect("small");
-    for (lod, factor) in [(Lod::Uniform, 17.0), (Lod::Uniform, 64.0), (Lod::Paper, 1.0)] {
+    // Room for a little more than the largest patch: 8256 vertices of 32 bytes, 16129 triangles of 12.
+    let mut cut = engine().scene(&loaded, 2 * 265_000).expect("small");
+    for (lod, factor) in [(Lod::Uniform, 21.0), (Lod::Uniform, 64.0), (Lod::Paper, 1.0)] {
         let settings = Settings::from(Tessellation { lod, factor, pixels: 2.0, ..Tessellation::default() });
         let inputs = inputs(&loaded, &settings);
         let (a, b) = (on_gpu(&mut whole, &inputs), on_gpu(&mut cut, &inputs));
@@ -301,18 +301,18 @@ fn a_small_arena_gives_the_same_mesh_in_chunks() {
 #[test]
 fn output_that_does_not_fit_the_arena_is_cut_into_small_chunks() {
     let loaded = loaded(Shape::Torus);
-    // Room for 32,768 vertices.
-    let mut scene = engine().scene(&loaded, 2 << 20).expect("small");
+    // Room for 81,920 vertices.
+    let mut scene = engine().scene(&loaded, 5 << 20).expect("small");
     let mut chunks = |factor| {
         let settings = Settings::from(Tessellation { factor, ..Tessellation::default() });
         engine().count(&mut scene, &inputs(&loaded, &settings), &mut Timing::Off).expect("counts");
         let of = |index| scene.tessellator.chunk(index).chunk;
         (0..scene.tessellator.chunk_count()).map(of).collect::<Vec<_>>()
     };
-    let [whole] = chunks(11.0)[..] else { panic!("what fits is one chunk") };
-    let most = 32_768 / chunks_an_arena(&engine().gpu);
-    assert!(whole.vertex_count > 25_000, "{} in one chunk", whole.vertex_count);
-    let cut = chunks(13.0);
+    let [whole] = chunks(17.0)[..] else { panic!("what fits is one chunk") };
+    let most = 81_920 / chunks_an_arena(&engine().gpu);
+    assert!(whole.vertex_count > 50_000, "{} in one chunk", whole.vertex_count);
+    let cut = chunks(21.0);
     assert!(cut.iter().all(|chunk| (1..=most).contains(&chunk.vertex_count)), "{cut:?}");
     assert!(cut.windows(2).all(|pair| pair[0].patch_end == pair[1].first_patch));
 }

@@ -141,7 +141,7 @@ fn a_pixel_gives_the_triangle_that_a_ray_meets_first() {
 #[test]
 fn an_arena_of_many_chunks_gives_the_same_triangles() {
     let loaded = loaded(Shape::Torus);
-    let settings = Settings::from(Tessellation { factor: 8.0, ..Tessellation::default() });
+    let settings = Settings::from(Tessellation { factor: 13.0, ..Tessellation::default() });
     let mut scene = engine().scene(&loaded, 1 << 18).expect("a small mesh");
     count(&loaded, &mut scene, &settings);
     assert!(scene.tessellator.chunk_count() > 3, "{} chunks", scene.tessellator.chunk_count());

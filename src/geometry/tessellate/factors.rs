@@ -217,11 +217,6 @@ pub fn round_pow2(factor: f32) -> f32 {
     f32::from_bits((clamped + 0x7f_ffff) & 0x7f80_0000)
 }
 
-/// Returns the factors of a patch that has as many points and triangles as any: 127 rows of 127 segments.
-pub fn largest_patch() -> PatchFactors {
-    process(Partitioning::Rows, [MOST_ROWS as f32; 3], MOST_ROWS as f32)
-}
-
 /// Returns whether the patch is culled: it has no points and no triangles.
 pub fn patch_is_culled(factors: PatchFactors) -> bool {
     factors.outside[0] == 0

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::factors::{ROW_BASE_STEP, last_factor};
+use super::factors::{MOST_ROWS, ROW_BASE_STEP, last_factor};
 use super::{Convention, Partitioning, PatchFactors, domain_side, factor_side, patch_is_culled, process, round_pow2};
 
 /// A patch's tessellation factors before the tessellator clamps and rounds them.
@@ -65,6 +65,11 @@ impl HullFactors {
     pub fn culls(self) -> bool {
         patch_is_culled(self.process(Partitioning::Integer))
     }
+}
+
+/// Returns the factors of a patch that has as many points and triangles as any: 127 rows of 127 segments.
+pub fn largest_patch() -> PatchFactors {
+    process(Partitioning::Rows, [MOST_ROWS as f32; 3], MOST_ROWS as f32)
 }
 
 /// What an inside factor says under rows.

@@ -73,10 +73,10 @@ pub use explained_patch::{
 };
 pub use factors::FACTOR_ODD;
 pub use factors::{
-    FACTOR_VALUE, FIXED_ONE, MOST_ROWS, largest_patch, last_factor, outer_count, patch_has_rows, patch_is_culled,
-    patch_is_low, point_count, process, round_pow2, segments, triangle_count,
+    FACTOR_VALUE, FIXED_ONE, MOST_ROWS, last_factor, outer_count, patch_has_rows, patch_is_culled, patch_is_low,
+    point_count, process, round_pow2, segments, triangle_count,
 };
-pub use hull_factors::{HullFactors, RowChoice};
+pub use hull_factors::{HullFactors, RowChoice, largest_patch};
 pub use inputs::{own_sharing, sharing};
 pub use limit_surface::LimitSurface;
 pub use lod::beyond_near;
