@@ -2,41 +2,57 @@
 // factor that is enough beside them. Beside factors that other patches asked for, a patch may need a much larger inside factor than
 // it has chosen, or find none that is enough. Then it asks again, for no less than what its edges have. There are a few such rounds.
 //
-// A round takes two passes. In the first an invocation looks at each patch: one whose edges have changed is done if one triangle
-// shows it, and else put on a list. In the second a workgroup searches an inside factor for one patch on the list after another,
-// and what the patch asks for, if it asks again. Before the rounds each patch asks.
+// A round takes three passes. In the first an invocation looks at each patch: one whose edges have changed is done if one triangle
+// shows it, and else put on a list. In the second a workgroup searches an inside factor for one patch on the list after another; in
+// the third those are searched that ask again. Before the rounds each patch asks: then there is no second pass.
 
-// The counters. The list has the large patches from its start, and the small ones from its end.
+// The counters. The numbers of large and of small patches are those of the patches that ask; after them come those of the patches
+// whose edges have their factors.
 const LARGE_PATCHES: u32 = 0u;
 const SMALL_PATCHES: u32 = 1u;
-const WORKGROUPS_DONE: u32 = 2u;
-const SEARCHES_OVER: u32 = 3u;
+const LIST_COUNTERS: u32 = 2u;
+const WORKGROUPS_DONE: u32 = 4u;
+const SEARCHES_OVER: u32 = 5u;
 
-// Where the `i`-th patch of the list is.
-fn listed_at(i: u32) -> u32 {
-    return counter_at(SEARCH_COUNTERS) + i;
+// The lists: of patches that ask, and of those whose edges have their factors.
+const ASKING: u32 = 0u;
+const GIVEN: u32 = 1u;
+
+// Where the counters of a list are.
+fn list_counter_at(list: u32, counter: u32) -> u32 {
+    return counter_at(LIST_COUNTERS * list + counter);
+}
+
+// Where the `i`-th patch of a list is.
+fn listed_at(list: u32, i: u32) -> u32 {
+    return counter_at(SEARCH_COUNTERS) + list * params.patch_count + i;
+}
+
+// The list of the next search: those of the two kinds take turns.
+fn next_list() -> u32 {
+    return atomicLoad(&edge_factors[counter_at(SEARCHES_OVER)]) % 2u;
 }
 
 // Some software drivers end the loops of an invocation after 65,535 turns, and take microseconds even for workgroups that have
 // nothing to do. So there is one for each patch that is searched, up to as many as can be dispatched, and at least one, which ends the search.
 @compute @workgroup_size(1)
 fn search_workgroups_main() {
-    let large = atomicLoad(&edge_factors[counter_at(LARGE_PATCHES)]);
-    let small = atomicLoad(&edge_factors[counter_at(SMALL_PATCHES)]);
+    let large = atomicLoad(&edge_factors[list_counter_at(next_list(), LARGE_PATCHES)]);
+    let small = atomicLoad(&edge_factors[list_counter_at(next_list(), SMALL_PATCHES)]);
     search_workgroups = array<u32, 3>(clamp(large + small, 1u, MOST_WORKGROUPS), 1u, 1u);
 }
 
 // How large a factor a pattern has that is searched by a whole workgroup.
 const LARGE: f32 = 4.0;
 
-// Puts a patch on the list. These factors will be among its pattern's.
-fn search_later(patch_index: u32, edges: vec3<f32>, inside: f32) {
+// Puts a patch on a list. These factors will be among its pattern's.
+fn search_later(list: u32, patch_index: u32, edges: vec3<f32>, inside: f32) {
     if max(max(max(edges.x, edges.y), edges.z), inside) >= LARGE {
-        let i = atomicAdd(&edge_factors[counter_at(LARGE_PATCHES)], 1u);
-        atomicStore(&edge_factors[listed_at(i)], patch_index);
+        let i = atomicAdd(&edge_factors[list_counter_at(list, LARGE_PATCHES)], 1u);
+        atomicStore(&edge_factors[listed_at(list, i)], patch_index);
     } else {
-        let i = atomicAdd(&edge_factors[counter_at(SMALL_PATCHES)], 1u);
-        atomicStore(&edge_factors[listed_at(params.patch_count - 1u - i)], patch_index);
+        let i = atomicAdd(&edge_factors[list_counter_at(list, SMALL_PATCHES)], 1u);
+        atomicStore(&edge_factors[listed_at(list, params.patch_count - 1u - i)], patch_index);
     }
 }
 
@@ -100,7 +116,7 @@ fn list_patches_main(invocation: Invocation) {
         if inside == 0.0 {
             // In place of the inside factor the search reads the size that was chosen.
             inside = select(chosen_size(known.edges, bitcast<f32>(inside_of(index))), 0.0, is_first);
-            search_later(index, edges, heights);
+            search_later(select(GIVEN, ASKING, is_first), index, edges, heights);
         }
     }
     if is_first && inside > 0.0 {
@@ -121,11 +137,11 @@ var<private> begun: u32;
 
 // Returns the next patch that this invocation's team searches, NO_MORE if there is none: of the large ones, each is for a whole
 // workgroup; then of the small ones, one for each team.
-fn next_patch(workgroups: u32) -> u32 {
+fn next_patch(list: u32, workgroups: u32) -> u32 {
     if lane == 0u {
         searched_counts = vec2<u32>(
-            min(atomicLoad(&edge_factors[counter_at(LARGE_PATCHES)]), params.patch_count),
-            min(atomicLoad(&edge_factors[counter_at(SMALL_PATCHES)]), params.patch_count),
+            min(atomicLoad(&edge_factors[list_counter_at(list, LARGE_PATCHES)]), params.patch_count),
+            min(atomicLoad(&edge_factors[list_counter_at(list, SMALL_PATCHES)]), params.patch_count),
         );
     }
     let counts = workgroupUniformLoad(&searched_counts);
@@ -136,9 +152,9 @@ fn next_patch(workgroups: u32) -> u32 {
     if leads_team() {
         team_patches[team()] = NO_MORE;
         if at < counts.x {
-            team_patches[team()] = atomicLoad(&edge_factors[listed_at(at)]);
+            team_patches[team()] = atomicLoad(&edge_factors[listed_at(list, at)]);
         } else if small < counts.y {
-            team_patches[team()] = atomicLoad(&edge_factors[listed_at(params.patch_count - 1u - small)]);
+            team_patches[team()] = atomicLoad(&edge_factors[listed_at(list, params.patch_count - 1u - small)]);
         }
     }
     workgroupBarrier();
@@ -160,52 +176,43 @@ override ROUNDS: u32 = 0u;
 @compute @workgroup_size(GROUP)
 fn search_patches_main(invocation: Invocation) {
     lane = invocation.local;
-    let round = atomicLoad(&edge_factors[counter_at(SEARCHES_OVER)]);
-    let first_wanted = select(WANTED_GIVEN, WANTED_ASKED, round == 0u);
+    let before = atomicLoad(&edge_factors[counter_at(SEARCHES_OVER)]);
+    let list = next_list();
+    let wanted = select(WANTED_ASKED, WANTED_GIVEN, list == GIVEN);
     begun = invocation.workgroup.x;
-    var next = next_patch(invocation.workgroups.x);
-    var wanted = first_wanted;
-    var found: Chosen;
-    var chosen: f32;
+    var next = next_patch(list, invocation.workgroups.x);
     while any_team(next != NO_MORE) {
         let is_searched = next != NO_MORE;
         let index = select(0u, next, is_searched);
         var seen = load_seen(index);
-        if wanted == first_wanted {
-            let known = known_from(atomicLoad(&edge_factors[known_at(index)]));
-            found = Chosen(known.edges, 0.0, known.inner);
-            chosen = bitcast<f32>(inside_of(index));
-        }
+        let known = known_from(atomicLoad(&edge_factors[known_at(index)]));
         let heights = select(BEYOND_LAST, heights_inside(index), is_searched);
-        let sought = Sought(found.edges, heights, found.inner, wanted);
+        let sought = Sought(known.edges, heights, known.inner, wanted);
+        var found: Chosen;
         if SEARCHES_ROWS == 1u {
             found = fewest_rows(&seen, surface_tolerance(), sought);
         } else {
             found = fewest_triangles(&seen, surface_tolerance(), params.partitioning, sought);
         }
-        let asks_again = is_searched && wanted == WANTED_GIVEN && round < ROUNDS && needs_more(chosen, found);
         if leads_team() && is_searched {
+            let chosen = bitcast<f32>(inside_of(index));
             // What asks again has found an inside factor before.
-            if wanted == first_wanted || found.inside != BEYOND_LAST {
+            if list == GIVEN || before == 0u || found.inside != BEYOND_LAST {
                 set_inside(index, found.inside);
                 set_known(index, found.edges, found.inner);
             }
-            if wanted == WANTED_ASKED {
+            if list == ASKING {
                 ask(index, found.edges);
+            } else if before + 1u < 2u * ROUNDS && needs_more(chosen, found) {
+                search_later(ASKING, index, known.edges, heights);
             }
         }
-        // A team that is done waits for those that ask again.
-        let is_waiting = any_team(asks_again);
-        wanted = select(first_wanted, WANTED_ASKED, asks_again);
-        next = select(NO_MORE, next, asks_again);
-        if !is_waiting {
-            next = next_patch(invocation.workgroups.x);
-        }
+        next = next_patch(list, invocation.workgroups.x);
     }
     // The last workgroup ends the search.
     if lane == 0u && atomicAdd(&edge_factors[counter_at(WORKGROUPS_DONE)], 1u) + 1u == invocation.workgroups.x {
-        atomicStore(&edge_factors[counter_at(LARGE_PATCHES)], 0u);
-        atomicStore(&edge_factors[counter_at(SMALL_PATCHES)], 0u);
+        atomicStore(&edge_factors[list_counter_at(list, LARGE_PATCHES)], 0u);
+        atomicStore(&edge_factors[list_counter_at(list, SMALL_PATCHES)], 0u);
         atomicStore(&edge_factors[counter_at(WORKGROUPS_DONE)], 0u);
         atomicAdd(&edge_factors[counter_at(SEARCHES_OVER)], 1u);
     }

@@ -3,8 +3,8 @@
 
 // The counters: the low word of the number of all triangles, beside which is the high one; and the first of two words with a
 // bit for each factor that isn't taken.
-const TRIANGLES: u32 = 4u;
-const NOT_TAKEN: u32 = 6u;
+const TRIANGLES: u32 = 6u;
+const NOT_TAKEN: u32 = 8u;
 
 // Adds up the triangles of all patches. Each invocation takes several, since the waiting in a workgroup takes longer.
 @compute @workgroup_size(WORKGROUP)

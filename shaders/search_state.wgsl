@@ -5,10 +5,10 @@
 // - the factor that each patch's heights need inside it, if it is displaced;
 // - the inside factors of patches;
 // - what each patch knows (see Known), 0 before it has been looked at;
-// - the counters (SEARCH_COUNTERS in types.wgsl), 0 before a search: the numbers of large and of small patches on the list, of
+// - the counters (SEARCH_COUNTERS in types.wgsl), 0 before a search: the numbers of large and of small patches on two lists, of
 //   workgroups that are done, and of searches that are over; two words with the number of all triangles, and two with a bit for each
 //   factor that isn't taken for all edges;
-// - the list.
+// - the two lists: large patches from the start, small ones from the end.
 // Software drivers take time for what has nothing to do. There `search_workgroups` has the number of workgroups of the next search.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.

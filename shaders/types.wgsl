@@ -36,7 +36,7 @@ const LOD_GIVEN: u32 = 0xffffffffu;
 const MOST_WORKGROUPS: u32 = 65535u;
 
 // How many counters the searches of LOD by error have: see search_state.wgsl.
-const SEARCH_COUNTERS: u32 = 8u;
+const SEARCH_COUNTERS: u32 = 10u;
 
 // The run of patches that one scan covers, and how much fits the arena.
 struct Slab {

@@ -8,7 +8,7 @@ use geometry::mesh::{CurveItems, Curves, Dominance, Mesh, Sharing, Topology};
 use geometry::tessellate::texel_lengths;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
-pub const SEARCH_COUNTERS: u32 = 8;
+pub const SEARCH_COUNTERS: u32 = 10;
 
 /// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {
@@ -66,7 +66,7 @@ impl MeshBuffers {
             all_shares = shares(mesh, dominance, &texel_lengths);
         }
         let factor_count = grouped.factor_count() as usize;
-        let factor_room = 2 * factor_count + 4 * topology.patches.len() + SEARCH_COUNTERS as usize;
+        let factor_room = 2 * factor_count + 5 * topology.patches.len() + SEARCH_COUNTERS as usize;
         Ok(Self {
             points: points(gpu, mesh, topology)?,
             corners: filled_by(gpu, "corners", mesh.corners.len(), |i| corner(&mesh.corners[i]))?,

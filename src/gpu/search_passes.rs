@@ -34,7 +34,9 @@ pub(super) fn search_passes(on: &PassInputs, has_rows: bool) -> Vec<(Pass, Workg
         true => vec![(COUNT_WORKGROUPS, line(1)), (search, Workgroups::Counted(mesh.search_workgroups.clone()))],
         false => vec![(search, line(patches.min(SEARCH_WORKGROUPS)))],
     };
-    let round = [&[(LIST_PATCHES, each_patch)], &search[..]].concat();
+    let list = [(LIST_PATCHES, each_patch)];
+    let first = [&list[..], &search].concat();
+    let round = [&first[..], &search].concat();
     let [adding, searching] = UNIFORM_WORKGROUPS[usize::from(software)];
     let uniform = [
         (SUM_TRIANGLES, line(patches.div_ceil(WORKGROUP).min(adding))),
@@ -42,7 +44,6 @@ pub(super) fn search_passes(on: &PassInputs, has_rows: bool) -> Vec<(Pass, Workg
         (sized(SEARCH_UNIFORM_FACTOR), line(patches.min(searching))),
         (TAKE_UNIFORM_FACTOR, each_edge),
     ];
-    // Before the rounds each patch asks, and after them each finds what is beside one factor for all edges.
-    let rounds = (0..=rounds(has_rows)).flat_map(|_| round.clone());
-    rounds.chain(uniform).chain(round.clone()).collect()
+    let rounds = (0..rounds(has_rows)).flat_map(|_| round.clone());
+    first.iter().cloned().chain(rounds).chain(uniform).chain(first.iter().cloned()).collect()
 }

@@ -75,7 +75,17 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     ),
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
     (
-        &["LARGE_PATCHES", "SMALL_PATCHES", "WORKGROUPS_DONE", "SEARCHES_OVER", "TRIANGLES", "NOT_TAKEN"],
+        &[
+            "LARGE_PATCHES",
+            "LIST_COUNTERS",
+            "ASKING",
+            "GIVEN",
+            "SMALL_PATCHES",
+            "WORKGROUPS_DONE",
+            "SEARCHES_OVER",
+            "TRIANGLES",
+            "NOT_TAKEN",
+        ],
         "counters of passes",
     ),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
