@@ -211,5 +211,5 @@ fn all_triangles_of_the_largest_pattern_are_looked_at() {
         let order: std::collections::HashSet<u32> = (0..turns).map(|turn| turn * SPREAD % turns).collect();
         assert_eq!(order.len(), turns as usize, "{turns} turns");
     }
-    assert!((2..SPREAD).all(|divisor| SPREAD % divisor > 0) && most < SPREAD);
+    assert!((2..SPREAD).all(|divisor| !SPREAD.is_multiple_of(divisor)) && most < SPREAD);
 }
