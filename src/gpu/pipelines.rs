@@ -78,8 +78,8 @@ impl ComputePipelines {
         Self::in_groups([8, 32, 128])
     }
 
-    /// The same with workgroups of these sizes for searches, of which the device and the number of patches choose one: see
-    /// [`Self::search`].
+    /// The same with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for small ones on a
+    /// GPU.
     pub fn in_groups(groups: [u32; 3]) -> Self {
         Self {
             groups,
