@@ -17,7 +17,6 @@ use gpu::recorder::{DRAWING, PassTime, Timing, take_times};
 use inspect::engine::Engine;
 use inspect::render::camera::Camera;
 use inspect::render::target::Target;
-
 use inspect::settings::{ARENA_BYTES, Choice, Settings};
 use load::files::Limits;
 use load::source::Source;

@@ -156,8 +156,8 @@ impl App {
             let hover = "Patches that are left out because the LOD camera sees only their backs.";
             fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
             let limit = found.map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
-            let hover = "Patches with a factor at the tessellator's maximum: 127 under rows, else 63 or 64. They may need more segments, so LOD by \
-                         error may miss its tolerance there.";
+            let hover = "Patches with a factor at the tessellator's maximum: 127 under rows, else 63 or 64. They may need more \
+                         segments, so LOD by error may miss its tolerance there.";
             fact(ui, "At maximum factor", &limit, hover);
         });
     }

@@ -224,8 +224,8 @@ impl App {
     }
 
     fn limit_line(&self, color: Color32) -> Line {
-        let hover = "Patches with the largest factor that there is: 127 under rows, else 63 or 64. LOD by error may miss its tolerance there. A click \
-                     colours the surface by factors.";
+        let hover = "Patches with the largest factor that there is: 127 under rows, else 63 or 64. LOD by error may miss its \
+                     tolerance there. A click colours the surface by factors.";
         match self.results().map(|results| results.found.patches_at_limit) {
             None => self.unknown("Patches at the maximum factor", hover, Destination::Factors),
             Some(0) => Line::dim("No patch at the maximum factor", hover, Destination::Factors),
