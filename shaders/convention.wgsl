@@ -2,12 +2,6 @@
 // barycentric weight belongs to. Twin: src/geometry/tessellate/convention.rs. Side k of a patch runs from corner k to corner k +
 // 1.
 
-const CONVENTION_D3D11: u32 = 0u;
-const CONVENTION_AMD_PN: u32 = 1u;
-const CONVENTION_EDGE_ORDER: u32 = 2u;
-const CONVENTION_ROTATED: u32 = 3u;
-const CONVENTION_MIRRORED: u32 = 4u;
-
 // Returns the side (0 to 2) whose factor the hull shader writes as factor `i` (0 to 2).
 fn factor_side(convention: u32, i: u32) -> u32 {
     if convention == CONVENTION_D3D11 {

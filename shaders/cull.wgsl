@@ -1,9 +1,5 @@
 // Culling and clipping of whole patches. Twin: src/geometry/tessellate/cull.rs.
 
-const CLIP_OFF: u32 = 0u;
-const CLIP_PAPER: u32 = 1u;
-const CLIP_FRUSTUM: u32 = 2u;
-
 // Returns whether a clip-space position lies outside the white paper's view volume, -w <= x, y, z <= w (`IsClipped` of
 // McDonald and Kilgard 2010).
 fn is_clipped(clip: vec4<f32>) -> bool {

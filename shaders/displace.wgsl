@@ -2,11 +2,6 @@
 // module that has it also has height_list.wgsl or stage_heights.wgsl, which read single px. Twin:
 // src/geometry/tessellate/displace.rs.
 
-const DISPLACEMENT_OFF: u32 = 0u;
-const DISPLACEMENT_ON: u32 = 1u;
-const DISPLACEMENT_AS_PUBLISHED: u32 = 2u;
-const DISPLACEMENT_PER_PATCH: u32 = 3u;
-
 // Returns the fractional part of a texture coordinate, which repeats the image.
 fn wrapped(x: f32) -> f32 {
     return x - floor(x);

@@ -46,18 +46,6 @@ override LIGHT_COUNT: u32 = MOST_LIGHTS;
 @group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
 // The order of Material.maps.
-const SLOT_METALLIC_ROUGHNESS: u32 = 0u;
-const SLOT_NORMAL: u32 = 1u;
-const SLOT_OCCLUSION: u32 = 2u;
-const SLOT_EMISSIVE: u32 = 3u;
-const SLOT_TRANSMISSION: u32 = 4u;
-const SLOT_SHEEN_COLOR: u32 = 5u;
-const SLOT_SHEEN_ROUGHNESS: u32 = 6u;
-const SLOT_COAT: u32 = 7u;
-const SLOT_COAT_ROUGHNESS: u32 = 8u;
-const SLOT_COAT_NORMAL: u32 = 9u;
-const SLOT_SPECULAR: u32 = 10u;
-const SLOT_SPECULAR_COLOR: u32 = 11u;
 
 // Shorter tangents, squared, say nothing about a direction.
 const LEAST_TANGENT: f32 = 1e-12;
@@ -239,15 +227,15 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: ve
     if HAS_COAT {
         look.coat = material.coat;
         look.coat_roughness = material.coat_roughness;
-        if has_map(SLOT_COAT) {
-            look.coat *= map_texel(coat_texture, coat_sampler, map_place(place, detail, SLOT_COAT)).r;
+        if has_map(SLOT_CLEARCOAT) {
+            look.coat *= map_texel(coat_texture, coat_sampler, map_place(place, detail, SLOT_CLEARCOAT)).r;
         }
-        if has_map(SLOT_COAT_ROUGHNESS) {
-            let at = map_place(place, detail, SLOT_COAT_ROUGHNESS);
+        if has_map(SLOT_CLEARCOAT_ROUGHNESS) {
+            let at = map_place(place, detail, SLOT_CLEARCOAT_ROUGHNESS);
             look.coat_roughness *= map_texel(coat_roughness_texture, coat_roughness_sampler, at).g;
         }
-        if has_map(SLOT_COAT_NORMAL) && HAS_DETAILS && !IS_DRAFT {
-            let at = map_place(place, detail, SLOT_COAT_NORMAL);
+        if has_map(SLOT_CLEARCOAT_NORMAL) && HAS_DETAILS && !IS_DRAFT {
+            let at = map_place(place, detail, SLOT_CLEARCOAT_NORMAL);
             let direction = map_direction(texel(coat_normal_texture, coat_normal_sampler, at).rgb, material.coat_normal_scale);
             coat_normal = mapped_normal(coat_normal, detail.tangent, detail.bitangent_sign, direction);
         }

@@ -10,11 +10,6 @@ const BOUNDARY_EDGE_COLOR: vec3<f32> = vec3<f32>(0.093, 0.456, 0.815);
 const NON_MANIFOLD_EDGE_COLOR: vec3<f32> = vec3<f32>(0.604, 0.191, 0.386);
 
 // Kinds of edges, as a patch's factors have them.
-const EDGE_SMOOTH: u32 = 0u;
-const EDGE_SPLIT: u32 = 1u;
-const EDGE_SEAM: u32 = 2u;
-const EDGE_BOUNDARY: u32 = 3u;
-const EDGE_NON_MANIFOLD: u32 = 4u;
 
 fn edge_color(kind: u32) -> vec3<f32> {
     var color = SMOOTH_EDGE_COLOR;

@@ -4,13 +4,6 @@
 // Everything here is integer arithmetic. WGSL lets a compiler assume that no f32 is NaN or infinite, and flush
 // denormals, so comparisons of f32 numbers couldn't tell a culled patch from one that is drawn.
 
-const PARTITIONING_INTEGER: u32 = 0u;
-const PARTITIONING_POW2: u32 = 1u;
-const PARTITIONING_FRACTIONAL_ODD: u32 = 2u;
-const PARTITIONING_FRACTIONAL_EVEN: u32 = 3u;
-const PARTITIONING_SUBTRIANGULATION: u32 = 4u;
-const PARTITIONING_ROWS: u32 = 5u;
-
 const FIXED_ONE: u32 = 0x10000u;
 const FIXED_HALF: u32 = 0x8000u;
 const FACTOR_ODD: u32 = 0x80000000u;

@@ -1,12 +1,6 @@
 // Level of detail: the tessellation factor of an edge, by its length on screen or its distance from the eye. Twin:
 // src/geometry/tessellate/lod.rs. LOD by error is in least_factors.wgsl.
 
-const LOD_UNIFORM: u32 = 0u;
-const LOD_PAPER: u32 = 1u;
-const LOD_EDGE_LENGTH: u32 = 2u;
-const LOD_ERROR: u32 = 3u;
-const LOD_DISTANCE: u32 = 4u;
-
 struct LodView {
     clip_from_object: mat4x4<f32>,
     half_viewport: vec2<f32>,

@@ -1,9 +1,5 @@
 // Shading normals of emitted vertices. Weights are 16.16 fixed point. Twin: src/geometry/tessellate/normal.rs.
 
-const NORMALS_LINEAR: u32 = 0u;
-const NORMALS_QUADRATIC: u32 = 1u;
-const NORMALS_SURFACE: u32 = 2u;
-
 // Weighted sums of unit normals that are shorter than this are rounding errors: the normals cancel.
 const CANCELLED: f32 = 1e-6;
 

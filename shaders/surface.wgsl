@@ -5,15 +5,6 @@
 
 const UNIT: f32 = 1.0 / 65536.0;
 
-const SURFACE_FLAT: u32 = 0u;
-const SURFACE_PN: u32 = 1u;
-const SURFACE_PN_AEN: u32 = 2u;
-const SURFACE_PN_CREASE: u32 = 3u;
-const SURFACE_PHONG: u32 = 4u;
-const SURFACE_PHONG_AEN: u32 = 5u;
-const SURFACE_NAGATA: u32 = 6u;
-const SURFACE_NAGATA_AEN: u32 = 7u;
-
 // Returns the point at `t` (16.16 fixed point) on the edge from `a` to `b` with control points `ab` (near a) and `ba`
 // (near b), in object units. The arguments must be in the edge's own direction: then all sides do the same arithmetic
 // on the same bits, and get the same point.

@@ -184,8 +184,6 @@ struct DrawArgs {
 }
 
 // Whether what patches share at an edge is computed once for the edge, or by every patch on its own.
-const EDGES_PER_EDGE: u32 = 0u;
-const EDGES_AS_PUBLISHED: u32 = 1u;
 
 // A key: u and v take 17 bits each, the patch the other 30.
 fn pack_key(patch_index: u32, u: u32, v: u32) -> vec2<u32> {

@@ -76,7 +76,7 @@ const NOT_EQUAL: &str = "subtriangulation cuts all edges into the same number of
 
 /// Whether a partitioning takes a set: subtriangulation needs four equal factors.
 fn is_taken(partitioning: Partitioning, [e0, e1, e2, inside]: FactorSet) -> bool {
-    partitioning != Partitioning::Subtriangulation || HullFactors { edges: [e0, e1, e2], inside }.is_uniform()
+    !partitioning.has_one_factor() || HullFactors { edges: [e0, e1, e2], inside }.is_uniform()
 }
 
 fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &FactorSet) -> DomainPattern {

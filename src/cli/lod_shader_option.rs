@@ -24,7 +24,7 @@ impl LodShaderOption {
     pub fn read(&self, tessellation: &Tessellation) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
         refuse(
-            tessellation.partitioning == Partitioning::Subtriangulation,
+            tessellation.partitioning.has_one_factor(),
             "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
         )?;
         Ok(Some(Given::Shader(read_own_shader(path)?)))

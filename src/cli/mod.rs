@@ -22,6 +22,8 @@ mod material_report;
 mod mesh_report;
 mod options;
 mod output_guard;
+#[cfg(test)]
+mod page;
 mod posed;
 mod reference;
 mod render;

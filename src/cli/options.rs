@@ -75,7 +75,7 @@ impl SurfaceOptions {
         let settings = self.settings();
         let own = settings.tessellation;
         refuse(
-            own.partitioning == Partitioning::Subtriangulation && own.lod != Lod::Uniform,
+            own.partitioning.has_one_factor() && own.lod.follows_view(),
             "--partitioning subtriangulation has the same number of segments everywhere: it needs --lod uniform",
         )?;
         refuse(
@@ -83,7 +83,7 @@ impl SurfaceOptions {
             "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
         )?;
         let usual = Tessellation::default();
-        let takes_heights = self.height.is_some() || own.displacement != Displacement::Off;
+        let takes_heights = self.height.is_some() || own.displacement.is_on();
         refuse(
             !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel),
             "--height-scale and --midlevel need --height, or --displacement",
@@ -94,23 +94,22 @@ impl SurfaceOptions {
             "--alpha needs --surface phong or phong-aen, whose strength it is",
         )?;
         refuse(
-            self.max_triangles.is_some() && own.lod != Lod::Error,
+            self.max_triangles.is_some() && !own.lod.is_by_error(),
             "--max-triangles needs --lod error, whose tolerance it raises",
         )
     }
 
     /// What is done to the mesh after it was read. Displacement without an image uses the materials' images.
     pub fn preparation(&self) -> Preparation {
-        let wanted = (self.tessellation().displacement != Displacement::Off).then_some(HeightSource::Materials);
+        let wanted = (self.tessellation().displacement.is_on()).then_some(HeightSource::Materials);
         Preparation { heights: self.height.clone().or(wanted), ..self.weld.preparation() }
     }
 
     /// How the mesh is tessellated.
     pub fn tessellation(&self) -> Tessellation {
         let GivenTessellation { tessellation, displacement } = self.tessellation.0;
-        let usual = if self.height.is_some() { Displacement::On } else { Displacement::Off };
         Tessellation {
-            displacement: displacement.unwrap_or(usual),
+            displacement: displacement.unwrap_or(Displacement::usual(self.height.is_some())),
             // A pose may turn a part inside out, and its back is then seen.
             cull_back_faces: tessellation.cull_back_faces && self.animation.animation.is_none(),
             ..tessellation

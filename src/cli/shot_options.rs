@@ -13,7 +13,7 @@ use gpu::Given;
 use inspect::engine::{Engine, Loaded};
 use inspect::render::Camera;
 use inspect::render::environment::Environment;
-use inspect::settings::{Colors, Lighting};
+use inspect::settings::{ColorSource, Lighting};
 use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
@@ -66,7 +66,7 @@ impl ShotOptions {
         self.surface.check(self.picture.0.split_surface)?;
         self.own_lod.check_alone(&self.given)?;
         refuse(
-            self.matcap_image.is_some() && self.picture.0.overlays.colors != Colors::Matcap,
+            self.matcap_image.is_some() && self.picture.0.overlays.colors.source() != ColorSource::LitSphere,
             "--matcap-image needs --overlay matcap, which shows it",
         )?;
         let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
@@ -104,7 +104,7 @@ impl ShotOptions {
         let surface_shader = self.own_surface.read()?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
-        let is_shown = self.picture.0.overlays.colors == Colors::Deviation;
+        let is_shown = self.picture.0.overlays.colors.source() == ColorSource::ReferenceSurface;
         let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;
         if matches!(reference_surface, Some(ReferenceSurface::Limit)) {
             self.own_surface.check_deviation()?;

@@ -56,8 +56,8 @@ pub struct Args {
 
 /// Parses a method's name.
 fn method() -> impl TypedValueParser<Value = Method> {
-    let find = |name: &str| Method::ALL.into_iter().find(|method| method.option() == name);
-    named(Method::ALL.map(|method| PossibleValue::new(method.option())), find)
+    let find = |name: &str| Method::all().into_iter().find(|method| method.option() == name);
+    named(Method::all().into_iter().map(|method| PossibleValue::new(method.option())), find)
 }
 
 /// What runs, and the warnings of loading it.

@@ -33,7 +33,7 @@ impl Change {
                 }
             }
             Self::CullBackFaces => settings.tessellation.cull_back_faces = !settings.tessellation.cull_back_faces,
-            Self::MaterialColors => settings.overlays.colors = Colors::Material,
+            Self::MaterialColors => settings.overlays.colors = Colors::default(),
             Self::Overlay(overlay) => settings.overlays.toggle(overlay),
             Self::Option(name, value) => {
                 if let Some(option) = options::all().find(|option| option.name == name) {

@@ -10,7 +10,7 @@ use super::{
 };
 use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
-use inspect::settings::{Choice, Colors, Control, Declaration, Overlay, Overlays, options};
+use inspect::settings::{Choice, ColorSource, Colors, Control, Declaration, Overlay, Overlays, options};
 
 /// The greatest number of clips that are listed.
 const CLIPS: usize = 1000;
@@ -94,13 +94,13 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
 /// Commands for colours and overlays. Each but the one for the material's colours is a switch: given again, it switches
 /// off.
 fn colors_and_overlays() -> Vec<Command> {
-    let (material, colors) = (Colors::Material, "Colours");
+    let (material, colors) = (Colors::default(), "Colours");
     let own = format!("{colors}: {}", material.label());
     let mut all = vec![Command::new(Change::MaterialColors, own).text(material.text())];
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
         let (name, needs_coordinates) = match overlays.control(overlay) {
-            Control::Colors(_, given) => (format!("{colors}: {}", given.label()), given.are_of_texture_coordinates()),
+            Control::Colors(_, given) => (format!("{colors}: {}", given.label()), given.source() == ColorSource::TextureCoordinates),
             Control::Switch(_) => (format!("Overlay: {}", overlay.label()), false),
         };
         let needs: &[Need] = if needs_coordinates { &[Need::TextureCoordinates] } else { &[] };

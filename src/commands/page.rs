@@ -1,43 +1,46 @@
 //! The manual's page of keys and commands, `docs/manual/keys.md`. `PNAEN_UPDATE_PAGES=1` writes it again.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::{Availability, Command, GESTURES, Place, all, key_names};
 use load::markdown::{plain, table};
 
-/// The page: what the pointer does, the commands with keys, and those without.
+/// The page: what the pointer does, the commands with keys, and the names of those without.
 fn page() -> String {
     let gestures = GESTURES.map(|(gesture, text)| vec![gesture.to_owned(), text.to_owned()]);
     let (with_keys, without): (Vec<_>, Vec<_>) =
         all(&Availability::default()).into_iter().partition(|command| !command.keys.is_empty());
+    let keyed = |command: &Command| vec![plain(&key_names(&command.keys)), plain(&command.name), menu(command).to_owned()];
+    let mut by_menu: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for command in &without {
+        by_menu.entry(menu(command)).or_default().push(plain(&command.name));
+    }
+    let listed = by_menu.into_iter().map(|(menu, names)| {
+        let place = if menu.is_empty() { "found by name alone" } else { menu };
+        format!("- **{place}**: {}\n", names.join("; "))
+    });
     format!(
         "# Keys and commands\n\n\
-         Ctrl is Cmd on macOS. The window lists the keys under Help > Keys, and finds every command by its name with Ctrl+P.\n\n\
+         Look up here which key does what. Ctrl is Cmd on macOS. In the window, Help > Keys lists the keys, and Ctrl+P finds \
+         every command by its name and says what it does.\n\n\
          ## In the picture\n\n{}\n\
          ## Keys\n\n{}\n\
          ## Commands without a key\n\n\
-         Besides these, recent files and the mesh's animation clips are found by their names.\n\n{}",
+         By menu. Ctrl+P also finds recent files and the mesh's animation clips by their names.\n\n{}",
         table(&["pointer", "what it does"], &[0, 1], &gestures),
-        table(
-            &["key", "command", "menu", "what it does"],
-            &[0, 1, 2, 3],
-            &with_keys.iter().map(keyed).collect::<Vec<_>>()
-        ),
-        table(&["command", "menu", "what it does"], &[0, 1, 2], &without.iter().map(row).collect::<Vec<_>>()),
+        table(&["key", "command", "menu"], &[0, 1, 2], &with_keys.iter().map(keyed).collect::<Vec<_>>()),
+        listed.collect::<String>(),
     )
 }
 
-fn keyed(command: &Command) -> Vec<String> {
-    [vec![plain(&key_names(&command.keys))], row(command)].concat()
-}
-
-fn row(command: &Command) -> Vec<String> {
-    let menu = match command.place {
-        Some(Place::Menu(menu, _)) => menu.name().to_owned(),
-        Some(Place::Submenu(submenu)) => submenu.name().to_owned(),
-        None => String::new(),
-    };
-    vec![plain(&command.name), menu, plain(&command.text)]
+/// The menu that a command is in; empty if it is in none.
+fn menu(command: &Command) -> &'static str {
+    match command.place {
+        Some(Place::Menu(menu, _)) => menu.name(),
+        Some(Place::Submenu(submenu)) => submenu.name(),
+        None => "",
+    }
 }
 
 #[test]

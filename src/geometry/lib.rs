@@ -1,6 +1,7 @@
 //! Meshes, and their tessellation on the CPU: the reference that the passes of the GPU follow.
 
 pub mod casts;
+pub mod choice;
 pub mod cores;
 pub mod mesh;
 pub mod names;

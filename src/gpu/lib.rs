@@ -32,6 +32,7 @@ pub mod recorder;
 pub mod relief_buffers;
 mod rig;
 mod search_passes;
+pub mod shader_constants;
 mod slab;
 mod tessellator;
 pub mod wgsl;

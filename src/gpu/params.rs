@@ -4,7 +4,7 @@ use super::MeshBuffers;
 use super::layout::{LOD_GIVEN, LodView, Params};
 use super::own_lod::Given;
 use geometry::mesh::Mesh;
-use geometry::tessellate::{self, Clip, Inputs, Lod};
+use geometry::tessellate::{self, Clip, Inputs, Lod, LodReads};
 
 /// The parameters for these inputs. A parameter that has no effect under them is 0, so that a change of it recomputes nothing.
 /// `given` is what takes the place of LOD. `culls_back`: patches that face away are left out.
@@ -16,11 +16,9 @@ pub(super) fn params_of(
     culls_back: bool,
 ) -> Params {
     let lod = if given.is_some() { None } else { Some(inputs.tessellation.lod) };
-    let (adaptive, by_error) = (lod.is_some_and(|lod| lod != Lod::Uniform), lod == Some(Lod::Error));
-    let by_distance = lod == Some(Lod::Distance);
-    let by_length = matches!(lod, Some(Lod::Paper | Lod::EdgeLength));
+    let reads = lod.map_or_else(LodReads::default, Lod::reads);
     let by_shader = matches!(given, Some(Given::Shader(_)));
-    let looks = adaptive || by_shader || inputs.tessellation.clip != Clip::Off || culls_back;
+    let looks = reads.view || by_shader || inputs.tessellation.clip != Clip::Off || culls_back;
     let view = LodView {
         clip_from_object: inputs.view.clip_from_object.to_cols_array_2d(),
         half_viewport: inputs.view.half_viewport.to_array(),
@@ -32,8 +30,8 @@ pub(super) fn params_of(
     let heights = tessellate::displacing_heights(mesh, inputs);
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
-        factor: if by_distance || lod == Some(Lod::Uniform) { inputs.tessellation.factor } else { 0.0 },
-        pixels_per_segment: if by_length { inputs.tessellation.pixels } else { 0.0 },
+        factor: if reads.factor { inputs.tessellation.factor } else { 0.0 },
+        pixels_per_segment: if reads.pixels { inputs.tessellation.pixels } else { 0.0 },
         surface: inputs.tessellation.surface as u32,
         partitioning: inputs.tessellation.partitioning as u32,
         lod: lod.map_or(LOD_GIVEN, |lod| lod as u32),
@@ -43,9 +41,9 @@ pub(super) fn params_of(
         factor_count: buffers.factor_count,
         curve_count: buffers.curve_count,
         edges: inputs.tessellation.edges as u32,
-        tolerance: if by_error { inputs.tessellation.tolerance } else { 0.0 },
-        near: if by_distance { inputs.tessellation.near } else { 0.0 },
-        far: if by_distance { inputs.tessellation.far } else { 0.0 },
+        tolerance: if reads.tolerance { inputs.tessellation.tolerance } else { 0.0 },
+        near: if reads.distances { inputs.tessellation.near } else { 0.0 },
+        far: if reads.distances { inputs.tessellation.far } else { 0.0 },
         culls_back: u32::from(culls_back),
         convention: inputs.tessellation.convention as u32,
         alpha: if inputs.tessellation.surface.is_phong() { inputs.tessellation.alpha } else { 0.0 },

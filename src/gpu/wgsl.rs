@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::sync::LazyLock;
 
+use super::shader_constants::enum_constants;
 use super::wgsl_tokens::{Token, declared, tokens};
 
 /// A shader module: the name of the file with its entry points, without `.wgsl`.
@@ -22,8 +23,14 @@ struct WgslFile {
     with: BTreeSet<&'static str>,
 }
 
+/// The text of every file, after the numbers of the enums that belong to it.
+static TEXTS: LazyLock<BTreeMap<&'static str, String>> = LazyLock::new(|| {
+    let whole = |&(name, text): &(&'static str, &str)| (name, enum_constants(name) + text);
+    shaders::TEXTS.iter().map(whole).collect()
+});
+
 static FILES: LazyLock<HashMap<&'static str, WgslFile>> = LazyLock::new(|| {
-    let texts: Vec<_> = shaders::TEXTS.iter().map(|&(name, text)| (name, text, tokens(text))).collect();
+    let texts: Vec<_> = TEXTS.iter().map(|(name, text)| (*name, text.as_str(), tokens(text))).collect();
     let mut declaring: HashMap<&str, Vec<(&str, bool)>> = HashMap::new();
     // No file needs a pass.
     for (name, _, all) in texts.iter().filter(|(name, ..)| !name.starts_with("pass_")) {
@@ -81,5 +88,5 @@ impl WgslModule {
 
 /// One text of these files.
 pub fn joined(files: &[&str]) -> String {
-    files.iter().map(|name| shaders::text(name)).collect::<Vec<_>>().join("\n")
+    files.iter().map(|name| TEXTS[name].as_str()).collect::<Vec<_>>().join("\n")
 }

@@ -19,16 +19,6 @@ choices! {
     }
 }
 
-choices! { Layout:
-    Six => "6", "6",
-        "What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0.";
-    Nine => "9", "9", "The triangle's corners 0, 1, 2, then the six.";
-    Twelve => "12", "12", "The nine, then the dominant corners on the points of corners 0, 1, 2.";
-    Eighteen => "18", "18",
-        "The twelve, then the corners of the dominant sides of the edges 0-1, 1-2, 2-0: what exported shaders need \
-         to displace.";
-}
-
 impl Format {
     /// Returns the format that is written into a file of this name: bare indices for .bin, otherwise JSON.
     pub fn of_name(path: &Path) -> Self {

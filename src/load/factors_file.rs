@@ -67,7 +67,7 @@ fn columns(has_rows: bool) -> &'static [&'static str] {
 /// Returns a CSV file with the factors that were written for each patch, under the index of its triangle. Degenerate
 /// triangles have no patch and no line. Numbers are written so that they read back exactly.
 pub fn to_csv(topology: &Topology, written: &[HullFactors], partitioning: Partitioning) -> String {
-    let has_rows = partitioning == Partitioning::Rows;
+    let has_rows = partitioning.has_rows();
     let mut text = columns(has_rows).join(",") + "\n";
     for (patch, HullFactors { edges: [e0, e1, e2], inside }) in topology.patches.iter().zip(written) {
         text += &format!("{},{e0},{e1},{e2},", patch.triangle);
@@ -96,7 +96,7 @@ pub fn from_csv(
     let fault = |byte: usize, fault| FactorsError { line: line_at(text.as_bytes(), byte), fault };
     let columns = match reader.headers() {
         Ok(header) if header == columns(false) => columns(false),
-        Ok(header) if header == columns(true) && partitioning == Partitioning::Rows => columns(true),
+        Ok(header) if header == columns(true) && partitioning.has_rows() => columns(true),
         Ok(header) if header == columns(true) => return Err(fault(byte(header.position()), LineFault::RowHeader)),
         Ok(header) => return Err(fault(byte(header.position()), LineFault::Header)),
         Err(error) => return Err(fault(byte(error.position()), LineFault::Unreadable(error.to_string()))),

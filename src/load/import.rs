@@ -1,27 +1,33 @@
 //! How the geometry of a file is taken: whose normals, which axis points up, and how long its unit is.
 
+use geometry::choice::choices;
 use geometry::mesh::normals::CREASE_ANGLE;
 use geometry::mesh::orientation::reorient;
 use geometry::mesh::{Mesh, UpAxis};
 
-/// Whose normals the corners of a mesh have.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum NormalSource {
-    /// Those of the file. Corners without one get one that is made.
-    #[default]
-    File,
-    /// All are made.
-    Made,
+choices! {
+    /// Whose normals the corners of a mesh have.
+    #[derive(Default, Hash)]
+    pub enum NormalSource {
+        #[default]
+        File => "file", "Of the file",
+            "Corners have the normals of the file. Where it has none, or one without a direction, they are made.";
+        Made => "made", "Made anew",
+            "All normals are made from the triangles around each point, weighted by angle, as if the file had none. Its \
+             smoothing groups and tangents aren't used then.";
+    }
 }
 
-/// A unit of length with a name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum LengthUnit {
-    Millimetre,
-    Centimetre,
-    Metre,
-    Inch,
-    Foot,
+choices! {
+    /// A unit of length with a name.
+    #[derive(Hash)]
+    pub enum LengthUnit {
+        Millimetre => "mm", "Millimetre", "Coordinates are in millimetres.";
+        Centimetre => "cm", "Centimetre", "Coordinates are in centimetres.";
+        Metre => "m", "Metre", "Coordinates are in metres.";
+        Inch => "in", "Inch", "Coordinates are in inches of 2.54 cm.";
+        Foot => "ft", "Foot", "Coordinates are in feet of 30.48 cm.";
+    }
 }
 
 impl LengthUnit {

@@ -7,7 +7,7 @@ use crate::app::dialogs::Forgetting;
 use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
-use inspect::settings::{Colors, Declaration, Settings, options};
+use inspect::settings::{ColorSource, Declaration, Settings, options};
 use load::{HeightSource, Import, Source};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
@@ -50,7 +50,7 @@ impl App {
             (Need::Culling, self.can_cull_back_faces()),
             (Need::Split, self.settings.split.is_some()),
             (Need::Frozen, self.viewport.frozen.is_some()),
-            (Need::Deviation, self.settings.overlays.colors == Colors::Deviation),
+            (Need::Deviation, self.settings.overlays.colors.source() == ColorSource::ReferenceSurface),
             (Need::MeasurableChart, self.can_measure_chart()),
             (Need::Chart, !self.chart_rows().is_empty()),
             (Need::Clips, !clips.is_empty()),

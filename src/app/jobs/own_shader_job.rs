@@ -83,7 +83,7 @@ impl Replacing for SurfaceShader {
 
     const WORK: Work = Work::SurfaceShader;
 
-    const MEANWHILE: Surface = Surface::Pn;
+    const MEANWHILE: Surface = Surface::OF_USER_SHADER;
 
     fn setting(tessellation: &mut Tessellation) -> &mut Surface {
         &mut tessellation.surface
@@ -311,7 +311,7 @@ impl App {
     /// Whether the functions give the factors that are shown. Under subtriangulation, which has the same number of segments everywhere,
     /// they give none.
     pub(in crate::app) fn uses_lod_shader(&self) -> bool {
-        self.lod_shader_file().is_some() && self.settings.tessellation.partitioning != Partitioning::Subtriangulation
+        self.lod_shader_file().is_some() && !self.settings.tessellation.partitioning.has_one_factor()
     }
 
     /// Whether a function gives the control points that are shown, but for those left of a split.

@@ -8,7 +8,7 @@ use geometry::progress::Progress;
 use gpu::{Gpu, GpuError};
 use inspect::engine::Engine;
 use inspect::render::Scene;
-use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings, SplitSide};
+use inspect::settings::{ARENA_BYTES, ColorSource, Overlays, Settings, SplitSide};
 use inspect::shot::files::write_factors;
 use inspect::shot::{ReferenceSurface, Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
 
@@ -168,7 +168,7 @@ impl App {
 
     /// What commands compare with: the chosen mesh; and while the overlay is on, an exact or the limit surface.
     fn reference_surface(&self, settings: &Settings) -> Option<ReferenceSurface> {
-        let is_shown = settings.overlays.colors == Colors::Deviation;
+        let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
         let chosen = self.truth.as_ref().map(|chosen| chosen.source.to_string());
         let exact = self.source().filter(|_| is_shown).map(ToString::to_string);
         match self.yardstick().1 {

@@ -14,7 +14,7 @@ use inspect::engine::silhouette::beside;
 use inspect::engine::{Engine, SilhouetteDrawing, SilhouetteView};
 use inspect::measure::{SampleGrid, Silhouette};
 use inspect::render::{Scene, lay_over, outlines_picture};
-use inspect::settings::Colors;
+use inspect::settings::ColorSource;
 
 /// The comparison of outlines, and its last result.
 #[derive(Default)]
@@ -135,7 +135,7 @@ fn uploaded(context: &egui::Context, (silhouette, picture): (Silhouette, RgbaIma
 
 impl App {
     fn shows_silhouette(&self) -> bool {
-        self.settings.overlays.colors == Colors::Silhouette
+        self.settings.overlays.colors.source() == ColorSource::Outlines
     }
 
     /// Goes on comparing outlines, once all else that is shown was measured. Without the overlay nothing of it is kept.

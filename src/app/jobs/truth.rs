@@ -66,7 +66,7 @@ impl App {
         if let Some(chosen) = &self.truth {
             return (chosen.generation, Some(chosen.truth.clone()), chosen.source.title());
         }
-        let is_plain = self.settings.tessellation.displacement == Displacement::Off;
+        let is_plain = !self.settings.tessellation.displacement.is_on();
         match (&document.exact, document.loaded.source.shape()) {
             (Some(exact), Some(shape)) if is_plain => {
                 (1, Some(exact.clone()), format!("exact {}", shape.title().to_lowercase()))

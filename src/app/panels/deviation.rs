@@ -15,7 +15,7 @@ use inspect::gates::Spot;
 use inspect::measure::{DeviationTarget, MOST_TRIANGLES};
 use inspect::render::layout::WORST_COLOR;
 use inspect::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviation_scale, worst_lines};
-use inspect::settings::{Choice, Colors, DeviationUnit, SplitSide, options};
+use inspect::settings::{Choice, ColorSource, DeviationUnit, SplitSide, options};
 
 impl App {
     fn deviating(&self, half: SplitSide) -> Option<&DeviationJob> {
@@ -38,7 +38,7 @@ impl App {
     }
 
     fn shows_deviation(&self) -> bool {
-        self.settings.overlays.colors == Colors::Deviation
+        self.settings.overlays.colors.source() == ColorSource::ReferenceSurface
     }
 
     /// Counts changes of the deviation that the picture shows; 0 without the overlay.

@@ -37,9 +37,8 @@ impl App {
     /// Adapts displacement to a mesh that was just loaded: on if it is the first with heights, off without heights.
     pub(in crate::app) fn take_heights(&mut self, before: Option<&HeightSource>) {
         self.settings.tessellation.displacement = match (self.has_heights(), before) {
-            (true, None) => Displacement::On,
             (true, Some(_)) => return,
-            (false, _) => Displacement::Off,
+            (has_heights, _) => Displacement::usual(has_heights),
         };
     }
 
@@ -87,10 +86,10 @@ impl App {
             return;
         }
         let last = std::mem::replace(&mut self.panels.last_displacement, self.settings.tessellation.displacement);
-        self.settings.tessellation.displacement = match self.settings.tessellation.displacement {
-            Displacement::Off if last == Displacement::Off => Displacement::On,
-            Displacement::Off => last,
-            _ => Displacement::Off,
+        let displacement = &mut self.settings.tessellation.displacement;
+        *displacement = match (displacement.is_on(), last.is_on()) {
+            (false, true) => last,
+            (is_on, _) => Displacement::usual(!is_on),
         };
     }
 

@@ -58,7 +58,7 @@ impl Default for Panels {
             side: Side::default(),
             dragged_crease_band: None,
             patch_height: 0.0,
-            last_displacement: Displacement::Off,
+            last_displacement: Displacement::usual(false),
         }
     }
 }

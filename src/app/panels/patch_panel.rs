@@ -83,7 +83,7 @@ impl App {
                     ui.spacing_mut().interact_size.y = 16.0;
                     shown.factor_rows(ui);
                     let explained = question.as_ref().and_then(|(question, _)| self.explained(question));
-                    let by_error = shown.lod == Lod::Error;
+                    let by_error = shown.lod.is_by_error();
                     if is_of_shader {
                         ui.add(egui::Label::new(NOT_EXPLAINED).wrap());
                     } else {
@@ -175,9 +175,9 @@ impl SelectedPatch<'_> {
             let text = format!("{:<4}{:<4}{numbers}", format!("[{i}]"), ends_text(side));
             factor_row(ui, Some(FACTOR_COLORS[i as usize]), &text, false).on_hover_text(format!("TessFactor[{i}]"));
         }
-        let asked = match self.lod {
+        let asked = match self.lod.is_by_error() {
             // LOD by error asks for a whole number and doesn't keep it, so the used factor is shown.
-            Lod::Error => self.factors.map(|factors| used(factors.inside) as f32),
+            true => self.factors.map(|factors| used(factors.inside) as f32),
             _ if self.factors.is_some_and(patch_has_rows) => self.factors.and_then(|f| self.asked(row_base(f))),
             _ => (0..3).map(|i| self.asked(i)).reduce(|a, b| Some(a?.max(b?))).flatten(),
         };

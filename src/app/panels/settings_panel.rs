@@ -112,7 +112,7 @@ impl App {
     /// Whether no back of the mesh can be seen, so that patches that face away can be left out.
     pub(in crate::app) fn can_cull_back_faces(&self) -> bool {
         let scene = self.document.as_ref().map(|document| &document.scene);
-        let moves = self.settings.tessellation.displacement != Displacement::Off
+        let moves = self.settings.tessellation.displacement.is_on()
             && scene.is_some_and(|scene| scene.tessellator.mesh().heights.is_some());
         scene.is_some_and(|scene| scene.tessellator.is_solid()) && !moves && self.moment().is_none()
     }

@@ -4,7 +4,7 @@ use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
 use crate::app::App;
 use crate::app::widgets::{switch_button, text_width};
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key};
-use inspect::settings::{Choice, Colors, Control};
+use inspect::settings::{Choice, ColorSource, Colors, Control};
 
 /// The width of the list of colours, in points: that of its longest entry.
 const COLORS_WIDTH: f32 = 124.0;
@@ -58,7 +58,7 @@ impl App {
         // High enough for all entries.
         let combo = combo.height(420.0).show_ui(ui, |ui| {
             for &choice in Colors::ALL {
-                let is_possible = has_coordinates || !choice.are_of_texture_coordinates();
+                let is_possible = has_coordinates || choice.source() != ColorSource::TextureCoordinates;
                 let entry = egui::Button::selectable(*colors == choice, choice.label());
                 let entry = ui.add_enabled(is_possible, entry).on_hover_text(colors_hover(choice));
                 if entry.on_disabled_hover_text(NO_TEXTURE_COORDINATES).clicked() {

@@ -319,9 +319,8 @@ impl App {
                 let first = self.agreement().and_then(|agreement| agreement.edges.first()).map(|first| first.edge);
                 first.into_iter().for_each(|edge| self.select_edge(edge));
             }
-            Destination::Sizes if overlays.colors != Colors::TriangleSize => overlays.toggle(Overlay::TriangleSize),
-            Destination::Factors if overlays.colors != Colors::Factors => overlays.toggle(Overlay::Factors),
-            Destination::Sizes | Destination::Factors => {}
+            Destination::Sizes => overlays.turn_on(Overlay::TriangleSize),
+            Destination::Factors => overlays.turn_on(Overlay::Factors),
             Destination::CreaseAngle(angle) => self.settings.import.crease_angle = angle,
             Destination::Patches => self.panels.open.set(Section::Patches, true),
             Destination::Warnings => self.dialogs.shows_warnings = true,

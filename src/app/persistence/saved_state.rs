@@ -158,7 +158,7 @@ impl SavedState {
 
     /// Takes settings, without displacement, axis and unit, which depend on the mesh.
     pub(super) fn take_settings(&mut self, settings: &Settings) {
-        let own = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
+        let own = settings.with(settings.tessellation.undisplaced());
         self.settings = Settings { import: own.import.without_placement(), ..own };
     }
 }

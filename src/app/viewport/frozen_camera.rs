@@ -51,11 +51,7 @@ impl App {
     /// true wherever the camera goes.
     pub(in crate::app) fn keep_measured(&mut self) {
         let Settings { tessellation, .. } = &self.settings;
-        let follows = self.uses_lod_shader()
-            || tessellation.used_lod() != Lod::Uniform
-            || tessellation.clip != Clip::Off
-            || tessellation.cull_back_faces;
-        if follows {
+        if self.uses_lod_shader() || tessellation.follows_view() {
             self.keep_view();
         }
     }

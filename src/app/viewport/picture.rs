@@ -15,7 +15,7 @@ use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use inspect::engine::Engine;
 use inspect::render::{Camera, Pixel, Renderer, Scene, Target};
-use inspect::settings::{Colors, Settings, SplitSide};
+use inspect::settings::{ColorSource, Settings, SplitSide};
 
 /// Everything that the picture depends on.
 #[derive(Clone, Copy, PartialEq)]
@@ -325,7 +325,7 @@ impl Picture {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
         // Nothing may be measured of a surface shader.
-        let shows = wanted.settings.overlays.colors == Colors::Deviation && wanted.from_files.surface == 0;
+        let shows = wanted.settings.overlays.colors.source() == ColorSource::ReferenceSurface && wanted.from_files.surface == 0;
         let mut halves =
             SplitSide::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
         let is_known = halves.all(Scene::knows_deviation);

@@ -15,7 +15,7 @@ use geometry::view::ScreenView;
 use gpu::{GpuError, Recorder, Timing};
 use inspect::engine::Engine;
 use inspect::render::{Camera, Scene, Target};
-use inspect::settings::{Colors, Settings, SplitSide};
+use inspect::settings::{ColorSource, Colors, Settings, SplitSide};
 
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
 /// some of it.
@@ -228,12 +228,12 @@ fn shape_of(
 ) -> Shape {
     let is_software = engine.gpu.is_software();
     let (most, kept) = if is_software { (TRIANGLES_IN_SOFTWARE, KEPT_IN_SOFTWARE) } else { (TRIANGLES, TRIANGLES) };
-    let Tessellation { lod, factor, clip, cull_back_faces, .. } = wanted.inputs.tessellation;
-    let follows = !is_frozen && (lod != Lod::Uniform || clip != Clip::Off || cull_back_faces);
+    let Tessellation { lod, factor, .. } = wanted.inputs.tessellation;
+    let follows = !is_frozen && wanted.inputs.tessellation.follows_view();
     let (tessellator, patches) = (&document.scene.tessellator, document.loaded.topology.patches.len() as f32);
-    let triangles = match lod {
-        Lod::Uniform => patches * factor * factor,
-        _ => tessellator.totals().1 as f32,
+    let triangles = match lod.follows_view() {
+        false => patches * factor * factor,
+        true => tessellator.totals().1 as f32,
     };
     // Factors of a file stay as they are, however many triangles they ask for.
     if !follows && (triangles <= kept || wanted.from_files.factors != 0) {
@@ -245,14 +245,14 @@ fn shape_of(
     {
         return Shape::StandIn;
     }
-    let largest = if lod == Lod::Uniform { factor.min(LARGEST_FACTOR) } else { LARGEST_FACTOR };
+    let largest = if lod.follows_view() { LARGEST_FACTOR } else { factor.min(LARGEST_FACTOR) };
     Shape::Factor((most / patches.max(1.0)).sqrt().floor().clamp(1.0, largest.max(1.0)))
 }
 
 fn settings_of(shape: Shape, settings: &Settings) -> Settings {
     let mut cheap = *settings;
     // Both need data that is computed for what is emitted.
-    if matches!(cheap.overlays.colors, Colors::Deviation | Colors::Excess) {
+    if matches!(cheap.overlays.colors.source(), ColorSource::ReferenceSurface | ColorSource::MinimumTriangles) {
         cheap.overlays.colors = Colors::default();
     }
     let factor = match shape {
@@ -263,8 +263,7 @@ fn settings_of(shape: Shape, settings: &Settings) -> Settings {
             1.0
         }
     };
-    let kept = cheap.tessellation;
-    cheap.tessellation = Tessellation { lod: Lod::Uniform, factor, clip: Clip::Off, cull_back_faces: false, ..kept };
+    cheap.tessellation = cheap.tessellation.with_one_factor(factor);
     cheap
 }
 

@@ -103,7 +103,7 @@ impl Group for GivenTessellation {
         };
         let own = &mut self.tessellation;
         if !is_given(options::LOD.name)
-            && (own.partitioning == Partitioning::Subtriangulation || WITHOUT_LOD.into_iter().any(is_given))
+            && (own.partitioning.has_one_factor() || WITHOUT_LOD.into_iter().any(is_given))
         {
             own.lod = Lod::Uniform;
         }

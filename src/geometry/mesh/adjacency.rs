@@ -5,23 +5,24 @@
 //! beside that one. The twelve-index patch adds the dominant corners of McDonald 2011, "Tessellation on Any Budget", in
 //! the order in which meshoptimizer writes them. The eighteen-index patch adds the corners of its edges' dominant sides.
 
+use crate::choice::choices;
 use std::ops::Range;
 
 use super::topology::{Patch, Side, Topology};
 use crate::casts::to_u32;
 use crate::names::every;
 
-/// How many indices a patch has, and which.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Layout {
-    /// What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0
-    Six,
-    /// The triangle's corners 0, 1, 2, then the six
-    Nine,
-    /// The nine, then the dominant corners on the points of corners 0, 1, 2
-    Twelve,
-    /// The twelve, then the corners of the dominant sides of edges 0-1, 1-2, 2-0, in the patch's own direction
-    Eighteen,
+choices! {
+    /// How many indices a patch has, and which.
+    pub enum Layout {
+        Six => "6", "6",
+            "What PN-AEN adds to the mesh's own index buffer: the neighbours' corners along the sides 0-1, 1-2, 2-0.";
+        Nine => "9", "9", "The triangle's corners 0, 1, 2, then the six.";
+        Twelve => "12", "12", "The nine, then the dominant corners on the points of corners 0, 1, 2.";
+        Eighteen => "18", "18",
+            "The twelve, then the corners of the dominant sides of the edges 0-1, 1-2, 2-0: what exported shaders need \
+             to displace.";
+    }
 }
 
 /// A part of a patch's indices.
@@ -38,8 +39,6 @@ pub enum Part {
 }
 
 impl Layout {
-    pub const ALL: [Self; 4] = every![Layout: Six, Nine, Twelve, Eighteen];
-
     /// The number of indices of each patch.
     pub fn per_patch(self) -> usize {
         self.of_eighteen().len()

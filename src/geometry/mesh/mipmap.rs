@@ -4,6 +4,7 @@
 //! of `n = 2 m + 1` texels is odd, texel `i` of the smaller level is made of three, with weights `(m - i) / n`, `m / n` and
 //! `(i + 1) / n`: each texel then counts as much as any other (Guthe and Heckbert 2005, "Non-Power-of-Two Mipmapping").
 
+use crate::names::every;
 use std::collections::VecDeque;
 use std::sync::LazyLock;
 
@@ -27,6 +28,8 @@ pub enum MipFilter {
 }
 
 impl MipFilter {
+    pub const ALL: [Self; 4] = every![MipFilter: Colors, AlphaWeighted, Numbers, Normals];
+
     /// That of the base colour's image of a material whose alpha does this.
     pub fn of_base_color(alpha: Alpha) -> Self {
         if alpha == Alpha::Opaque { Self::Colors } else { Self::AlphaWeighted }

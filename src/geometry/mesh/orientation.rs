@@ -1,5 +1,6 @@
 //! Turns and scales a mesh, with everything that hangs on it, so that +Y points up and its unit is another.
 
+use crate::choice::choices;
 use std::sync::Arc;
 
 use glam::{DMat3, DMat4, Vec3};
@@ -7,16 +8,18 @@ use glam::{DMat3, DMat4, Vec3};
 use super::{LightKind, Mesh, Projection, Rig};
 use crate::casts::to_f32;
 
-/// An axis of a file's coordinates, which points up.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum UpAxis {
-    X,
-    #[default]
-    Y,
-    Z,
-    NegX,
-    NegY,
-    NegZ,
+choices! {
+    /// An axis of a file's coordinates, which points up.
+    #[derive(Default, Hash)]
+    pub enum UpAxis {
+        #[default]
+        Y => "y", "Y", "The y axis points up.";
+        Z => "z", "Z", "The z axis points up, as in most programs for construction, printing and maps.";
+        X => "x", "X", "The x axis points up.";
+        NegX => "-x", "-X", "The x axis points down.";
+        NegY => "-y", "-Y", "The y axis points down.";
+        NegZ => "-z", "-Z", "The z axis points down.";
+    }
 }
 
 impl UpAxis {

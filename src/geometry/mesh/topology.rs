@@ -2,6 +2,7 @@
 
 mod connecting;
 
+use crate::names::every;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -117,6 +118,10 @@ pub enum EdgeKind {
     Boundary = 3,
     /// Three sides or more.
     NonManifold = 4,
+}
+
+impl EdgeKind {
+    pub const ALL: [Self; 5] = every![EdgeKind: Smooth, Split, Seam, Boundary, NonManifold];
 }
 
 /// The number of edges of each kind.

@@ -51,7 +51,7 @@ impl<'a> ControlNets<'a> {
             }
             let share = 1.0 / curve.side_count as f32;
             let (ab, ba) = (ab * share, ba * share);
-            if surface == Surface::PnCrease {
+            if surface.has_creases() {
                 return [crease_control_point(a, b, around_a, ab), crease_control_point(b, a, around_b, ba)];
             }
             [ab, ba]

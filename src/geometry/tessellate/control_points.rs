@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 
-use super::Surface;
+use super::{Surface, SurfaceFamily};
 
 /// Two unit normals count as parallel or opposite if the squared length of their cross product is at most this: the
 /// squared sine of 0.1 degrees. Below it, rounding would decide in which line their tangent planes intersect.
@@ -67,18 +67,13 @@ pub(super) fn elevated_control_point(a: Vec3, middle: Vec3) -> Vec3 {
 /// Returns the control points near `a` and near `b` that one side of an edge proposes. `at_a` and `at_b` are the side's
 /// own unit normals at the ends; `alpha` is the strength of Phong tessellation, which other surfaces ignore.
 pub(crate) fn side_control_points(surface: Surface, alpha: f32, a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> [Vec3; 2] {
-    if surface == Surface::Flat {
-        return [straight_control_point(a, b), straight_control_point(b, a)];
+    let elevated = |middle| [elevated_control_point(a, middle), elevated_control_point(b, middle)];
+    match surface.family() {
+        SurfaceFamily::Flat => [straight_control_point(a, b), straight_control_point(b, a)],
+        SurfaceFamily::Pn => [edge_control_point(a, b, at_a), edge_control_point(b, a, at_b)],
+        SurfaceFamily::Phong => elevated(phong_control_point(alpha, a, b, at_a, at_b)),
+        SurfaceFamily::Nagata => elevated(nagata_control_point(a, b, at_a, at_b)),
     }
-    if surface == Surface::Phong || surface == Surface::PhongAen {
-        let middle = phong_control_point(alpha, a, b, at_a, at_b);
-        return [elevated_control_point(a, middle), elevated_control_point(b, middle)];
-    }
-    if surface == Surface::Nagata || surface == Surface::NagataAen {
-        let middle = nagata_control_point(a, b, at_a, at_b);
-        return [elevated_control_point(a, middle), elevated_control_point(b, middle)];
-    }
-    [edge_control_point(a, b, at_a), edge_control_point(b, a, at_b)]
 }
 
 /// The distinct normals that the sides of an edge have at one of its ends. Only the first two are stored.

@@ -8,33 +8,32 @@
 //!
 //! Side k of a patch runs from corner k to corner k + 1 (modulo 3).
 
-use crate::names::every;
+use crate::choice::choices;
 
-/// What a hull shader and a domain shader take factors and weights for.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Convention {
-    /// Direct3D 11's, Vulkan's and the white paper's: weights u, v, w are on corners 0, 1, 2, and TessFactor[0..2] are those
-    /// of the edges opposite them.
-    #[default]
-    D3d11 = 0,
-    /// AMD's PN triangles sample for Direct3D 11: weights w, u, v are on corners 0, 1, 2, and TessFactor[0..2] are those of
-    /// the edges opposite u, v and w.
-    AmdPn = 1,
-    /// TessFactor[0..2] are those of the edges (0, 1), (1, 2), (2, 0), and weights v, w, u are on corners 0, 1, 2.
-    EdgeOrder = 2,
-    /// A mistake: factors in edge order, but weights as in Direct3D 11, so that every edge gets the factor of another, and
-    /// adaptive LOD cracks.
-    Rotated = 3,
-    /// A mistake: as Direct3D 11, but the first two factors are exchanged, as if patches were wound the other way, and
-    /// adaptive LOD cracks.
-    Mirrored = 4,
+choices! {
+    /// What a hull shader and a domain shader take factors and weights for.
+    #[derive(Default, Hash)]
+    #[repr(u32)]
+    pub enum Convention {
+        #[default]
+        D3d11 => "d3d11", "Direct3D 11",
+            "As in Direct3D 11, Vulkan and the white paper: weights u, v, w belong to corners 0, 1, 2, and \
+             TessFactor[0..2] to the edges opposite them.";
+        AmdPn => "amd-pn", "AMD PN sample",
+            "As in AMD's PN triangles sample for Direct3D 11: weights w, u, v belong to corners 0, 1, 2, and \
+             TessFactor[0..2] to the edges opposite u, v and w.";
+        EdgeOrder => "edge-order", "Edge order",
+            "TessFactor[0..2] belong to the edges (0, 1), (1, 2), (2, 0), and weights v, w, u to corners 0, 1, 2.";
+        Rotated => "rotated", "Rotated (mistake)",
+            "Factors in edge order, but weights as in Direct3D 11. Every edge gets the factor of another edge, and \
+             adaptive LOD cracks.";
+        Mirrored => "mirrored", "Mirrored (mistake)",
+            "As in Direct3D 11, but with the first two factors exchanged, as if triangles were wound the other way. \
+             Adaptive LOD cracks.";
+    }
 }
 
 impl Convention {
-    /// All values.
-    pub const ALL: [Self; 5] = every![Convention: D3d11, AmdPn, EdgeOrder, Rotated, Mirrored];
-
     /// Returns whether both shaders agree, so that every edge gets its own factor.
     pub fn is_consistent(self) -> bool {
         (0..3).all(|i| factor_side(self, i) == domain_side(self, i))

@@ -5,19 +5,21 @@ use glam::{Vec3, Vec4};
 
 use super::lod::{LodView, clip_row};
 use super::surface::ControlNet;
+use crate::choice::choices;
 
-/// Whether patches that cannot be seen are left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Clip {
-    /// Every patch is drawn.
-    Off = 0,
-    /// Leaves out patches whose ten control points all lie outside the view, whichever side each is on (McDonald and Kilgard
-    /// 2010): it can drop patches that cross the view.
-    Paper = 1,
-    /// Leaves out patches whose ten control points all lie outside one and the same side of the view: then so does all of the
-    /// patch, which lies in their convex hull.
-    Frustum = 2,
+choices! {
+    /// Whether patches that cannot be seen are left out.
+    #[derive(Hash)]
+    #[repr(u32)]
+    pub enum Clip {
+        Off => "off", "Off", "Every patch is drawn.";
+        Frustum => "frustum", "Frustum",
+            "Leaves out a patch if all its ten control points lie outside the same side of the view. No visible patch is \
+             lost.";
+        Paper => "paper", "White paper",
+            "Leaves out a patch if each of its ten control points lies outside the view, on whichever side (McDonald and \
+             Kilgard 2010). Patches that cross the view can be lost.";
+    }
 }
 
 /// Returns whether a clip-space position lies outside the white paper's view volume, -w <= x, y, z <= w (`IsClipped` of

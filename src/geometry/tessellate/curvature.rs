@@ -10,7 +10,7 @@ use super::surface::{ControlNet, Surface, UNIT};
 /// object units: twice by u, by u and v, and twice by v. They are linear Bézier triangles of second differences of
 /// control points, times 6 (Farin, Triangular Bernstein-Bézier patches, 1986, section 1.4).
 pub fn patch_second_derivatives(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 3] {
-    if surface == Surface::Flat {
+    if surface.is_flat() {
         return [Vec3::ZERO; 3];
     }
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);

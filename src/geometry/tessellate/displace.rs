@@ -14,22 +14,42 @@ use super::FIXED_ONE;
 use super::height_list::{fetch_height, level_place};
 use super::normal::unit_or;
 use super::surface::outline_place;
+use crate::choice::choices;
 use crate::mesh::HeightMap;
 
-/// Whether a surface is displaced by height images, and what its patches agree on where they meet.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Displacement {
-    /// The surface as it is.
-    Off = 0,
-    /// Displaced without cracks: one side's texture coordinates for an edge and one corner's for a point (dominant edges and
-    /// vertices, McDonald 2011), and along one direction, the mean of all normals that meet there.
-    On = 1,
-    /// Dominant edges and vertices alone (McDonald 2011), each patch along its own normals: texture seams hold, split normals
-    /// tear.
-    AsPublished = 2,
-    /// Every patch by its own texture coordinates and normals: seams and split normals tear.
-    PerPatch = 3,
+choices! {
+    /// Whether a surface is displaced by height images, and what its patches agree on where they meet.
+    #[derive(Hash)]
+    #[repr(u32)]
+    pub enum Displacement {
+        Off => "off", "Off", "The surface isn't displaced.";
+        On => "on", "On",
+            "Displaces without cracks. Each edge and each point takes its texture coordinates from one triangle \
+             (dominant edges and vertices, McDonald 2011), and moves along the mean of the normals that meet there.";
+        AsPublished => "as-published", "As published",
+            "Uses dominant edges and vertices (McDonald 2011), but moves each patch along its own normals. Texture seams \
+             stay closed, and edges with split normals crack open.";
+        PerPatch => "per-patch", "Per patch",
+            "Each patch uses its own texture coordinates and normals. Texture seams and edges with split normals crack \
+             open.";
+    }
+}
+
+impl Displacement {
+    /// Whether heights move the surface.
+    pub fn is_on(self) -> bool {
+        self != Self::Off
+    }
+
+    /// The one that is usual with heights, or without.
+    pub fn usual(has_heights: bool) -> Self {
+        if has_heights { Self::On } else { Self::Off }
+    }
+
+    /// Whether patches take heights from the same place where they meet.
+    pub fn shares_heights(self) -> bool {
+        matches!(self, Self::On | Self::AsPublished)
+    }
 }
 
 /// Returns the fractional part of a texture coordinate, which repeats the image.

@@ -118,18 +118,12 @@ pub struct OwnLeast {
 /// one number of segments everywhere, so that whole numbers stand in for it.
 pub fn own_least_inputs(inputs: &Inputs) -> Inputs {
     let own = inputs.tessellation;
-    let partitioning = match own.partitioning {
-        Partitioning::Subtriangulation => Partitioning::Integer,
-        other => other,
-    };
     let tessellation = Tessellation {
-        lod: Lod::Error,
-        partitioning,
         normals: Normals::Linear,
         clip: Clip::Off,
         cull_back_faces: false,
         convention: Convention::default(),
-        ..own
+        ..own.by_error(own.tolerance)
     };
     Inputs { tessellation, ..*inputs }
 }
@@ -161,7 +155,7 @@ pub fn explain_patch(
     let lod = MeshLod { nets: &nets, inputs: searched, displacement: displacement.as_ref() };
     let seen = lod.seen_patch(patch);
     let own = lod.own_least_factors(patch, &seen);
-    let by_error = inputs.tessellation.lod == Lod::Error;
+    let by_error = inputs.tessellation.lod.is_by_error();
     let is_flat = by_error && may_slide(&seen, searched.tessellation.tolerance);
     let mut measured = seen;
     if !is_flat {

@@ -9,7 +9,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::quotients::common_divisor;
-use crate::names::every;
+use crate::choice::choices;
 
 /// 1.0 in 16.16 fixed point.
 pub const FIXED_ONE: u32 = 0x1_0000;
@@ -50,31 +50,71 @@ pub const BITS_ONE_AND_HALF_STEP: u32 = 0x3f80_0040;
 /// 1 + 2^-16, the next factor after 1 in fixed point.
 pub const BITS_ONE_AND_STEP: u32 = 0x3f80_0080;
 
-/// How a factor between two whole numbers becomes segments.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Partitioning {
-    /// Rounded up to a whole number of equal segments.
-    #[default]
-    Integer = 0,
-    /// As integer to the tessellator; factors are rounded to powers of two before it.
-    Pow2 = 1,
-    /// Always an odd number of segments, two of which grow from nothing.
-    FractionalOdd = 2,
-    /// Always an even number of segments, two of which grow from nothing.
-    FractionalEven = 3,
-    /// Not Direct3D's: rounded up to n, and the patch cut into n x n equal triangles (Vlachos et al. 2001, section 2, whose
-    /// level of detail is n - 1). One number for all edges, since nothing joins rows of different ones.
-    Subtriangulation = 4,
-    /// Not Direct3D's: factors are rounded up to whole numbers, and every patch is cut into rows beside one of its edges: see
-    /// `rows.rs`.
-    Rows = 5,
+choices! {
+    /// How a factor between two whole numbers becomes segments.
+    #[derive(Default, Hash)]
+    #[repr(u32)]
+    pub enum Partitioning {
+        #[default]
+        Integer => "integer", "Integer",
+            "Rounds factors up to whole numbers. All segments of an edge have the same length, and the pattern changes \
+             in steps (Direct3D 11.3, section 11.7).";
+        Pow2 => "pow2", "Power of two",
+            "Rounds factors up to 1, 2, 4, 8, 16, 32 or 64, so that segments are only ever halved (Direct3D 11.3, \
+             section 11.7).";
+        FractionalOdd => "fractional-odd", "Fractional odd",
+            "An odd number of segments, two of which grow from nothing, so that the pattern never jumps (Direct3D 11.3, \
+             section 11.7).";
+        FractionalEven => "fractional-even", "Fractional even",
+            "An even number of segments, at least 2, two of which grow from nothing, so that the pattern never jumps \
+             (Direct3D 11.3, section 11.7).";
+        Subtriangulation => "subtriangulation", "Subtriangulation",
+            "Rounds the factor up to n and cuts every patch into n x n equal triangles (Vlachos et al. 2001, figure 4, \
+             where this is level of detail n - 1). Direct3D doesn't have it. All edges have the same factor, so that LOD \
+             is uniform.";
+        Rows => "rows", "Rows",
+            "Rounds factors up to whole numbers and cuts every patch into strips beside one of its edges. LOD by error \
+             takes about 0.6 times the triangles that Direct3D's patterns need. Hardware tessellators can't make it; \
+             compute and mesh shaders can.";
+    }
 }
 
 impl Partitioning {
-    /// All values.
-    pub const ALL: [Self; 6] =
-        every![Partitioning: Integer, Pow2, FractionalOdd, FractionalEven, Subtriangulation, Rows];
+    /// Whether all edges have the same number of segments, so that LOD is uniform.
+    pub fn has_one_factor(self) -> bool {
+        self == Self::Subtriangulation
+    }
+
+    /// Whether patches are cut into rows.
+    pub fn has_rows(self) -> bool {
+        self == Self::Rows
+    }
+
+    /// Whether segments grow from nothing, so that the pattern never jumps.
+    pub fn is_fractional(self) -> bool {
+        matches!(self, Self::FractionalOdd | Self::FractionalEven)
+    }
+
+    /// Whether an edge may have this number of segments: up to 64 as Direct3D has them, and in rows more.
+    pub fn has_segments(self, segments: u32) -> bool {
+        match self {
+            Self::Integer | Self::Subtriangulation | Self::Rows => segments > 0,
+            Self::Pow2 => segments.is_power_of_two(),
+            Self::FractionalOdd => segments % 2 == 1,
+            Self::FractionalEven => segments > 0 && segments.is_multiple_of(2),
+        }
+    }
+
+    /// Itself, or integer where that has the same patterns but a factor for each edge.
+    pub fn with_factors_of_edges(self) -> Self {
+        if self.has_one_factor() { Self::Integer } else { self }
+    }
+
+    /// Returns the factor that reaches the tessellator: under pow2 a hull shader rounds it up to a power of two.
+    pub fn hull_factor(self, factor: f32) -> f32 {
+        if self == Self::Pow2 { round_pow2(factor) } else { factor }
+    }
+
     /// Those that Direct3D 11's tessellator has, which give every edge a factor of its own.
     pub const DIRECT3D: [Self; 4] = [Self::Integer, Self::Pow2, Self::FractionalOdd, Self::FractionalEven];
 }
@@ -124,7 +164,7 @@ pub fn last_factor(partitioning: Partitioning) -> f32 {
 fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
     let exponent = (bits >> 23) - 127;
     let mantissa = (bits & 0x7f_ffff) | 0x80_0000;
-    if partitioning != Partitioning::FractionalOdd && partitioning != Partitioning::FractionalEven {
+    if !partitioning.is_fractional() {
         let shift = 23 - exponent;
         let whole = (mantissa + (1 << shift) - 1) >> shift;
         return (whole << 16) | (whole << 31);
@@ -158,11 +198,11 @@ pub fn process(partitioning: Partitioning, edges: [f32; 3], inside: f32) -> Patc
     let clamped = bits.map(|b| b.clamp(low, high));
 
     let largest = clamped[0].max(clamped[1]).max(clamped[2]);
-    if partitioning == Partitioning::Subtriangulation {
+    if partitioning.has_one_factor() {
         let word = factor_word(partitioning, largest);
         return PatchFactors { outside: [word; 3], inside: word | SUBTRIANGULATED };
     }
-    if partitioning == Partitioning::Rows {
+    if partitioning.has_rows() {
         return process_rows(clamped.map(|b| factor_word(partitioning, b)), inside.to_bits());
     }
     // An odd patch with a divided edge needs a ring inside, though it may have collapsed to a point.

@@ -1,18 +1,22 @@
 //! What a tessellation depends on, besides the mesh.
 
 use super::{Clip, Convention, Displacement, Lod, LodView, Normals, Partitioning, Surface};
+use crate::choice::choices;
 use crate::mesh::Sharing;
 
-/// Where the values come from that all sides of an edge must agree on: control points, the factor, and positions and
-/// normals along the edge.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Edges {
-    /// The edge computes them once, in its own direction. All sides get the same bits, so that nothing cracks.
-    PerEdge = 0,
-    /// Every patch computes them for itself, in its own direction, as the white paper's shaders do (McDonald and Kilgard
-    /// 2010). The sides differ by rounding, so that edges crack in their last bits.
-    AsPublished = 1,
+choices! {
+    /// Where the values come from that all sides of an edge must agree on: control points, the factor, and positions and
+    /// normals along the edge.
+    #[derive(Hash)]
+    #[repr(u32)]
+    pub enum Edges {
+        PerEdge => "per-edge", "Computed once",
+            "Every shared edge is computed once. The triangles on both sides get identical bits, so that nothing cracks.";
+        AsPublished => "as-published", "By each patch",
+            "Every patch computes its edges for itself, as the white paper's shaders do (McDonald and Kilgard 2010). \
+             Rounding differs, so that edges crack in their last bits. In the window, LOD by edge length and clipping \
+             switch to the white paper's form too.";
+    }
 }
 
 /// How a mesh is tessellated.
@@ -81,7 +85,30 @@ impl Default for Tessellation {
 impl Tessellation {
     /// Subtriangulation has one number of segments everywhere, so that its LOD is uniform whichever is chosen.
     pub fn used_lod(&self) -> Lod {
-        if self.partitioning == Partitioning::Subtriangulation { Lod::Uniform } else { self.lod }
+        if self.partitioning.has_one_factor() { Lod::Uniform } else { self.lod }
+    }
+
+    /// Whether what is drawn follows the camera: factors, or which patches are left out.
+    pub fn follows_view(&self) -> bool {
+        self.used_lod().follows_view() || self.clip != Clip::Off || self.cull_back_faces
+    }
+
+    /// The same whatever the view: this factor for all edges, and all patches are drawn.
+    #[must_use]
+    pub fn with_one_factor(self, factor: f32) -> Self {
+        Self { lod: Lod::Uniform, factor, clip: Clip::Off, cull_back_faces: false, ..self }
+    }
+
+    /// LOD by error with this tolerance in px, in a partitioning that has a factor for each edge.
+    #[must_use]
+    pub fn by_error(self, tolerance: f32) -> Self {
+        Self { lod: Lod::Error, tolerance, partitioning: self.partitioning.with_factors_of_edges(), ..self }
+    }
+
+    /// Without displacement.
+    #[must_use]
+    pub fn undisplaced(self) -> Self {
+        Self { displacement: Displacement::Off, ..self }
     }
 }
 
@@ -111,7 +138,7 @@ pub fn own_sharing(edges: Edges) -> Sharing {
 
 /// Which sides of an edge share its curve under a surface.
 pub fn sharing(surface: Surface, edges: Edges) -> Sharing {
-    let alone = surface.tears() || surface == Surface::Flat;
+    let alone = surface.tears() || surface.is_flat();
     match edges {
         Edges::PerEdge if surface.tears() => Sharing::EqualNormals,
         Edges::PerEdge => Sharing::AllSides,

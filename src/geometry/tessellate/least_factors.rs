@@ -241,7 +241,7 @@ pub(super) fn without_search(
 ) -> Option<f32> {
     let Sought { least, inside, .. } = *sought;
     if single_suffices(patch, within, partitioning, least, inside) {
-        return Some(if partitioning == Partitioning::Rows { (ROW_BASE_STEP + 1) as f32 } else { 1.0 });
+        return Some(if partitioning.has_rows() { (ROW_BASE_STEP + 1) as f32 } else { 1.0 });
     }
     let most = least[0].max(least[1]).max(least[2]).max(inside);
     if most > last_factor(partitioning) { Some(BEYOND_LAST) } else { None }

@@ -46,7 +46,7 @@ impl<'a> LimitSurface<'a> {
     /// Returns whether LOD by error allows points of a patch to slide along its surface, which is flat: see `flat_patch.rs`.
     /// The distance that counts there is the one to the nearest point.
     pub fn slides(&self, inputs: &Inputs, patch: u32) -> bool {
-        inputs.tessellation.lod == Lod::Error
+        inputs.tessellation.lod.is_by_error()
             && may_slide(&self.seen_patch(inputs, patch), inputs.tessellation.tolerance)
     }
 
@@ -76,7 +76,7 @@ impl<'a> LimitSurface<'a> {
     fn surface(&self, net: &ControlNet, u: f64, v: f64) -> DVec3 {
         let weights = [u, v, 1.0 - u - v];
         let [a, b, c] = net.corners.map(Vec3::as_dvec3);
-        if self.nets.surface == Surface::Flat {
+        if self.nets.surface.is_flat() {
             return a * weights[0] + b * weights[1] + c * weights[2];
         }
         let [x, y, z] = weights;

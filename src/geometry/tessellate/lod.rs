@@ -4,34 +4,70 @@
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
 use super::factors::Partitioning;
-use crate::names::every;
+use crate::choice::choices;
 
-/// Where edge factors come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Lod {
-    /// The same factor everywhere.
-    Uniform = 0,
-    /// As many segments as an edge's control polygon is long on screen, divided by the px per segment (McDonald and Kilgard
-    /// 2010); inside, the largest of the three. Divides by w wherever a control point lies, so that edges near or behind the
-    /// eye get any factor.
-    Paper = 1,
-    /// As the white paper's, but edges that are not all in front of the eye are measured where they come nearest.
-    EdgeLength = 2,
-    /// About the fewest triangles that stay within a tolerance in px of their surface: see `least_factors.rs`.
-    Error = 3,
-    /// The factor up to a near distance from the eye, 1 from a far one on, and linear between; an edge takes the mean of its
-    /// ends. What engines commonly do (Unity's `UnityDistanceBasedTess`, say).
-    Distance = 4,
+choices! {
+    /// Where edge factors come from.
+    #[derive(Hash)]
+    #[repr(u32)]
+    pub enum Lod {
+        Uniform => "uniform", "Uniform", "All edges have the same factor.";
+        Error => "error", "Error",
+            "About the fewest triangles that stay within a tolerance, in px, of the surface (bounds on second \
+             derivatives: Filip et al. 1986). Flat places stay untessellated.";
+        EdgeLength => "edge-length", "Edge length",
+            "The edge's length on screen, divided by the length of a segment. Edges that reach near or behind the eye \
+             are measured where they come nearest to it.";
+        Distance => "distance", "Distance",
+            "The full factor up to a near distance from the eye, 1 beyond a far distance, linear in between. An edge \
+             gets the mean of its two ends, as engines commonly do (Unity's `UnityDistanceBasedTess`, for example).";
+        Paper => "paper", "White paper",
+            "The length of the edge's control polygon on screen, divided by the length of a segment (McDonald and \
+             Kilgard 2010). Edges that reach near or behind the eye get wrong factors.";
+    }
+}
+
+/// What a LOD reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LodReads {
+    /// The view: factors follow the camera.
+    pub view: bool,
+    /// The control points of edges.
+    pub control_points: bool,
+    /// [`Tessellation::factor`](super::Tessellation::factor).
+    pub factor: bool,
+    /// [`Tessellation::pixels`](super::Tessellation::pixels).
+    pub pixels: bool,
+    /// [`Tessellation::tolerance`](super::Tessellation::tolerance): each patch searches for factors that keep it, also for its inside.
+    pub tolerance: bool,
+    /// [`Tessellation::near`](super::Tessellation::near) and [`far`](super::Tessellation::far).
+    pub distances: bool,
 }
 
 impl Lod {
-    /// All values, in the order in which lists show them.
-    pub const ALL: [Self; 5] = every![Lod: Uniform, Error, EdgeLength, Distance, Paper];
+    pub fn reads(self) -> LodReads {
+        let nothing = LodReads::default();
+        match self {
+            Self::Uniform => LodReads { factor: true, ..nothing },
+            Self::Error => LodReads { view: true, control_points: true, tolerance: true, ..nothing },
+            Self::EdgeLength | Self::Paper => LodReads { view: true, control_points: true, pixels: true, ..nothing },
+            Self::Distance => LodReads { view: true, factor: true, distances: true, ..nothing },
+        }
+    }
+
+    /// Whether factors follow the camera.
+    pub fn follows_view(self) -> bool {
+        self.reads().view
+    }
+
+    /// Whether patches search for the fewest triangles that keep a tolerance.
+    pub fn is_by_error(self) -> bool {
+        self.reads().tolerance
+    }
 
     /// The partitioning that is usual with it: the one with the fewest triangles, or Direct3D's one without jumps.
     pub fn usual_partitioning(self) -> Partitioning {
-        if self == Self::Error { Partitioning::Rows } else { Partitioning::FractionalOdd }
+        if self.is_by_error() { Partitioning::Rows } else { Partitioning::FractionalOdd }
     }
 }
 

@@ -20,7 +20,7 @@ use crate::mesh::{Curves, Dominance, HeightMap, Heights, Mesh, Sharing, Topology
 
 /// Returns the heights that displace a mesh with these inputs, if any.
 pub fn displacing_heights<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
-    mesh.heights.as_deref().filter(|_| inputs.tessellation.displacement != Displacement::Off)
+    mesh.heights.as_deref().filter(|_| inputs.tessellation.displacement.is_on())
 }
 
 /// Returns the distance between black and white in object units. It depends on the size of the mesh at rest, so that it

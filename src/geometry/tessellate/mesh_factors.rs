@@ -46,7 +46,7 @@ impl MeshLod<'_> {
     /// Returns the factors that LOD gives: to each edge the largest that any of its curves needs, or under LOD by error that
     /// any of its patches asks for. With edges as published, each curve has its own factor.
     pub(super) fn mesh_factors(&self) -> MeshFactors {
-        if self.inputs.tessellation.lod == Lod::Error {
+        if self.inputs.tessellation.lod.is_by_error() {
             return self.factors_by_error();
         }
         let largest = |form: &dyn Fn([Vec3; 4]) -> f32, curves: &[u32]| {
@@ -61,7 +61,7 @@ impl MeshLod<'_> {
                 Lod::Distance => largest(&|net| distance_factor(view, factor, near, far, net), curves),
                 Lod::Error => 1.0,
             };
-            if self.inputs.tessellation.partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor }
+            self.inputs.tessellation.partitioning.hull_factor(factor)
         };
         MeshFactors { edges: self.nets.curves.factor_curves.windows(2).map(edge).collect(), insides: Vec::new() }
     }
@@ -71,7 +71,7 @@ impl MeshLod<'_> {
         let inside = |patch| self.beside(patch, self.nets.edges_of_patch(edges, patch), 0.0).inside;
         let patches = 0..self.nets.topology.patches.len() as u32;
         let insides =
-            if self.inputs.tessellation.lod == Lod::Error { patches.map(inside).collect() } else { Vec::new() };
+            if self.inputs.tessellation.lod.is_by_error() { patches.map(inside).collect() } else { Vec::new() };
         MeshFactors { edges: edges.to_vec(), insides }
     }
 
@@ -99,7 +99,7 @@ impl MeshLod<'_> {
             ask(patch, own.edges, &mut asked);
             chosen.push(own);
         }
-        let rounds = rounds(partitioning == Partitioning::Rows);
+        let rounds = rounds(partitioning.has_rows());
         for round in 1..=rounds {
             let before = asked.clone();
             for (patch, chosen) in (0..).zip(&mut chosen) {
@@ -108,11 +108,11 @@ impl MeshLod<'_> {
                     continue;
                 }
                 let beside = self.beside(patch, edges, chosen.inner);
-                let again = match partitioning {
-                    Partitioning::Rows => rows_ask_again(chosen, edges, beside.inside),
-                    _ => asks_again(chosen.inside, beside.inside),
+                let again = match partitioning.has_rows() {
+                    true => rows_ask_again(chosen, edges, beside.inside),
+                    false => asks_again(chosen.inside, beside.inside),
                 };
-                let asks = surface != Surface::Flat && round < rounds && again;
+                let asks = !surface.is_flat() && round < rounds && again;
                 *chosen = beside;
                 if asks {
                     let seen = self.seen_patch(patch);
@@ -138,7 +138,7 @@ impl MeshLod<'_> {
     /// these factors.
     fn uniform_factor(&self, factors: &MeshFactors) -> Option<f32> {
         let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
-        if surface == Surface::Flat {
+        if surface.is_flat() {
             return None;
         }
         let patches = 0..self.nets.topology.patches.len() as u32;
@@ -192,13 +192,13 @@ impl MeshLod<'_> {
     pub(super) fn fewest(&self, patch: u32, seen: &SeenPatch, least: [f32; 3], inner: f32, wanted: Wanted) -> Chosen {
         let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
         let inside = self.heights_inside(patch);
-        if surface == Surface::Flat {
+        if surface.is_flat() {
             return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner };
         }
         let (tolerance, sought) = (self.surface_tolerance(), Sought { least, inside, inner, wanted });
-        match partitioning {
-            Partitioning::Rows => fewest_rows(seen, tolerance, &sought),
-            _ => fewest_triangles(seen, tolerance, partitioning, &sought),
+        match partitioning.has_rows() {
+            true => fewest_rows(seen, tolerance, &sought),
+            false => fewest_triangles(seen, tolerance, partitioning, &sought),
         }
     }
 
@@ -227,9 +227,9 @@ impl MeshLod<'_> {
     pub(super) fn least_edge_factor(&self, factor: u32) -> f32 {
         let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
         let curves = &self.nets.curves.factor_curves[factor as usize..factor as usize + 2];
-        let own = |curve: u32| match surface {
-            Surface::Flat => 1.0,
-            _ => {
+        let own = |curve: u32| match surface.is_flat() {
+            true => 1.0,
+            false => {
                 let tolerance = self.surface_tolerance();
                 least_edge_factor(&self.inputs.view, tolerance, partitioning, self.nets.curve_points(curve))
             }
@@ -270,9 +270,9 @@ impl ControlNets<'_> {
         let Tessellation { convention, partitioning, .. } = inputs.tessellation;
         let written = HullFactors::of_sides(convention, sides, sides[0].max(sides[1]).max(sides[2]));
         let found = factors.insides.get(patch as usize).copied();
-        let inside = match (partitioning, found) {
-            (Partitioning::Rows, Some(inside)) => inside_of_base(convention, inside),
-            (Partitioning::Rows, None) => base_factor(written.edges),
+        let inside = match (partitioning.has_rows(), found) {
+            (true, Some(inside)) => inside_of_base(convention, inside),
+            (true, None) => base_factor(written.edges),
             (_, found) => found.unwrap_or(written.inside),
         };
         HullFactors { inside, ..written }

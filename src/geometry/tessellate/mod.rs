@@ -54,7 +54,7 @@ pub use lod::{Lod, LodView};
 pub use mesh_tessellation::{Tessellated, tessellate};
 pub use normal::Normals;
 pub use octahedral_normal::unpack_normal;
-pub use surface::Surface;
+pub use surface::{Surface, SurfaceFamily};
 pub use vertex::Vertex;
 
 #[cfg(test)]

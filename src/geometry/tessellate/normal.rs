@@ -4,18 +4,21 @@ use glam::Vec3;
 
 use super::factors::FIXED_ONE;
 use super::surface::{ControlNet, Surface, UNIT, patch_tangents};
+use crate::choice::choices;
 
-/// Which normals emitted vertices get.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Normals {
-    /// The corners', linearly interpolated: what the author's normals say, as Phong shading does.
-    Linear = 0,
-    /// The corners', quadratically interpolated (Vlachos et al. 2001, section 3.3): they bend with an edge that bends back.
-    Quadratic = 1,
-    /// The surface's own, the cross product of its tangents: exact, with a step wherever the surface has a crease, so between
-    /// most patches.
-    Surface = 2,
+choices! {
+    /// Which normals emitted vertices get.
+    #[derive(Hash)]
+    #[repr(u32)]
+    pub enum Normals {
+        Linear => "linear", "Linear normals", "The corners' normals, linearly interpolated, as in Phong shading.";
+        Quadratic => "quadratic", "Quadratic normals",
+            "The corners' normals, quadratically interpolated (Vlachos et al. 2001, section 3.3): they follow edges that \
+             bend one way and back.";
+        Surface => "surface", "Surface normals",
+            "The exact normals of the curved surface. They change abruptly where the surface has a crease, which is \
+             along most edges between patches.";
+    }
 }
 
 /// Weighted sums of unit normals that are shorter than this are rounding errors: the normals cancel.

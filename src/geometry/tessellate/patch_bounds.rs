@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use super::Surface;
+use super::{Surface, SurfaceFamily};
 use crate::mesh::Bounds;
 
 /// The bounds of some patches' corners, and the length of their longest side, in object units.
@@ -37,11 +37,11 @@ impl PatchBounds {
 /// seven with at most 8/9, and the centre with at most 2/9. The middle control point of an edge under Phong tessellation is at most
 /// the edge's length away, and those of all three edges are weighed with at most 2/3. Nagata's have no limit.
 fn bulge(surface: Surface) -> Option<f32> {
-    match surface {
-        Surface::Flat => Some(0.0),
-        Surface::Pn | Surface::PnAen | Surface::PnCrease => Some(1.0 / 3.0),
-        Surface::Phong | Surface::PhongAen => Some(2.0 / 3.0),
-        Surface::Nagata | Surface::NagataAen => None,
+    match surface.family() {
+        SurfaceFamily::Flat => Some(0.0),
+        SurfaceFamily::Pn => Some(1.0 / 3.0),
+        SurfaceFamily::Phong => Some(2.0 / 3.0),
+        SurfaceFamily::Nagata => None,
     }
 }
 

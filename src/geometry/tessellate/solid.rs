@@ -47,7 +47,7 @@ impl Solid {
     pub fn hides_backs(&self, mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
         let tears = inputs.tessellation.surface.tears() && self.has_split_normals;
         // A displaced surface may show its back anywhere.
-        let whole = inputs.tessellation.displacement == Displacement::Off && !tears;
+        let whole = !inputs.tessellation.displacement.is_on() && !tears;
         let holds =
             inputs.tessellation.edges == Edges::PerEdge && inputs.tessellation.convention.is_consistent() && whole;
         let extent = || self.extent_of(inputs.tessellation.surface, mesh, topology);
@@ -73,7 +73,7 @@ fn control_point_reach(surface: Surface, mesh: &Mesh, topology: &Topology) -> f3
         let [at_a, at_b] = corners.map(|c| mesh.corners[c as usize].normal);
         let [ab, ba] = side_control_points(surface, 1.0, a, b, at_a, at_b);
         let own = ab.distance(straight_control_point(a, b)).max(ba.distance(straight_control_point(b, a)));
-        if surface == Surface::PnCrease { own.max(a.distance(b) * (1.0 / 3.0)) } else { own }
+        if surface.has_creases() { own.max(a.distance(b) * (1.0 / 3.0)) } else { own }
     };
     topology.sides.par_iter().map(side).reduce(|| 0.0, f32::max) * 1.5
 }

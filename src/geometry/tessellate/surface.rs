@@ -7,41 +7,77 @@
 use glam::{Vec2, Vec3};
 
 use super::factors::FIXED_ONE;
-use crate::names::every;
+use crate::choice::choices;
 
 /// The smallest step of 16.16 fixed point as a float. It is a power of two, so products with it are exact.
 pub const UNIT: f32 = 1.0 / FIXED_ONE as f32;
 
-/// Which surface a patch becomes. Those that end on AEN are the same with adjacent edge normals, as in PN-AEN: an edge's
-/// control points are the mean of what its sides propose.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u32)]
-pub enum Surface {
-    /// Flat dicing: more triangles, the same shape.
-    Flat = 0,
-    /// PN triangles (Vlachos et al. 2001): cubic patches from positions and normals; cracks where normals are split.
-    Pn = 1,
-    /// PN triangles with adjacent edge normals (McDonald and Kilgard 2010): all sides of an edge share the mean of their
-    /// control points; no cracks.
-    PnAen = 2,
-    /// PN with sharp creases (Vlachos et al. 2001, section 3.4): where normals are split, an edge starts along the line
-    /// that both tangent planes share; no cracks.
-    PnCrease = 3,
-    /// Phong tessellation (Boubekeur and Alexa 2008): quadratic patches from projections into the corners' tangent planes;
-    /// cracks where normals are split.
-    Phong = 4,
-    /// Phong tessellation, each edge averaged over its sides; no cracks.
-    PhongAen = 5,
-    /// Nagata's patch (2005): the flattest quadratic edges that are perpendicular to the normals at their ends; cracks where
-    /// normals are split.
-    Nagata = 6,
-    /// Nagata's patch, each edge averaged over its sides; no cracks.
-    NagataAen = 7,
+choices! {
+    /// Which surface a patch becomes. Those that end on AEN are the same with adjacent edge normals, as in PN-AEN: an edge's
+    /// control points are the mean of what its sides propose.
+    #[derive(Hash)]
+    #[repr(u32)]
+    pub enum Surface {
+        Flat => "flat", "Flat", "Triangles stay flat: more triangles, the same shape.";
+        Pn => "pn", "PN",
+            "PN triangles (Vlachos et al. 2001): cubic patches from the corners' positions and normals. Edges with split \
+             normals crack open.";
+        PnAen => "pn-aen", "PN-AEN",
+            "PN triangles with adjacent edge normals (McDonald and Kilgard 2010): the triangles that meet at an edge \
+             share the mean of their control points, so that nothing cracks.";
+        PnCrease => "pn-crease", "PN crease",
+            "PN triangles with sharp creases (Vlachos et al. 2001, section 3.4): where normals are split, an edge starts \
+             along the line in which both tangent planes meet. Nothing cracks.";
+        Phong => "phong", "Phong",
+            "Phong tessellation (Boubekeur and Alexa 2008): quadratic patches from projections onto the corners' tangent \
+             planes. Edges with split normals crack open.";
+        PhongAen => "phong-aen", "Phong AEN",
+            "Phong tessellation whose edges are averaged over the triangles that meet there. Nothing cracks.";
+        Nagata => "nagata", "Nagata",
+            "Nagata patches (Nagata 2005): the flattest quadratic edges that are perpendicular to the normals at their \
+             ends. Edges with split normals crack open.";
+        NagataAen => "nagata-aen", "Nagata AEN",
+            "Nagata patches whose edges are averaged over the triangles that meet there. Nothing cracks.";
+    }
+}
+
+/// How the control points of an edge follow from the normals at its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SurfaceFamily {
+    Flat,
+    Pn,
+    Phong,
+    Nagata,
 }
 
 impl Surface {
-    /// All values.
-    pub const ALL: [Self; 8] = every![Surface: Flat, Pn, PnAen, PnCrease, Phong, PhongAen, Nagata, NagataAen];
+    /// What patches are drawn as while a function of the user's own gives the control points of their edges: cubic, and each side of
+    /// an edge by itself.
+    pub const OF_USER_SHADER: Self = Self::Pn;
+
+    pub fn family(self) -> SurfaceFamily {
+        match self {
+            Self::Flat => SurfaceFamily::Flat,
+            Self::Pn | Self::PnAen | Self::PnCrease => SurfaceFamily::Pn,
+            Self::Phong | Self::PhongAen => SurfaceFamily::Phong,
+            Self::Nagata | Self::NagataAen => SurfaceFamily::Nagata,
+        }
+    }
+
+    /// Whether patches stay the triangles that they are.
+    pub fn is_flat(self) -> bool {
+        self.family() == SurfaceFamily::Flat
+    }
+
+    /// Whether edges are sharp where their sides' normals differ.
+    pub fn has_creases(self) -> bool {
+        self == Self::PnCrease
+    }
+
+    /// Whether all sides of an edge share the mean of their control points.
+    pub fn is_averaged(self) -> bool {
+        !self.tears() && !self.is_flat() && !self.has_creases()
+    }
 
     /// Returns whether edges crack where their sides' normals differ, because each side uses only its own normals.
     pub fn tears(self) -> bool {
@@ -50,7 +86,7 @@ impl Surface {
 
     /// Returns whether this is Phong tessellation, which has a strength.
     pub fn is_phong(self) -> bool {
-        matches!(self, Self::Phong | Self::PhongAen)
+        self.family() == SurfaceFamily::Phong
     }
 }
 
@@ -60,7 +96,7 @@ impl Surface {
 pub fn edge_position(surface: Surface, a: Vec3, ab: Vec3, ba: Vec3, b: Vec3, t: u32) -> Vec3 {
     let y = t as f32 * UNIT;
     let x = (FIXED_ONE - t) as f32 * UNIT;
-    if surface == Surface::Flat {
+    if surface.is_flat() {
         return a * x + b * y;
     }
     a * (x * x * x) + ab * (3.0 * x * x * y) + ba * (3.0 * x * y * y) + b * (y * y * y)
@@ -80,7 +116,7 @@ pub struct ControlNet {
 pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec3 {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [b300, b030, b003] = net.corners;
-    if surface == Surface::Flat {
+    if surface.is_flat() {
         return b300 * x + b030 * y + b003 * z;
     }
     let [b210, b120, b021, b012, b102, b201] = net.edges;
@@ -101,7 +137,7 @@ pub fn patch_position(surface: Surface, net: &ControlNet, u: u32, v: u32) -> Vec
 pub fn patch_tangents(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 2] {
     let (x, y, z) = (u as f32 * UNIT, v as f32 * UNIT, (FIXED_ONE - u - v) as f32 * UNIT);
     let [b300, b030, b003] = net.corners;
-    if surface == Surface::Flat {
+    if surface.is_flat() {
         return [b300 - b003, b030 - b003];
     }
     let [b210, b120, b021, b012, b102, b201] = net.edges;

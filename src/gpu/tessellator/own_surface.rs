@@ -61,7 +61,7 @@ impl Tessellator {
 
     /// These inputs with a surface that does what control points of the user's own ask for: a cubic one, which they may tear.
     pub(super) fn with_own_surface(&self, inputs: &Inputs) -> Inputs {
-        let surface = if self.own_surface.is_some() { Surface::Pn } else { inputs.tessellation.surface };
+        let surface = if self.own_surface.is_some() { Surface::OF_USER_SHADER } else { inputs.tessellation.surface };
         Inputs { tessellation: Tessellation { surface, ..inputs.tessellation }, ..*inputs }
     }
 

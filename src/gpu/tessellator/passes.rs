@@ -34,9 +34,9 @@ struct Choices {
 impl Choices {
     fn of(tessellation: &Tessellation) -> Self {
         Self {
-            by_error: tessellation.used_lod() == Lod::Error,
-            has_rows: tessellation.partitioning == Partitioning::Rows,
-            displaces: tessellation.displacement != Displacement::Off,
+            by_error: tessellation.used_lod().is_by_error(),
+            has_rows: tessellation.partitioning.has_rows(),
+            displaces: tessellation.displacement.is_on(),
             normals: tessellation.normals as u32,
         }
     }
@@ -153,7 +153,7 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_own_least(&self, partitioning: Partitioning) -> Result<(), GpuError> {
-        own_least::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning == Partitioning::Rows)
+        own_least::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows())
     }
 
     /// What passes over the mesh are bound to.

@@ -167,12 +167,7 @@ impl Engine {
         inputs: &Inputs,
         tolerance_px: f32,
     ) -> Result<Option<u64>, GpuError> {
-        let own = inputs.tessellation;
-        let partitioning = match own.partitioning {
-            Partitioning::Subtriangulation => Partitioning::Integer,
-            other => other,
-        };
-        let by_error = Tessellation { lod: Lod::Error, tolerance: tolerance_px, partitioning, ..own };
+        let by_error = inputs.tessellation.by_error(tolerance_px);
         let given = scene.tessellator.given().cloned();
         if given.is_some() {
             scene.tessellator.give(None)?;
@@ -194,7 +189,7 @@ impl Engine {
     /// More patches than the adapter binds memory for, or a lost device.
     pub fn factors_capped(&self, scene: &Scene, tessellation: &Tessellation) -> Result<u64, GpuError> {
         let edges = self.asked_factors(scene)?.beyond(tessellation.partitioning);
-        if tessellation.used_lod() != Lod::Error {
+        if !tessellation.used_lod().is_by_error() {
             return Ok(edges);
         }
         let written = scene.tessellator.hull_factors()?;

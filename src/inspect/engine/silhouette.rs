@@ -142,28 +142,17 @@ impl Engine {
 
 /// What [`OutlineOf::ALL`] are tessellated with.
 fn inputs(own: &Tessellation, view: &SilhouetteView, grid: SampleGrid) -> [Inputs; 3] {
+    let watertight = Tessellation { edges: Edges::PerEdge, convention: Convention::D3d11, ..*own };
     let source = Tessellation {
         surface: Surface::Flat,
-        lod: Lod::Uniform,
-        factor: 1.0,
         partitioning: Partitioning::Integer,
-        clip: Clip::Off,
-        cull_back_faces: false,
-        edges: Edges::PerEdge,
-        convention: Convention::D3d11,
-        displacement: Displacement::Off,
-        ..*own
+        ..watertight.with_one_factor(1.0).undisplaced()
     };
     let surface = Tessellation {
-        lod: Lod::Error,
-        tolerance: TOLERANCE_PX,
-        // Rows have too few segments for the tolerance a little earlier.
         partitioning: Partitioning::Integer,
         clip: Clip::Frustum,
         cull_back_faces: false,
-        edges: Edges::PerEdge,
-        convention: Convention::D3d11,
-        ..*own
+        ..watertight.by_error(TOLERANCE_PX)
     };
     // The surface is drawn in the margin too.
     let half_viewport = grid.padded().map(|side| 0.5 * side as f32).into();

@@ -50,12 +50,7 @@ struct Patch {
 
 /// The factors of a partitioning.
 fn levels(partitioning: Partitioning) -> Vec<u32> {
-    match partitioning {
-        Partitioning::FractionalOdd => (1..=63).step_by(2).collect(),
-        Partitioning::FractionalEven => (2..=64).step_by(2).collect(),
-        Partitioning::Pow2 => vec![1, 2, 4, 8, 16, 32, 64],
-        Partitioning::Integer | Partitioning::Subtriangulation | Partitioning::Rows => (1..=64).collect(),
-    }
+    (1..=64).filter(|segments| partitioning.has_segments(*segments)).collect()
 }
 
 impl Patch {

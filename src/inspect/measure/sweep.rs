@@ -64,12 +64,7 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
     let steps: Vec<_> = (1..=count).map(still).collect();
 
     let inputs = Inputs {
-        tessellation: Tessellation {
-            lod: Lod::Uniform,
-            clip: Clip::Off,
-            convention: Convention::D3d11,
-            ..inputs.tessellation
-        },
+        tessellation: Tessellation { convention: Convention::D3d11, ..inputs.tessellation.with_one_factor(first) },
         ..*inputs
     };
     let places = Places::new(places());
@@ -213,7 +208,7 @@ impl States<'_> {
     /// The processed factors of every patch.
     fn factors(&self, factor: f32) -> PatchFactors {
         let partitioning = self.inputs.tessellation.partitioning;
-        let factor = if partitioning == Partitioning::Pow2 { round_pow2(factor) } else { factor };
+        let factor = partitioning.hull_factor(factor);
         process(partitioning, [factor; 3], factor)
     }
 

@@ -1,6 +1,6 @@
 //! What the pipelines of pictures draw.
 
-use super::look::Look;
+use super::colors::Look;
 use super::needs::{Cut, Needs};
 use crate::settings::{Choice, NormalsAt};
 

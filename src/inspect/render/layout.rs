@@ -3,7 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::Scale;
-use crate::settings::{Colors, Overlays};
+use super::colors::DrawnColors;
+use crate::settings::Overlays;
 use geometry::mesh::{EdgeKind, Slot};
 use gpu::layout::Vertex;
 
@@ -113,22 +114,12 @@ pub(crate) const FOUND_EMITTED: u32 = 1;
 /// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and normals are drawn as lines
 /// instead, and the ground has a shader of its own.
 pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
-    u32::from(overlays.wireframe)
+    DrawnColors::new(overlays.colors).bit()
+        | u32::from(overlays.wireframe)
         | u32::from(overlays.patches) << 1
-        | u32::from(overlays.colors == Colors::Barycentric) << 2
         | u32::from(overlays.adjacency) << 3
         | u32::from(overlays.folds) << 4
         | u32::from(overlays.back_faces) << 5
-        | u32::from(overlays.colors == Colors::Factors) << 6
-        | u32::from(overlays.colors == Colors::TriangleSize) << 7
-        | u32::from(overlays.colors == Colors::LowFactors) << 8
-        | u32::from(overlays.colors == Colors::Deviation) << 9
-        | u32::from(overlays.colors == Colors::Excess) << 10
-        | u32::from(overlays.colors == Colors::Clay) << 11
-        | u32::from(overlays.colors == Colors::Zebra) << 12
-        | u32::from(overlays.colors == Colors::ShadingNormals) << 13
-        | u32::from(overlays.colors == Colors::UvChecker) << 14
-        | u32::from(overlays.colors == Colors::Silhouette) << 15
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface_color.wgsl` has the same in linear light.

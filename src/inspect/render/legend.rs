@@ -63,11 +63,6 @@ pub struct Distances {
     pub outlines: Option<OutlineDistances>,
 }
 
-/// Whether colours have a legend.
-pub fn has_legend(colors: Colors) -> bool {
-    !matches!(colors, Colors::Material | Colors::Clay | Colors::Matcap)
-}
-
 /// The legend of a picture's colours, if they have one. `radius` is the mesh's bounding radius in object units.
 pub fn legend_of(settings: &Settings, radius: f32, distances: &Distances) -> Option<Legend> {
     let legend = |title: &str, meaning: &str, shown: Shown| {

@@ -24,7 +24,7 @@ mod leaks;
 mod legend;
 #[cfg(test)]
 mod light_tests;
-mod look;
+mod colors;
 mod marks;
 pub mod matcap;
 mod materials;
@@ -60,7 +60,7 @@ pub use ground::{Ground, axis_lines};
 pub(crate) use leaks::LeakCounter;
 pub use leaks::{Leak, LeakCount, Leaks, leaks_in};
 pub(crate) use legend::{COLUMNS, Shown, tick_text};
-pub use legend::{Distances, Legend, has_legend, legend_of};
+pub use legend::{Distances, Legend, legend_of};
 pub use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
 pub use outlines_picture::{lay_over, outlines_picture};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};

@@ -1,6 +1,6 @@
 //! What the shader that lights a mesh's materials must have.
 
-use crate::settings::{Colors, FileLights, Settings};
+use crate::settings::{ColorSource, FileLights, Settings};
 use geometry::mesh::{Alpha, MOST_LIGHTS, Material, Mesh, Slot};
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
@@ -109,7 +109,7 @@ pub(super) struct Cut {
 impl Cut {
     /// How one of a mesh's materials is cut under these settings, in such pictures; none if it isn't, or if it is lit from all around.
     pub(super) fn of(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Option<Self> {
-        let is_seen = settings.overlays.colors == Colors::Material && !settings.shows_materials();
+        let is_seen = settings.overlays.colors.source() == ColorSource::Materials && !settings.shows_materials();
         let is_cut = is_seen && matches!(material.look.alpha, Alpha::Mask(_));
         is_cut.then_some(Self { details: mesh.details.is_some(), samples: kind.samples > 1 })
     }

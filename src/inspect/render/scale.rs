@@ -1,7 +1,6 @@
 //! Colour scales: the colours of numbers over the surface, for shaders and legends.
 
 use crate::measure::SMALL_PX;
-use crate::settings::Colors;
 
 /// A colour scale. Its colours are evenly spaced: on a logarithmic scale, or on an even one if that has numbers below 0. Numbers
 /// beyond an end have the colour of that end.
@@ -75,28 +74,6 @@ pub fn curvature_scale(ends: f32, radius: f32) -> Scale {
 
 impl Scale {
     pub const STOPS: usize = 7;
-
-    /// The scale of colours that stand for numbers, if it is always the same one.
-    pub fn of(colors: Colors) -> Option<&'static Self> {
-        match colors {
-            Colors::Factors => Some(&FACTOR_SCALE),
-            Colors::TriangleSize => Some(&SIZE_SCALE),
-            Colors::Excess => Some(&EXCESS_SCALE),
-            Colors::TexelDensity => Some(&DENSITY_SCALE),
-            Colors::Material
-            | Colors::Clay
-            | Colors::Matcap
-            | Colors::Zebra
-            | Colors::ShadingNormals
-            | Colors::SurfaceNormals
-            | Colors::Curvature
-            | Colors::UvChecker
-            | Colors::Barycentric
-            | Colors::LowFactors
-            | Colors::Deviation
-            | Colors::Silhouette => None,
-        }
-    }
 
     /// The place of a number on the scale, from 0 for the least to 1 for the most.
     pub fn place(&self, number: f32) -> f32 {

@@ -2,7 +2,7 @@
 
 use super::draws::{Draw, Faces, Shading, SurfaceDraw, Triangles};
 use super::layout::overlay_bits;
-use super::look::Look;
+use super::colors::DrawnColors;
 use super::needs::{Cut, Needs, PictureKind};
 use crate::settings::{Colors, NormalsAt, Overlays, Settings};
 use geometry::mesh::{Material, Mesh};
@@ -36,7 +36,7 @@ fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, 
         let needs = Needs::of(mesh, material, settings, kind).own(material, kind);
         return (Shading::Lit(needs), own_faces(settings, material).unwrap_or(faces));
     }
-    (Look::of(settings.overlays.colors).map_or(Shading::Textured, Shading::Look), faces)
+    (DrawnColors::new(settings.overlays.colors).look().map_or(Shading::Textured, Shading::Look), faces)
 }
 
 /// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice, so that
@@ -50,7 +50,7 @@ pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Face
 
 /// The settings of the mesh without tessellation.
 pub(super) fn undisplaced(settings: &Settings) -> Settings {
-    settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation })
+    settings.with(settings.tessellation.undisplaced())
 }
 
 /// How pipelines get emitted triangles.

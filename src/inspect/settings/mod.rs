@@ -23,7 +23,7 @@ pub(crate) use choice::choices;
 pub use choice::{Choice, Description, descriptions};
 pub use light::{FileLights, Lighting, NormalMaps, ToneCurve};
 pub use matcap::Matcap;
-pub use overlays::{Colors, Control, Overlay, Overlays};
+pub use overlays::{ColorSource, Colors, Control, Overlay, Overlays};
 pub use value::{Access, Declaration, Kind, Range, Value};
 
 /// Memory for a tessellation's output, in bytes.
@@ -193,12 +193,12 @@ impl Settings {
 
     /// The heights that displace a mesh.
     fn displacing<'a>(&self, mesh: &'a Mesh) -> Option<&'a Heights> {
-        mesh.heights.as_deref().filter(|_| self.tessellation.displacement != Displacement::Off)
+        mesh.heights.as_deref().filter(|_| self.tessellation.displacement.is_on())
     }
 
     /// Whether materials are drawn as glTF describes them, in light from all around.
     pub fn shows_materials(&self) -> bool {
-        self.lighting != Lighting::Camera && self.overlays.colors == Colors::Material
+        self.lighting != Lighting::Camera && self.overlays.colors.source() == ColorSource::Materials
     }
 
     /// Whether the light from all around is drawn behind the mesh.

@@ -5,7 +5,7 @@
 
 use super::value::Field;
 use super::{
-    Access, Colors, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps, NormalsAt,
+    Access, ColorSource, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps, NormalsAt,
     Overlay, Range, Settings, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
@@ -88,8 +88,13 @@ pub const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments
 pub const NORMALS_FOLLOW_TRIANGLES: &str =
     "The normals of a displaced surface follow its triangles, so they are at vertices.";
 
+/// What the LOD that is used reads.
+fn reads(settings: &Settings) -> LodReads {
+    settings.tessellation.used_lod().reads()
+}
+
 fn not_displaced(settings: &Settings) -> Option<&'static str> {
-    (settings.tessellation.displacement == Displacement::Off).then_some("The surface isn't displaced.")
+    (!settings.tessellation.displacement.is_on()).then_some("The surface isn't displaced.")
 }
 
 fn not_in_studio(settings: &Settings) -> Option<&'static str> {
@@ -139,8 +144,7 @@ options! {
         placeholder: "F",
         text: "Tessellation factor: the number of segments that each edge is cut into. Under LOD by distance, the largest factor.",
         no_effect: |settings| {
-            let is_used = matches!(settings.tessellation.used_lod(), Lod::Uniform | Lod::Distance);
-            (!is_used).then_some("Adaptive LOD computes a factor for every edge.")
+            (!reads(settings).factor).then_some("Adaptive LOD computes a factor for every edge.")
         },
     }
 
@@ -157,7 +161,7 @@ options! {
         placeholder: "LOD",
         text: "Level of detail: how the factors of edges are computed.",
         no_effect: |settings| {
-            let is_fixed = settings.tessellation.partitioning == Partitioning::Subtriangulation;
+            let is_fixed = settings.tessellation.partitioning.has_one_factor();
             is_fixed.then_some(LOD_IS_FIXED)
         },
     }
@@ -168,8 +172,7 @@ options! {
         placeholder: "P",
         text: "Length of a segment on screen under LOD by edge length and the white paper's LOD.",
         no_effect: |settings| {
-            let is_used = matches!(settings.tessellation.used_lod(), Lod::Paper | Lod::EdgeLength);
-            (!is_used).then_some("Only LOD by edge length and the white paper's LOD have a segment length.")
+            (!reads(settings).pixels).then_some("Only LOD by edge length and the white paper's LOD have a segment length.")
         },
     }
 
@@ -180,7 +183,7 @@ options! {
         text: "Largest distance on screen between the triangles and the surface under LOD by error. The overlay of excess \
                triangles and the gate above-tolerance compare with it under any LOD.",
         no_effect: |settings| {
-            let is_used = settings.tessellation.used_lod() == Lod::Error || settings.overlays.colors == Colors::Excess;
+            let is_used = reads(settings).tolerance || settings.overlays.colors.source() == ColorSource::MinimumTriangles;
             (!is_used).then_some("Only LOD by error and the overlay of excess triangles have a tolerance.")
         },
     }
@@ -193,7 +196,7 @@ options! {
                from FAR on, and linear in between. FAR is larger than NEAR.",
         saved_as: &["near", "far"],
         no_effect: |settings| {
-            (settings.tessellation.used_lod() != Lod::Distance).then_some("Only LOD by distance has distances.")
+            (!reads(settings).distances).then_some("Only LOD by distance has distances.")
         },
     }
 
@@ -253,7 +256,7 @@ options! {
         label: "Normals at",
         placeholder: "PLACES",
         text: "Where the normals that the surface is shaded with are evaluated. It changes no triangle.",
-        no_effect: |settings| (settings.tessellation.displacement != Displacement::Off).then_some(NORMALS_FOLLOW_TRIANGLES),
+        no_effect: |settings| settings.tessellation.displacement.is_on().then_some(NORMALS_FOLLOW_TRIANGLES),
     }
 
     NORMAL_MAPS: field!(normal_maps), Kind::Choice(descriptions::<NormalMaps>) => {
@@ -279,7 +282,7 @@ options! {
         placeholder: "LIGHT",
         text: "The light that the mesh's own materials are seen in.",
         no_effect: |settings| {
-            let is_idle = settings.overlays.colors != Colors::Material;
+            let is_idle = settings.overlays.colors.source() != ColorSource::Materials;
             is_idle.then_some("The overlay that colours the surface has a light of its own.")
         },
     }
@@ -340,7 +343,7 @@ options! {
         placeholder: "UNIT",
         text: "The unit of the distances that the deviation overlay colours.",
         no_effect: |settings| {
-            (settings.overlays.colors != Colors::Deviation).then_some("Only the deviation overlay colours distances.")
+            (settings.overlays.colors.source() != ColorSource::ReferenceSurface).then_some("Only the deviation overlay colours distances.")
         },
     }
 
@@ -350,7 +353,7 @@ options! {
         placeholder: "C",
         text: "The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius of the mesh: a sphere has 1.",
         no_effect: |settings| {
-            (settings.overlays.colors != Colors::Curvature).then_some("Only the curvature overlay colours curvature.")
+            (settings.overlays.colors.source() != ColorSource::Curvature).then_some("Only the curvature overlay colours curvature.")
         },
     }
 
@@ -360,7 +363,7 @@ options! {
         placeholder: "NAME",
         text: "The lit sphere whose colours the matcap overlay shows.",
         no_effect: |settings| {
-            (settings.overlays.colors != Colors::Matcap).then_some("Only the matcap overlay shows a lit sphere.")
+            (settings.overlays.colors.source() != ColorSource::LitSphere).then_some("Only the matcap overlay shows a lit sphere.")
         },
     }
 

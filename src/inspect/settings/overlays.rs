@@ -120,10 +120,43 @@ overlays! {
         BackFaces as back_faces TJunctions as t_junctions Normals as normals Grid as grid
 }
 
+/// What colours are made of, besides the triangles that are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ColorSource {
+    Nothing,
+    Materials,
+    TextureCoordinates,
+    /// The curvature of the patches, on a scale that can be set.
+    Curvature,
+    /// A picture of a lit sphere.
+    LitSphere,
+    /// The fewest triangles that each patch needs.
+    MinimumTriangles,
+    /// Distances to the reference surface.
+    ReferenceSurface,
+    /// The outlines of the source mesh and of the curved surface.
+    Outlines,
+}
+
 impl Colors {
-    /// Whether they show nothing of a mesh without texture coordinates.
-    pub fn are_of_texture_coordinates(self) -> bool {
-        matches!(self, Self::UvChecker | Self::TexelDensity)
+    pub fn source(self) -> ColorSource {
+        match self {
+            Self::Material => ColorSource::Materials,
+            Self::UvChecker | Self::TexelDensity => ColorSource::TextureCoordinates,
+            Self::Curvature => ColorSource::Curvature,
+            Self::Matcap => ColorSource::LitSphere,
+            Self::Excess => ColorSource::MinimumTriangles,
+            Self::Deviation => ColorSource::ReferenceSurface,
+            Self::Silhouette => ColorSource::Outlines,
+            Self::Clay
+            | Self::Zebra
+            | Self::ShadingNormals
+            | Self::SurfaceNormals
+            | Self::Barycentric
+            | Self::Factors
+            | Self::TriangleSize
+            | Self::LowFactors => ColorSource::Nothing,
+        }
     }
 }
 
@@ -139,6 +172,13 @@ impl Overlays {
         match self.control(overlay) {
             Control::Switch(switch) => *switch = !*switch,
             Control::Colors(colors, own) => *colors = if *colors == own { Colors::Material } else { own },
+        }
+    }
+
+    /// Turns an overlay on, if it isn't.
+    pub fn turn_on(&mut self, overlay: Overlay) {
+        if !self.on().any(|on| on == overlay) {
+            self.toggle(overlay);
         }
     }
 

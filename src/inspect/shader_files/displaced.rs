@@ -22,10 +22,10 @@ const MARKS: [&str; 4] = ["@N@", "@D@", "@U@", "@V@"];
 
 impl Relief {
     pub(super) fn of(own: &Tessellation) -> Self {
-        match (own.displacement, own.used_lod()) {
-            (Displacement::Off, _) => Self::Off,
-            (_, Lod::Uniform) => Self::UniformLod,
-            _ => Self::LodByView,
+        match (own.displacement.is_on(), own.used_lod().follows_view()) {
+            (false, _) => Self::Off,
+            (true, false) => Self::UniformLod,
+            (true, true) => Self::LodByView,
         }
     }
 

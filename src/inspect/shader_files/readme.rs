@@ -8,9 +8,9 @@ use geometry::tessellate::{Displacement, Edges, Lod, Tessellation};
 /// The numbers of the constant buffer: offset in bytes, name, and what it is.
 fn constants(own: &Tessellation) -> Vec<(u32, &'static str, String)> {
     let view = "what LOD and culling are computed for; depth is reversed, 1 at the near plane";
-    let reach = match own.displacement {
-        Displacement::Off => "0",
-        _ => {
+    let reach = match own.displacement.is_on() {
+        false => "0",
+        true => {
             "the largest distance by which displacement moves a point, in object units: the largest of `scale` * (height - \
              `midlevel`), without its sign"
         }
@@ -106,11 +106,11 @@ fn index_text(export: &Export) -> &'static str {
 fn title(own: &Tessellation) -> String {
     let edges =
         if own.edges == Edges::PerEdge { "shared edges computed once" } else { "every edge computed by each patch" };
-    let displaced = match own.displacement {
-        Displacement::Off => String::new(),
-        mode => format!(", displacement {}", mode.name()),
+    let displaced = match own.displacement.is_on() {
+        false => String::new(),
+        true => format!(", displacement {}", own.displacement.name()),
     };
-    let is_culled = own.cull_back_faces && own.displacement == Displacement::Off;
+    let is_culled = own.cull_back_faces && !own.displacement.is_on();
     format!(
         "surface {}, LOD {}, partitioning {}, clipping {}, back faces {}, convention {}, {} normals, {edges}{displaced}",
         own.surface.name(),

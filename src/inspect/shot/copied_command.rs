@@ -8,7 +8,7 @@ use std::path::Path;
 use super::turn::Turn;
 use crate::engine::Preparation;
 use crate::render::Camera;
-use crate::settings::{Colors, Declaration, Lighting, Settings, Value, options};
+use crate::settings::{ColorSource, Declaration, Lighting, Settings, Value, options};
 use geometry::tessellate::{Displacement, Lod, Tessellation};
 use load::files::Limits;
 use load::{HeightSource, Source};
@@ -114,7 +114,7 @@ impl CopiedCommand<'_> {
         let has_lod = self.factors.is_none() && self.lod_shader.is_none();
         let tessellation = if has_lod { own } else { Tessellation { lod, factor, ..own } };
         let usual = Settings::default().under(tessellation.lod);
-        let usual = if has_lod { usual.with(Tessellation { lod: Lod::Error, ..usual.tessellation }) } else { usual };
+        let usual = if has_lod { usual.with(Tessellation { lod: Settings::usual().tessellation.lod, ..usual.tessellation }) } else { usual };
         let shown = Settings { background, ..self.settings.with(tessellation) };
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {
@@ -139,7 +139,7 @@ impl CopiedCommand<'_> {
 
     /// Writes the files of factors, of shaders, of a matcap and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
-        let colors_are_of_matcap = self.settings.overlays.colors == Colors::Matcap;
+        let colors_are_of_matcap = self.settings.overlays.colors.source() == ColorSource::LitSphere;
         let uses_file = self.settings.lighting == Lighting::Environment && self.settings.shows_materials();
         let files = [
             ("--factors", self.factors),

@@ -35,7 +35,7 @@ pub fn read_factors(
         line: error.line,
         reason: error.fault.to_string(),
     })?;
-    if partitioning == Partitioning::Subtriangulation {
+    if partitioning.has_one_factor() {
         let uneven = topology.patches.iter().zip(&factors).find(|(_, factors)| !factors.is_uniform());
         if let Some((patch, _)) = uneven {
             return Err(ShotError::Uneven { path: shown_path(path), triangle: patch.triangle });

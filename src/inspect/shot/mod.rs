@@ -50,7 +50,7 @@ use crate::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
     deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
-use crate::settings::{ARENA_BYTES, Colors, DeviationUnit, Settings, SplitSide};
+use crate::settings::{ARENA_BYTES, ColorSource, DeviationUnit, Settings, SplitSide};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
@@ -335,7 +335,7 @@ impl Shot {
     fn measure(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<(), ShotError> {
         let (view, settings) = (self.view(), self.subject.settings);
         let reference_surface = self.subject.reference_surface.as_ref();
-        let is_shown = settings.overlays.colors == Colors::Deviation;
+        let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
         // Both halves are compared with the same surface.
         let target = reference_surface.filter(|_| is_shown).zip(self.inputs(SplitSide::Right));
         let target = target.map(|(reference_surface, inputs)| reference_surface.target(&inputs));
@@ -363,7 +363,7 @@ impl Shot {
 
     /// Compares outlines, if they are shown: those of the right half, in all of the picture.
     fn compare_outlines(&mut self, progress: &Progress) -> Result<(), ShotError> {
-        if self.subject.settings.overlays.colors == Colors::Silhouette {
+        if self.subject.settings.overlays.colors.source() == ColorSource::Outlines {
             let seen = self.view.camera.lod_view(self.target.viewport(), &self.scene.bounds);
             let view = SilhouetteView { size: self.target.size, seen, lod: self.lod_view };
             let tessellation = &self.subject.settings.tessellation;

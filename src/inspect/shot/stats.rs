@@ -129,7 +129,7 @@ impl SettingsStats {
     fn new(settings: &Settings, has_shader: bool) -> Self {
         let own = &settings.tessellation;
         let has_effect = |option: &Declaration| (option.no_effect)(settings).is_none();
-        let is_displaced = own.displacement != Displacement::Off;
+        let is_displaced = own.displacement.is_on();
         Self {
             surface: if has_shader { "surface-shader" } else { own.surface.name() },
             alpha: own.surface.is_phong().then_some(own.alpha),

@@ -25,7 +25,7 @@ impl LodKind {
 
     /// The kind of an LOD with a partitioning; `None` for one that isn't tried.
     fn of(lod: Lod, partitioning: Partitioning) -> Option<Self> {
-        let has_rows = partitioning == Partitioning::Rows && lod == Lod::Error;
+        let has_rows = partitioning.has_rows() && lod.is_by_error();
         Self::ALL.into_iter().find(|kind| kind.lod() == lod && (*kind == Self::ErrorRows) == has_rows)
     }
 
@@ -163,7 +163,7 @@ pub struct Plan {
 impl Default for Plan {
     fn default() -> Self {
         Self {
-            surfaces: vec![Surface::Flat, Surface::PnAen, Surface::PhongAen, Surface::NagataAen],
+            surfaces: Surface::ALL.into_iter().filter(|surface| surface.is_flat() || surface.is_averaged()).collect(),
             normals: vec![Normals::Linear],
             partitionings: Vec::new(),
             lods: LodKind::ALL.to_vec(),
@@ -206,10 +206,10 @@ impl Plan {
                 let has_common = self.partitionings.is_empty() || lod == LodKind::ErrorRows;
                 let listed = if has_common { &common[..] } else { &self.partitionings };
                 let possible = |partitioning: &&Partitioning| {
-                    lod == LodKind::Uniform || **partitioning != Partitioning::Subtriangulation
+                    lod == LodKind::Uniform || !partitioning.has_one_factor()
                 };
                 let method = |&partitioning: &Partitioning| {
-                    let under_rows = lod == LodKind::Error && partitioning == Partitioning::Rows;
+                    let under_rows = lod == LodKind::Error && partitioning.has_rows();
                     let lod = if under_rows { LodKind::ErrorRows } else { lod };
                     Method { surface, normals, partitioning, lod }
                 };

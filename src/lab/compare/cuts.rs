@@ -71,15 +71,12 @@ impl Cut {
 
     /// Whether a side may be cut so under a partitioning.
     pub(super) fn suits(&self, partitioning: Partitioning, reach: f64) -> bool {
-        let segments = self.segments();
-        match (partitioning, self.spacing(reach)) {
-            (_, Spacing::Uneven) => false,
-            (Partitioning::FractionalOdd, _) => segments % 2 == 1,
-            (Partitioning::FractionalEven, _) => segments.is_multiple_of(2),
-            (_, Spacing::TwoShorter) => false,
-            (Partitioning::Pow2, Spacing::Even) => segments.is_power_of_two(),
-            (Partitioning::Integer | Partitioning::Subtriangulation | Partitioning::Rows, Spacing::Even) => true,
-        }
+        let spacing = match self.spacing(reach) {
+            Spacing::Even => true,
+            Spacing::TwoShorter => partitioning.is_fractional(),
+            Spacing::Uneven => false,
+        };
+        spacing && partitioning.has_segments(self.segments())
     }
 }
 

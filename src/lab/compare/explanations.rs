@@ -174,10 +174,10 @@ impl Explainer<'_> {
     /// Whether the last bits of LOD's factors decide between their points and ours: factors for a hair more or less detail give theirs.
     pub(super) fn are_last_bits(&self, different: &[u32]) -> bool {
         let own = self.inputs.tessellation;
-        if self.given.is_some() || own.used_lod() == Lod::Uniform {
+        if self.given.is_some() || !own.used_lod().follows_view() {
             return false;
         }
-        let hair = if own.used_lod() == Lod::Error { HAIR_OF_ERRORS } else { HAIR };
+        let hair = if own.used_lod().is_by_error() { HAIR_OF_ERRORS } else { HAIR };
         let written = [1.0 - hair, 1.0 + hair].map(|by| {
             let (pixels, tolerance, near, far) = (own.pixels * by, own.tolerance * by, own.near * by, own.far * by);
             let tessellation = Tessellation { pixels, tolerance, near, far, ..own };
@@ -202,7 +202,7 @@ impl Explainer<'_> {
         changed.extend([0.5, 2.0].map(Rule::Times));
         changed.extend([8.0, 15.0, 16.0, 31.0, 32.0].map(Rule::AtMost));
         // Under rows the inside factor names an edge, whose factor would be another one.
-        let orders = SIDES.map(Rule::Sides).into_iter().filter(|_| own != Partitioning::Rows);
+        let orders = SIDES.map(Rule::Sides).into_iter().filter(|_| !own.has_rows());
         let one = uniform.map(Rule::All);
         let first = others().map(|other| with(other)(Rule::Same)).chain(orders.map(with(own)));
         let second =

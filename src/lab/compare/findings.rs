@@ -418,13 +418,13 @@ fn surface_option(tessellation: &Tessellation) -> String {
 
 fn surface_text(ours: &Tessellation, theirs: &Tessellation, vertices: u64, of: u64) -> String {
     let (vertices, of) = (grouped(vertices), grouped(of));
-    if ours.displacement != Displacement::Off && surface_option(ours) == surface_option(theirs) {
+    if ours.displacement.is_on() && surface_option(ours) == surface_option(theirs) {
         return format!(
             "It isn't displaced: {vertices} of {of} vertices are off our displaced surface, and lie on the surface without \
              --displacement and --height."
         );
     }
-    let also = if ours.displacement == Displacement::Off { "" } else { ", without displacement" };
+    let also = if ours.displacement.is_on() { ", without displacement" } else { "" };
     format!(
         "Its control points are others: {vertices} of {of} vertices are off our surface ({}), and lie on that of {}{also}.",
         surface_option(ours),
@@ -434,7 +434,7 @@ fn surface_text(ours: &Tessellation, theirs: &Tessellation, vertices: u64, of: u
 
 fn displaced_text(displaced: &Displaced) -> String {
     let Displaced { vertices, of, largest, outward, inward, is_along_normals, ours } = displaced;
-    let other = if *ours == Displacement::Off { "" } else { " otherwise than ours" };
+    let other = if ours.is_on() { " otherwise than ours" } else { "" };
     let start =
         format!("It is displaced{other}: {} of {} vertices are off the surface", grouped(*vertices), grouped(*of));
     if *is_along_normals {

@@ -136,7 +136,7 @@ impl<'a> Outcomes<'a> {
         let reaches: Vec<Reach> = patches.clone().map(reach).collect();
         // LOD by error has whole factors, like those of one number.
         let lod = ours.inputs.tessellation.used_lod();
-        let has_last_bits = ours.given.is_none() && !matches!(lod, Lod::Uniform | Lod::Error);
+        let has_last_bits = ours.given.is_none() && lod.follows_view() && !lod.is_by_error();
         let theirs = |patch: &u32| assignment.count(*patch) > 0;
         let emitted = |patch: &u32| own_mesh.emits(*patch);
         let all = made_of_all(patches.len(), progress, |patch| {
@@ -260,7 +260,7 @@ impl<'a> Outcomes<'a> {
             return Ok(None);
         }
         // LOD measures control points, so that others have other factors, which are no mistake beside that.
-        let measures = given.is_none() && !matches!(inputs.tessellation.used_lod(), Lod::Uniform | Lod::Distance);
+        let measures = given.is_none() && inputs.tessellation.used_lod().reads().control_points;
         if measures && explanations.is_empty() && other.is_some_and(|other| other.mistake.is_some()) {
             return Ok(None);
         }
@@ -270,7 +270,7 @@ impl<'a> Outcomes<'a> {
         findings.push(match explanations.is_empty() {
             false => Finding::Factors { ours: partitioning, convention, explanations, patches, of },
             true => {
-                let is_of_view = given.is_none() && inputs.tessellation.used_lod() != Lod::Uniform;
+                let is_of_view = given.is_none() && inputs.tessellation.used_lod().follows_view();
                 let sides = sides.len() as u64;
                 Finding::UnknownFactors { patches, of, sides, inside, suits, ours: partitioning, is_of_view }
             }
@@ -394,7 +394,7 @@ impl<'a> Outcomes<'a> {
     /// The order of corners that explains all triangles that join other points.
     fn corner_order(&self, ours: &Ours) -> Option<CornerOrder> {
         let Inputs { tessellation, .. } = *ours.inputs;
-        if tessellation.partitioning == Partitioning::Rows {
+        if tessellation.partitioning.has_rows() {
             return None;
         }
         let written = match ours.given {

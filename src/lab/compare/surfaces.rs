@@ -81,7 +81,7 @@ impl<'a> Trial<'a> {
 
     /// Our own tessellation without displacement.
     fn undisplaced(&self) -> Tessellation {
-        Tessellation { displacement: Displacement::Off, ..self.inputs.tessellation }
+        self.inputs.tessellation.undisplaced()
     }
 
     fn surface(&self, tessellation: Tessellation, mistake: Option<NetMistake>) -> OwnSurface {
@@ -120,7 +120,7 @@ impl<'a> Trial<'a> {
     /// Seeks the usual mistake in the control points of our own surface that gives theirs.
     fn mistake(&self, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
         let own = self.undisplaced();
-        if own.surface == Surface::Flat {
+        if own.surface.is_flat() {
             return Ok(None);
         }
         let with = |mistake: NetMistake| self.surface(own, Some(mistake));

@@ -647,7 +647,7 @@ fn examples() -> Vec<Finding> {
 
 #[test]
 fn the_manual_has_every_sentence_and_kind() {
-    let page = documents::in_repository("docs/manual/compare.md");
+    let page = documents::in_repository("docs/manual/compare-meshes.md");
     let page = std::fs::read_to_string(page).expect("a page");
     for finding in examples() {
         assert!(page.contains(&format!("| {} |", finding.text())), "the page lacks: {}", finding.text());

@@ -135,11 +135,8 @@ impl<'a> Gallery<'a> {
                 continue;
             }
             seen.push(settings.tessellation.surface);
-            let plain = settings.with(Tessellation {
-                displacement: Displacement::Off,
-                factor: FRAMING_FACTOR,
-                ..settings.tessellation
-            });
+            let plain =
+                settings.with(Tessellation { factor: FRAMING_FACTOR, ..settings.tessellation.undisplaced() });
             places.extend(self.places(&mut scene, plain, &camera, target)?);
         }
         camera.fit(places.into_iter(), farthest, target.viewport());
@@ -182,7 +179,7 @@ impl<'a> Gallery<'a> {
     fn prepared(&mut self, exhibit: &Exhibit, crease_band: f32) -> Result<Loaded, LoadError> {
         let source = self.options.source.clone().unwrap_or(Source::Shape(exhibit.shape));
         let mut loaded = self.load(source, crease_band)?.clone();
-        let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement != Displacement::Off);
+        let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement.is_on());
         if displaced && loaded.mesh.heights.is_none() {
             let mut mesh = (*loaded.mesh).clone();
             mesh.heights = Some(Arc::new(exhibits::waves(&mesh)));

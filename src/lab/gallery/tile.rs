@@ -54,7 +54,7 @@ pub struct TileResults {
 pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     // The tessellator makes about 1.5 times the square of the factor triangles in a patch.
     let most = (MOST_TRIANGLES / (1.5 * scene.tessellator.topology().patches.len().max(1) as f32)).sqrt();
-    debug_assert!(inputs.tessellation.lod == Lod::Uniform);
+    debug_assert!(!inputs.tessellation.lod.follows_view());
     Inputs {
         tessellation: Tessellation {
             factor: if inputs.tessellation.factor > most { most.floor().max(1.0) } else { inputs.tessellation.factor },
@@ -78,7 +78,7 @@ pub(super) fn draw_tile(
     scene.set_lines(&engine.gpu, &[]);
     let passes = engine.time(scene, target, camera, view, &settings, Runs::default())?;
     // Points that patches agree on leave the surface that each patch has by itself, which the error is measured from.
-    let is_shared = matches!(settings.tessellation.displacement, Displacement::On | Displacement::AsPublished);
+    let is_shared = settings.tessellation.displacement.shares_heights();
     let wanted =
         Measurements { survey: true, screen_error: (!is_shared).then_some(&inputs), ..Measurements::default() };
     let MeasurementResults { survey, screen_error, .. } = engine.measure_all(scene, &wanted)?;

@@ -90,9 +90,9 @@ mod tests {
             row("cube", "Phong", Quantity::Points, 3.0),
             row("cube", "PN", Quantity::Leaks, 4.0),
         ];
-        assert!(are_judged(GateKind::Cracks, &[Method::Pn, Method::Phong], &rows));
-        assert!(!are_judged(GateKind::Leaks, &[Method::Pn, Method::Phong], &rows), "Phong has no such row");
-        assert!(!are_judged(GateKind::Warnings, &[Method::Pn], &rows), "no row has them");
+        assert!(are_judged(GateKind::Cracks, &[Method::Surface(Surface::Pn), Method::Surface(Surface::Phong)], &rows));
+        assert!(!are_judged(GateKind::Leaks, &[Method::Surface(Surface::Pn), Method::Surface(Surface::Phong)], &rows), "Phong has no such row");
+        assert!(!are_judged(GateKind::Warnings, &[Method::Surface(Surface::Pn)], &rows), "no row has them");
         let gate = |text: &str| text.parse::<Gate>().expect("a gate");
         let found = failures(&[gate("cracks"), gate("leaks:4"), gate("folds"), gate("warnings")], &rows);
         let sentence =

@@ -23,10 +23,9 @@ pub use views::{random as random_camera, viewport};
 use serde::Serialize;
 
 use geometry::mesh::{Mesh, Moment};
-use geometry::names::every;
 use geometry::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
 use inspect::render::Camera;
-use inspect::settings::Settings;
+use inspect::settings::{Choice, Settings};
 
 /// A mesh that the methods are run on: a case's, or any other.
 #[derive(Clone, Debug)]
@@ -51,42 +50,35 @@ impl Subject {
 /// A way to tessellate that is run on every case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Method {
-    Flat,
-    Pn,
-    PnAenAsPublished,
-    PnAen,
-    PnCrease,
-    Phong,
-    PhongAen,
-    Nagata,
-    NagataAen,
+    Surface(Surface),
+    /// PN-AEN with all that the white paper publishes: edges, LOD and clipping.
+    AsPublished,
 }
 
 impl Method {
-    pub const ALL: [Self; 9] =
-        every![Method: Flat, Pn, PnAenAsPublished, PnAen, PnCrease, Phong, PhongAen, Nagata, NagataAen];
+    /// Every surface, and the published method before the surface that it publishes.
+    pub fn all() -> Vec<Self> {
+        let methods = |surface| {
+            let published = (surface == Self::AsPublished.surface()).then_some(Self::AsPublished);
+            published.into_iter().chain([Self::Surface(surface)])
+        };
+        Surface::ALL.into_iter().flat_map(methods).collect()
+    }
 
-    /// The name in tables and files, and the surface.
-    const fn parts(self) -> (&'static str, Surface) {
+    /// The name in tables and files.
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Flat => ("flat", Surface::Flat),
-            Self::Pn => ("PN", Surface::Pn),
-            Self::PnAenAsPublished => ("PN-AEN as published", Surface::PnAen),
-            Self::PnAen => ("PN-AEN", Surface::PnAen),
-            Self::PnCrease => ("PN crease", Surface::PnCrease),
-            Self::Phong => ("Phong", Surface::Phong),
-            Self::PhongAen => ("Phong AEN", Surface::PhongAen),
-            Self::Nagata => ("Nagata", Surface::Nagata),
-            Self::NagataAen => ("Nagata AEN", Surface::NagataAen),
+            Self::Surface(surface) if surface.is_flat() => "flat",
+            Self::Surface(surface) => surface.label(),
+            Self::AsPublished => "PN-AEN as published",
         }
     }
 
-    pub const fn name(self) -> &'static str {
-        self.parts().0
-    }
-
     pub const fn surface(self) -> Surface {
-        self.parts().1
+        match self {
+            Self::Surface(surface) => surface,
+            Self::AsPublished => Surface::PnAen,
+        }
     }
 
     /// The name on the command line.
@@ -96,7 +88,7 @@ impl Method {
 
     /// The settings for this method with a uniform factor.
     pub fn settings(self, partitioning: Partitioning, factor: f32) -> Settings {
-        let edges = if self == Self::PnAenAsPublished { Edges::AsPublished } else { Edges::PerEdge };
+        let edges = if self == Self::AsPublished { Edges::AsPublished } else { Edges::PerEdge };
         Settings::from(Tessellation { surface: self.surface(), edges, partitioning, factor, ..Tessellation::default() })
     }
 
@@ -104,9 +96,8 @@ impl Method {
     /// alone.
     pub fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
         let displacement = match self {
-            _ if mesh.heights.is_none() => Displacement::Off,
-            Self::PnAenAsPublished => Displacement::AsPublished,
-            _ => Displacement::On,
+            Self::AsPublished if mesh.heights.is_some() => Displacement::AsPublished,
+            _ => Displacement::usual(mesh.heights.is_some()),
         };
         settings.with(Tessellation { displacement, height_scale: 0.15, ..settings.tessellation })
     }
@@ -115,8 +106,8 @@ impl Method {
     /// uses the white paper's own. Subtriangulation, which is always uniform, has clipping at one factor.
     pub fn adaptive(self, partitioning: Partitioning, pixels: f32) -> Settings {
         let (lod, clip) = match self {
-            Self::PnAenAsPublished => (Lod::Paper, Clip::Paper),
-            _ => (Lod::EdgeLength, Clip::Frustum),
+            Self::AsPublished => (Lod::Paper, Clip::Paper),
+            Self::Surface(_) => (Lod::EdgeLength, Clip::Frustum),
         };
         let settings = self.settings(partitioning, 5.0);
         settings.with(Tessellation { lod, clip, pixels, ..settings.tessellation })
@@ -197,7 +188,7 @@ pub struct Tried {
 impl Tried {
     /// The mesh itself, from where its case's picture is taken.
     pub fn of_mesh(subject: &Subject) -> Self {
-        let settings = Method::Flat.settings(Partitioning::Integer, 1.0);
+        let settings = Method::Surface(Surface::Flat).settings(Partitioning::Integer, 1.0);
         let camera = views::camera(&subject.mesh.bounds(), &subject.view, viewport());
         Self { settings, camera, moment: None }
     }

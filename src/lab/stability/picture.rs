@@ -33,7 +33,7 @@ pub fn picture(case: &Subject, engine: &Engine, sweep_to: f32) -> Result<RgbImag
     if case.probe == Probe::Sweep {
         return chart(case, sweep_to);
     }
-    let names = Method::ALL.map(|method| method.name().to_owned());
+    let names: Vec<_> = Method::all().into_iter().map(|method| method.name().to_owned()).collect();
     let parts: Vec<_> = names.into_iter().zip(parts(case, engine)?).collect();
     Ok(contact_sheet(&parts, COLUMNS, TEXT)?)
 }
@@ -70,14 +70,14 @@ fn parts(case: &Subject, engine: &Engine) -> Result<Vec<RgbImage>, GpuError> {
         engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off)?;
         Ok(DynamicImage::from(target.read(&engine.gpu)?).to_rgb8())
     };
-    Method::ALL.into_iter().map(part).collect()
+    Method::all().into_iter().map(part).collect()
 }
 
 fn chart(case: &Subject, sweep_to: f32) -> Result<RgbImage, ShotError> {
     let topology = Topology::build_within(&case.mesh, case.weld, &Progress::new()).unwrap_or_default();
     let view = LodView::new(glam::Mat4::IDENTITY, Vec2::ONE);
     let swept = Partitioning::ALL.map(|partitioning| {
-        let inputs = Method::PnAen.settings(partitioning, 1.0).inputs(view);
+        let inputs = Method::Surface(Surface::PnAen).settings(partitioning, 1.0).inputs(view);
         sweep(&case.mesh, &topology, &inputs, 1.0..=sweep_to, SWEEP_STEP)
     });
     Ok(sweep_chart(&swept, case.mesh.bounds().diagonal().into(), [960, 600])?)

@@ -146,7 +146,7 @@ pub fn page(sections: &[(&Subject, Option<String>)], rows: &[Row]) -> String {
         "Written by `pnaen stability -o DIR`, run on: {}. Each picture shows, row by row: {}. Cracks are red, folded triangles \
          violet, T-junctions yellow.\n\n{}\n",
         devices.join(", "),
-        super::Method::ALL.map(super::Method::name).join(", "),
+        super::Method::all().into_iter().map(super::Method::name).collect::<Vec<_>>().join(", "),
         capitalised(LEGEND)
     );
     let lines = lines(rows);

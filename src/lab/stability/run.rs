@@ -40,7 +40,7 @@ pub struct Effort {
 
 impl Default for Effort {
     fn default() -> Self {
-        let (factors, methods) = (vec![1.0, 2.4, 7.0, 16.0], Method::ALL.to_vec());
+        let (factors, methods) = (vec![1.0, 2.4, 7.0, 16.0], Method::all());
         Self { factors, cameras: 6, cpu: true, sweep_to: 64.0, methods, folds: false }
     }
 }
@@ -167,7 +167,7 @@ impl<'a> Running<'a> {
         let adaptive = method.displacing(&self.mesh, method.adaptive(partitioning, PIXELS));
         let unclipped = adaptive.with(Tessellation { clip: Clip::Off, ..adaptive.tessellation });
         // The paper's clip test drops whole patches, which would hide every other fault. It has cases of its own.
-        let everywhere = if method == Method::PnAenAsPublished { unclipped } else { adaptive };
+        let everywhere = if method == Method::AsPublished { unclipped } else { adaptive };
         let random = (0..effort.cameras).map(|index| seen(everywhere, random(index), Vec::new()));
         let views = [unclipped, adaptive].map(|settings| seen(settings, case_camera, Vec::new()));
         let views = views.into_iter().filter(|_| self.case.probe == Probe::View);
@@ -215,7 +215,7 @@ impl<'a> Running<'a> {
             let inputs = method.settings(partitioning, 1.0).inputs(view);
             let swept = sweep(&self.mesh, &self.topology, &inputs, 1.0..=effort.sweep_to, SWEEP_STEP);
             let largest = swept.largest().map_or(0.0, |step| step.jump);
-            let quantity = if is_fractional(partitioning) { Quantity::Jump } else { Quantity::Pop };
+            let quantity = if partitioning.is_fractional() { Quantity::Jump } else { Quantity::Pop };
             worst.take(quantity, largest / f64::from(self.bounds.diagonal()), None);
         }
         worst
@@ -252,7 +252,7 @@ impl<'a> Running<'a> {
         }
         // Clipped patches have no segments to measure, and a random camera may be anywhere.
         let Tessellation { clip, .. } = tried.settings.tessellation;
-        let is_adaptive = tried.settings.tessellation.used_lod() != Lod::Uniform;
+        let is_adaptive = tried.settings.tessellation.used_lod().follows_view();
         if self.case.probe != Probe::View || !is_adaptive || clip != Clip::Off {
             return;
         }
@@ -326,20 +326,16 @@ fn row(
     }
 }
 
-fn is_fractional(partitioning: Partitioning) -> bool {
-    matches!(partitioning, Partitioning::FractionalOdd | Partitioning::FractionalEven)
-}
-
 /// Whether this program promises that a quantity holds under a method.
 fn promised(method: Method, quantity: Quantity) -> bool {
     match quantity {
         Quantity::NotFinite | Quantity::Jump => true,
         Quantity::Pop => false,
         // Any curved surface may fold.
-        Quantity::Folds => method == Method::Flat,
+        Quantity::Folds => method.surface().is_flat(),
         // Surfaces that follow each side's own normals tear at split normals by design.
-        Quantity::Points | Quantity::Leaks => method != Method::PnAenAsPublished && !method.surface().tears(),
-        _ => method != Method::PnAenAsPublished,
+        Quantity::Points | Quantity::Leaks => method != Method::AsPublished && !method.surface().tears(),
+        _ => method != Method::AsPublished,
     }
 }
 

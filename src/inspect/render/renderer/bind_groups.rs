@@ -6,7 +6,7 @@ use super::Renderer;
 use crate::render::Scene;
 use crate::render::draws::Draw;
 use crate::render::environment::{Environment, LightView};
-use crate::settings::{Colors, Lighting, Settings};
+use crate::settings::{ColorSource, Lighting, Settings};
 use gpu::{ChunkBuffers, GpuError, bind_group};
 
 /// The light from all around in a picture.
@@ -42,7 +42,7 @@ impl Renderer {
         settings: &Settings,
         light: Option<&PictureLight>,
     ) -> Result<Vec<wgpu::BindGroup>, GpuError> {
-        if settings.overlays.colors == Colors::Matcap {
+        if settings.overlays.colors.source() == ColorSource::LitSphere {
             let own = scene.matcap.as_ref().map(|picture| &picture.0);
             let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, settings.matcap), Ok)?;
             return Ok(vec![group.clone(); scene.materials.len()]);

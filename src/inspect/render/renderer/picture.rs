@@ -9,7 +9,7 @@ use crate::render::ground::Ground;
 use crate::render::layout::linear;
 use crate::render::steps::{Step, halves, steps};
 use crate::render::{Camera, Scene, Target};
-use crate::settings::{Colors, Settings, SplitSide};
+use crate::settings::{ColorSource, Settings, SplitSide};
 use gpu::{GpuError, Recorder};
 
 /// What all steps of a picture share.
@@ -110,7 +110,7 @@ impl Renderer {
         let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
         if let Some(chunk) = step.chunk() {
             drawn.tessellator.emit(recorder, chunk)?;
-            if settings.overlays.colors == Colors::Excess {
+            if settings.overlays.colors.source() == ColorSource::MinimumTriangles {
                 drawn.tessellator.record_own_least(recorder)?;
             }
         }

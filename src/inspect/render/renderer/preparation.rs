@@ -7,7 +7,7 @@ use super::layer_passes::layer_draws;
 use crate::render::Scene;
 use crate::render::draws::{Draw, Faces, Occluded};
 use crate::render::surface_draws::{source_draw, surface_draw};
-use crate::settings::{Colors, Lighting, Settings, SplitSide};
+use crate::settings::{ColorSource, Lighting, Settings, SplitSide};
 use geometry::cores::each;
 use gpu::GpuError;
 
@@ -25,10 +25,10 @@ impl Renderer {
         if settings.shows_materials() && settings.lighting == Lighting::Studio {
             self.studio()?;
         }
-        if settings.overlays.colors == Colors::Matcap {
+        if settings.overlays.colors.source() == ColorSource::LitSphere {
             self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
         }
-        if settings.overlays.colors == Colors::Excess {
+        if settings.overlays.colors.source() == ColorSource::MinimumTriangles {
             scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
         }
         let mut draws = self.surface_draws(scene, settings, false);

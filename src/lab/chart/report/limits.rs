@@ -75,7 +75,7 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
         }
         reached.push((limit.error, part));
         let floor = part.subject.floor();
-        let flat = self::limit(part, &race, Surface::Flat).filter(|_| surface != Surface::Flat);
+        let flat = self::limit(part, &race, Surface::Flat).filter(|_| !surface.is_flat());
         ratios.extend(flat.map(|flat| flat.error.max(floor) / limit.error.max(floor)));
     }
     reached.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -109,16 +109,16 @@ fn closer(range: &Range, meshes: usize) -> String {
 
 /// The reason why a surface comes no closer.
 fn reason(surface: Surface) -> String {
-    match surface {
-        Surface::Flat => {
+    match surface.family() {
+        SurfaceFamily::Flat => {
             "its points lie on the mesh's own triangles, so no factor moves a point or turns a normal".into()
         }
-        Surface::Pn | Surface::PnAen | Surface::PnCrease => {
+        SurfaceFamily::Pn => {
             "a cubic patch follows the positions and normals of its corners, \
             which gives it the curvature of a smooth surface; only a finer mesh comes closer"
                 .into()
         }
-        Surface::Phong | Surface::PhongAen => {
+        SurfaceFamily::Phong => {
             let alpha = Settings::default().tessellation.alpha;
             let rises = 2.0 * alpha;
             format!(
@@ -127,7 +127,7 @@ fn reason(surface: Surface) -> String {
                 (rises - 1.0).abs()
             )
         }
-        Surface::Nagata | Surface::NagataAen => {
+        SurfaceFamily::Nagata => {
             "a quadratic patch has the right slopes at the ends of its edges, which gives it \
             the curvature of a smooth surface; only a finer mesh comes closer"
                 .into()
@@ -137,7 +137,7 @@ fn reason(surface: Surface) -> String {
 
 /// Names the meshes on which flat triangles come closer than a surface that averages over sides, if that is because of creases.
 fn rounds(parts: &[Part], surface: Surface) -> Option<String> {
-    if !matches!(surface, Surface::PnAen | Surface::PhongAen | Surface::NagataAen) {
+    if !surface.is_averaged() {
         return None;
     }
     let is_farther = |part: &&Part| {
