@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::{CliError, FactorsOption, refuse};
-use geometry::tessellate::{Partitioning, Tessellation};
+use geometry::tessellate::Tessellation;
 use gpu::Given;
 use inspect::own_shader::read_own_shader;
 

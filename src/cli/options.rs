@@ -14,7 +14,7 @@ use glam::Vec2;
 use super::{AnimationOption, CliError, note, refuse};
 use geometry::mesh::FileCamera;
 use geometry::mesh::crease_band::WIDEST;
-use geometry::tessellate::{Displacement, Lod, LodView, Partitioning, Surface, Tessellation, tolerance_within_budget};
+use geometry::tessellate::{Displacement, LodView, Surface, Tessellation, tolerance_within_budget};
 use gpu::Timing;
 use inspect::engine::{Engine, Preparation};
 use inspect::render::Scene;

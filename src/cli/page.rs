@@ -5,11 +5,11 @@ use std::path::Path;
 
 use clap::{Arg, Args, CommandFactory};
 
+use super::Cli;
 use super::adapters::AdapterOption;
 use super::gate_options::GateOptions;
 use super::options::{SurfaceOptions, WeldOption};
 use super::shot_options::ShotOptions;
-use super::Cli;
 use load::markdown::{listed, table};
 
 const BEGINS: &str = "<!-- options of ";
@@ -26,7 +26,9 @@ fn options_of<T: Args>() -> Vec<Arg> {
 }
 
 fn visible(command: &clap::Command) -> Vec<Arg> {
-    let is_shown = |arg: &&Arg| arg.get_long().is_some() && !arg.is_hide_set() && !["help", "version"].contains(&arg.get_id().as_str());
+    let is_shown = |arg: &&Arg| {
+        arg.get_long().is_some() && !arg.is_hide_set() && !["help", "version"].contains(&arg.get_id().as_str())
+    };
     command.get_arguments().filter(is_shown).cloned().collect()
 }
 
@@ -64,12 +66,21 @@ fn row(arg: &Arg) -> Vec<String> {
         (false, default) if default.is_empty() || !arg.get_action().takes_values() => String::new(),
         (false, default) => format!("`{default}`"),
     };
-    let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
-    let values: Vec<_> =
-        arg.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
-    let values = if values.is_empty() || !arg.get_action().takes_values() { String::new() } else { format!(": {}", values.join(", ")) };
+    let help = arg.get_help().map(ToString::to_string).unwrap_or_default().replace('\n', " ");
+    // `--help` says the rest.
+    let help = help.split_once(". ").map_or(help.as_str(), |(first, _)| first);
+    let values: Vec<_> = arg.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
+    let values = if values.is_empty() || !arg.get_action().takes_values() {
+        String::new()
+    } else {
+        format!(": {}", values.join(", "))
+    };
     let escaped = |text: &str| text.replace('|', "\\|").replace('<', "&lt;").replace('\n', " ");
-    vec![format!("{short}`--{}{}`", arg.get_long().unwrap_or_default(), escaped(&value)), escaped(&default), escaped(&help) + &values]
+    vec![
+        format!("{short}`--{}{}`", arg.get_long().unwrap_or_default(), escaped(&value)),
+        escaped(&default),
+        escaped(help) + &values,
+    ]
 }
 
 fn rows(options: &[Arg]) -> String {
@@ -87,21 +98,26 @@ fn link(group: &Group) -> String {
 fn of_command(command: &clap::Command) -> String {
     let (mut own, mut whole, mut parts) = (visible(command), Vec::new(), String::new());
     for group in groups() {
-        let (of_group, of_own) = (ids(&group.options), ids(&own));
-        let common: Vec<_> = of_group.intersection(&of_own).copied().collect();
-        if common.len() == of_group.len() {
+        let is_own = |arg: &&Arg| own.iter().any(|own| own.get_id() == arg.get_id() && row(own) == row(arg));
+        let common: Vec<_> = group.options.iter().filter(is_own).collect();
+        if common.len() == group.options.len() {
             whole.push(format!("the {}", link(&group)));
         } else if common.len() > 3 {
-            let named: Vec<_> = group.options.iter().filter(|arg| common.contains(&arg.get_id().as_str())).collect();
-            let names: Vec<_> = named.iter().map(|arg| format!("`--{}`", arg.get_long().unwrap_or_default())).collect();
+            let names: Vec<_> =
+                common.iter().map(|arg| format!("`--{}`", arg.get_long().unwrap_or_default())).collect();
             parts += &format!("| {} | | See {}. |\n", names.join(", "), link(&group));
         } else {
             continue;
         }
-        own = without(own, &group.options);
+        let common: Vec<_> = common.into_iter().cloned().collect();
+        own = without(own, &common);
     }
     let whole = if whole.is_empty() { String::new() } else { format!("Takes {}.\n\n", listed(&whole)) };
-    let table = if own.is_empty() && !parts.is_empty() { table(&["option", "default", "what it does"], &[0, 1, 2], &[]) } else { rows(&own) };
+    let table = if own.is_empty() && !parts.is_empty() {
+        table(&["option", "default", "what it does"], &[0, 1, 2], &[])
+    } else {
+        rows(&own)
+    };
     format!("{whole}{table}{parts}")
 }
 
@@ -134,7 +150,9 @@ fn the_manuals_tables_of_options_are_those_of_the_commands() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/manual/commands.md");
     let kept = std::fs::read_to_string(&path).unwrap();
     let page = with_tables(&kept);
-    assert!(Cli::command().get_subcommands().all(|command| page.contains(&format!("{BEGINS}{} -->", command.get_name()))));
+    assert!(
+        Cli::command().get_subcommands().all(|command| page.contains(&format!("{BEGINS}{} -->", command.get_name())))
+    );
     if std::env::var_os("PNAEN_UPDATE_PAGES").is_some() {
         std::fs::write(&path, &page).unwrap();
     } else {

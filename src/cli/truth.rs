@@ -6,7 +6,6 @@ use clap::Args;
 
 use super::{CliError, SurfaceOptions, options, refuse};
 use geometry::progress::Progress;
-use geometry::tessellate::Displacement;
 use inspect::engine::Loaded;
 use inspect::shot::ReferenceSurface;
 use inspect::truth::Truth;

@@ -100,7 +100,9 @@ fn colors_and_overlays() -> Vec<Command> {
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
         let (name, needs_coordinates) = match overlays.control(overlay) {
-            Control::Colors(_, given) => (format!("{colors}: {}", given.label()), given.source() == ColorSource::TextureCoordinates),
+            Control::Colors(_, given) => {
+                (format!("{colors}: {}", given.label()), given.source() == ColorSource::TextureCoordinates)
+            }
             Control::Switch(_) => (format!("Overlay: {}", overlay.label()), false),
         };
         let needs: &[Need] = if needs_coordinates { &[Need::TextureCoordinates] } else { &[] };

@@ -11,7 +11,8 @@ fn page() -> String {
     let gestures = GESTURES.map(|(gesture, text)| vec![gesture.to_owned(), text.to_owned()]);
     let (with_keys, without): (Vec<_>, Vec<_>) =
         all(&Availability::default()).into_iter().partition(|command| !command.keys.is_empty());
-    let keyed = |command: &Command| vec![plain(&key_names(&command.keys)), plain(&command.name), menu(command).to_owned()];
+    let keyed =
+        |command: &Command| vec![plain(&key_names(&command.keys)), plain(&command.name), menu(command).to_owned()];
     let mut by_menu: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for command in &without {
         by_menu.entry(menu(command)).or_default().push(plain(&command.name));

@@ -35,9 +35,6 @@ pub trait Choice: Copy + PartialEq + 'static {
 
     fn description(self) -> Description;
 
-    /// Its number in buffers and shaders.
-    fn number(self) -> u32;
-
     fn name(self) -> &'static str {
         self.description().name
     }
@@ -81,10 +78,6 @@ macro_rules! choices {
                 match self {
                     $(Self::$variant => $crate::choice::Description::new($name, $label, $text),)+
                 }
-            }
-
-            fn number(self) -> u32 {
-                self as u32
             }
         }
     };

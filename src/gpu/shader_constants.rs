@@ -13,7 +13,7 @@ macro_rules! numbered {
     };
 }
 
-/// The constants that belong to a file: `LOD_EDGE_LENGTH` is `Lod::EdgeLength`, for example.
+/// The constants that belong to a file: those of LOD begin with `LOD_`, such as `LOD_EDGE_LENGTH`.
 pub fn enum_constants(file: &str) -> String {
     match file {
         "convention" => constants("CONVENTION", numbered!(Convention)),
@@ -33,7 +33,9 @@ pub fn enum_constants(file: &str) -> String {
 
 /// One line for each value: the prefix and its name in capitals, and its number.
 fn constants<T: Debug, const N: usize>(prefix: &str, values: [(T, u32); N]) -> String {
-    let line = |(value, number): (T, u32)| format!("const {prefix}_{}: u32 = {number}u;\n", in_capitals(&format!("{value:?}")));
+    let line = |(value, number): (T, u32)| {
+        format!("const {prefix}_{}: u32 = {number}u;\n", in_capitals(&format!("{value:?}")))
+    };
     values.map(line).concat()
 }
 

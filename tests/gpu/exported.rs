@@ -64,7 +64,7 @@ fn every_surface_and_lod_agrees_with_our_passes_and_the_page_says_so() {
         assert_eq!(row.agreement.torn > 0, row.surface.tears(), "{what}: {:?}", row.agreement);
     }
     assert_eq!(rows.len(), Surface::ALL.len() * (Lod::ALL.len() - 1) * LANGUAGES.len());
-    assert_part_of_page("docs/manual/shaders.md", "table of agreement", &table(&rows));
+    assert_part_of_page("docs/results/shaders.md", "table of agreement", &table(&rows));
 }
 
 #[test]
@@ -164,7 +164,7 @@ fn the_example_has_the_passes_that_are_exported_and_makes_its_moments() {
 fn what_hardware_has_no_equal_of_is_refused_with_what_can_be_exported() {
     let refused =
         |language, own: Tessellation| shader_files(language, &own, "a test").expect_err("refused").to_string();
-    for &language in Language::ALL {
+    for language in Language::ALL {
         let by_error = refused(language, Tessellation { lod: Lod::Error, ..Tessellation::default() });
         assert!(by_error.contains("LOD by error") && by_error.contains("--lod uniform"), "{by_error}");
     }

@@ -46,7 +46,7 @@ fn every_displaced_surface_agrees_with_our_passes_and_the_page_says_so() {
         assert_eq!(row.agreement.torn > 0, tears, "{what}: {:?}", row.agreement);
     }
     assert_eq!(rows.len(), 48);
-    assert_part_of_page("docs/manual/shaders.md", "table of displaced agreement", &displaced_table(&rows));
+    assert_part_of_page("docs/results/shaders.md", "table of displaced agreement", &displaced_table(&rows));
 }
 
 #[test]

@@ -44,7 +44,7 @@ fn every_surface_displaced_by_the_view_agrees_and_the_page_says_so() {
         assert_agrees(&row.agreement, row.displacement != Displacement::On, &what);
     }
     assert_eq!(rows.len(), 3 * 3 * 2);
-    assert_part_of_page("docs/manual/shaders.md", "table of agreement by the view", &table_by_view(&rows));
+    assert_part_of_page("docs/results/shaders.md", "table of agreement by the view", &table_by_view(&rows));
     for (surface, lod) in Surface::ALL.into_iter().zip(BY_VIEW.into_iter().cycle()) {
         for language in LANGUAGES {
             let own = Tessellation { surface, ..usual(lod) };

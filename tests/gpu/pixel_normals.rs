@@ -9,7 +9,7 @@ use gpu::{Timing, take_times};
 use image::RgbaImage;
 use inspect::engine::{Preparation, load};
 use inspect::render::{Camera, Scene, Target};
-use inspect::settings::{ARENA_BYTES, Choice, NormalsAt, Overlays, Settings};
+use inspect::settings::{ARENA_BYTES, NormalsAt, Overlays, Settings};
 use load::Source;
 
 use crate::displacement::wavy;
@@ -56,7 +56,7 @@ fn from_fine(scene: &mut Scene, normals: Normals) -> [f64; 2] {
 fn one_triangle_with_normals_at_pixels_is_shaded_as_thousands_with_normals_at_vertices() {
     for shape in [Shape::CubeSmooth, Shape::Torus, Shape::Icosahedron] {
         let (_, mut scene) = scene(shape);
-        for &normals in Normals::ALL {
+        for normals in Normals::ALL {
             let [vertices, pixels] = from_fine(&mut scene, normals);
             assert!(pixels < ROUNDING, "{shape} {normals:?}: {pixels}");
             assert!(normals != Normals::Quadratic || vertices > 10.0 * pixels, "{shape}: {vertices} {pixels}");
@@ -80,8 +80,8 @@ fn normals_at_pixels_follow_poses() {
 fn every_surface_has_the_same_normals_at_pixels_as_at_many_vertices() {
     let (_, mut scene) = scene(Shape::CubeSplit);
     for surface in Surface::ALL {
-        for &normals in Normals::ALL {
-            for &edges in Edges::ALL {
+        for normals in Normals::ALL {
+            for edges in Edges::ALL {
                 let [vertices, pixels] = [NormalsAt::Vertices, NormalsAt::Pixels].map(|normals_at| {
                     let own = settings(surface, normals, 64.0, normals_at);
                     picture(&mut scene, &own.with(Tessellation { edges, ..own.tessellation }), SIZE)

@@ -1,5 +1,5 @@
 //! Whether `--reference` tells what is wrong with a picture: on the same driver, where all px must be equal, and with the usual
-//! threshold, which is for references of other drivers. The manual's tables of pairs, in `docs/manual/compare-pictures.md`, are made of
+//! threshold, which is for references of other drivers. The manual's tables of pairs, in `docs/results/compare-pictures.md`, are made of
 //! them; `PNAEN_UPDATE_PAGES=1` writes them again.
 //!
 //! There is no second driver here. What drivers are allowed to do otherwise is made instead: colours are rounded otherwise, and
@@ -345,7 +345,7 @@ fn all_pairs() -> Pairs {
 }
 
 /// The table as the manual has it.
-const PAGE: &str = "docs/manual/compare-pictures.md";
+const PAGE: &str = "docs/results/compare-pictures.md";
 const TABLES: [(&str, bool); 2] = [("same", true), ("different", false)];
 
 /// Puts a table between its marks in a page.

@@ -75,7 +75,7 @@ fn gltf() {
     assert_within("loose-quantised.glb", 4, |count| loose(Grid::of(count, 0.0), true));
 }
 
-/// The memory that is taken between a load and the first picture, in bytes per triangle, as docs/manual/files.md says.
+/// The memory that is taken between a load and the first picture, in bytes per triangle, as docs/results/files.md says.
 #[test]
 fn edges_and_previews_of_welds() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);

@@ -247,8 +247,9 @@ fn page() -> String {
     });
     format!(
         "# Where to click\n\n\
-         Twenty things that people come for, as clicks from a first start, where the vase is open in a split view. Every command is \
-         also found by its name with Ctrl+P, and most have a [key](keys.md). A file can be dropped on the window, too.\n\n{}",
+         This page shows the clicks for twenty common tasks. They are counted from the first start, when the vase is open in a \
+         split view. You can also find every command by its name with Ctrl+P, and most commands have a [key](keys.md). To open a \
+         file, you can also drop it on the window.\n\n{}",
         table(&["to", "click", "clicks"], &[0, 1], &rows)
     )
 }

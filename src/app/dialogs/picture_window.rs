@@ -5,7 +5,7 @@ use egui::{DragValue, Grid, Ui};
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::commands::{Purpose, Written};
-use inspect::render::{Distances, legend_of};
+use inspect::render::legend_of;
 
 /// The sides of pictures, in px: those that the option `--size` takes.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=16384;
@@ -71,7 +71,7 @@ impl App {
         let hover = "Draws what is on over the surface: wireframe, cracks, colours and so on, and the selection. The frustum of \
                      a frozen LOD camera is always drawn.";
         ui.checkbox(&mut choices.overlays, "With overlays").on_hover_text(hover);
-        let is_possible = choices.overlays && legend_of(&self.settings, 1.0, &Distances::default()).is_some();
+        let is_possible = choices.overlays && legend_of(&self.settings, 1.0, &self.legend_distances()).is_some();
         let legend = ui.add_enabled(is_possible, egui::Checkbox::new(&mut choices.legend, "With legend"));
         let hover = "Draws the legend of the surface's colours into the lower right corner (--legend).";
         legend.on_hover_text(hover).on_disabled_hover_text("These colours stand for nothing, and have no legend.");

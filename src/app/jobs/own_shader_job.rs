@@ -12,7 +12,7 @@ use super::job_list::Work;
 use crate::app::App;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
-use geometry::tessellate::{Lod, Partitioning, Surface, Tessellation};
+use geometry::tessellate::{Lod, Surface, Tessellation};
 use gpu::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader, Tessellator};
 use inspect::engine::Engine;
 use inspect::own_shader::read_own_shader;

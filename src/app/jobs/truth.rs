@@ -6,7 +6,6 @@ use super::beside::new_generation;
 use super::job_list::Work;
 use crate::app::App;
 use geometry::progress::Progress;
-use geometry::tessellate::Displacement;
 use inspect::settings::Colors;
 use inspect::truth::Truth;
 use load::{LoadError, Source};

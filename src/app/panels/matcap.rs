@@ -18,7 +18,7 @@ impl App {
         let shown = image.clone().unwrap_or_else(|| own.label().to_owned());
         let combo = egui::ComboBox::from_id_salt("Lit sphere").selected_text(shown).truncate();
         let combo = combo.show_ui(ui, |ui| {
-            for &matcap in Matcap::ALL {
+            for matcap in Matcap::ALL {
                 let is_shown = image.is_none() && own == matcap;
                 if ui.selectable_label(is_shown, matcap.label()).on_hover_text(matcap.text()).clicked() {
                     self.settings.matcap = matcap;

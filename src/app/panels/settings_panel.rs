@@ -7,7 +7,7 @@ use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
-use geometry::tessellate::{Displacement, Lod, Tessellation};
+use geometry::tessellate::{Lod, Tessellation};
 use inspect::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 
 /// The overlays that have a button in the toolbar, and so no row here.
@@ -41,7 +41,7 @@ impl App {
     }
 
     fn overlay_rows(&mut self, ui: &mut egui::Ui) {
-        for &overlay in Overlay::ALL.iter().filter(|overlay| !ON_TOOLBAR.contains(overlay)) {
+        for overlay in Overlay::ALL.into_iter().filter(|overlay| !ON_TOOLBAR.contains(overlay)) {
             if let Control::Switch(switch) = self.settings.overlays.control(overlay) {
                 ui.checkbox(switch, overlay.label()).on_hover_text(overlay_hover(overlay));
                 ui.end_row();

@@ -8,7 +8,7 @@ use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
-use inspect::settings::{Colors, Overlay};
+use inspect::settings::Overlay;
 use load::{Import, NormalSource, is_of_lacking_normals};
 
 /// Where a click on a line leads.

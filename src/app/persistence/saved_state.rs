@@ -12,7 +12,6 @@ use super::saved_settings::{read_settings, written_settings};
 use crate::app::sections::{OpenSections, Section};
 use crate::commands::MOST_BOOKMARKS;
 use geometry::mesh::UpAxis;
-use geometry::tessellate::{Displacement, Tessellation};
 use inspect::render::Camera;
 use inspect::settings::{Choice, Settings};
 use load::{FileUnit, LengthUnit};

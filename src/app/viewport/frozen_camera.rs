@@ -7,7 +7,7 @@ use crate::app::jobs::measure_job::Seen;
 use crate::app::text::counted;
 use crate::commands::{Action, key_name};
 use geometry::mesh::Bounds;
-use geometry::tessellate::{Clip, Lod, LodView};
+use geometry::tessellate::LodView;
 use geometry::view::ScreenView;
 use inspect::render::{Camera, LineSegment, lod_camera_lines};
 use inspect::settings::Settings;

@@ -325,7 +325,8 @@ impl Picture {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
         // Nothing may be measured of a surface shader.
-        let shows = wanted.settings.overlays.colors.source() == ColorSource::ReferenceSurface && wanted.from_files.surface == 0;
+        let shows =
+            wanted.settings.overlays.colors.source() == ColorSource::ReferenceSurface && wanted.from_files.surface == 0;
         let mut halves =
             SplitSide::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
         let is_known = halves.all(Scene::knows_deviation);

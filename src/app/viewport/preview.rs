@@ -10,7 +10,7 @@ use super::preview_pace::PreviewPace;
 use crate::app::jobs::job_list::Jobs;
 use crate::app::painting::{Painting, ShownPicture};
 use crate::app::{App, Document};
-use geometry::tessellate::{Clip, Inputs, Lod, Tessellation};
+use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::ScreenView;
 use gpu::{GpuError, Recorder, Timing};
 use inspect::engine::Engine;

@@ -7,7 +7,7 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
-use geometry::tessellate::{Displacement, Lod, Partitioning, Tessellation};
+use geometry::tessellate::{Displacement, Lod, Tessellation};
 use inspect::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
 use load::Import;
 
@@ -102,8 +102,7 @@ impl Group for GivenTessellation {
                 && matches.value_source(id) == Some(ValueSource::CommandLine)
         };
         let own = &mut self.tessellation;
-        if !is_given(options::LOD.name)
-            && (own.partitioning.has_one_factor() || WITHOUT_LOD.into_iter().any(is_given))
+        if !is_given(options::LOD.name) && (own.partitioning.has_one_factor() || WITHOUT_LOD.into_iter().any(is_given))
         {
             own.lod = Lod::Uniform;
         }
@@ -317,7 +316,7 @@ mod tests {
     #[test]
     fn what_gives_factors_stands_for_uniform_lod_and_each_lod_has_its_partitioning() {
         use Lod::{EdgeLength, Error, Uniform};
-        use Partitioning::{FractionalOdd, Integer, Rows, Subtriangulation};
+        use geometry::tessellate::Partitioning::{FractionalOdd, Integer, Rows, Subtriangulation};
         for (arguments, lod, partitioning) in [
             ("", Error, Rows),
             ("--factor=8", Uniform, FractionalOdd),

@@ -10,7 +10,6 @@ use std::ops::Range;
 
 use super::topology::{Patch, Side, Topology};
 use crate::casts::to_u32;
-use crate::names::every;
 
 choices! {
     /// How many indices a patch has, and which.

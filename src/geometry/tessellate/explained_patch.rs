@@ -12,7 +12,7 @@ use super::mesh_factors::MeshLod;
 use super::mesh_tessellation::seen_with_reach;
 use super::piece_error::{SeenPatch, may_slide, piece_error};
 use super::{
-    Clip, Convention, FIXED_ONE, Inputs, Lod, Normals, Partitioning, PatchFactors, Tessellation, corner_weights,
+    Clip, Convention, FIXED_ONE, Inputs, Normals, Partitioning, PatchFactors, Tessellation, corner_weights,
     domain_plan, domain_point, domain_side, domain_triangle, process, triangle_count,
 };
 use crate::mesh::{Mesh, Topology};

@@ -6,7 +6,7 @@ use super::control_nets::ControlNets;
 use super::mesh_displacement::MeshDisplacement;
 use super::mesh_factors::MeshLod;
 use super::piece_error::{SeenPatch, may_slide};
-use super::{ControlNet, Inputs, Lod, Surface};
+use super::{ControlNet, Inputs};
 use crate::mesh::{Mesh, Topology};
 
 /// The surface that a tessellation approximates, evaluated in f64 at any point.
@@ -148,7 +148,7 @@ mod tests {
     use super::*;
     use crate::mesh::Shape;
     use crate::progress::Progress;
-    use crate::tessellate::{LodView, Tessellation};
+    use crate::tessellate::{LodView, Surface, Tessellation};
     use glam::{Mat4, Vec2};
 
     /// Returns the x coordinate of the surface at the weights 1/2, 1/3 and 1/6, if the control points have these.

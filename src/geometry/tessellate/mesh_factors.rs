@@ -16,8 +16,8 @@ use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
 use super::texel_lengths::Maps;
 use super::{
-    HullFactors, Inputs, Lod, Partitioning, SURFACE_SHARE, Surface, Tessellation, distance_factor, edge_length_factor,
-    last_factor, paper_edge_factor, process, round_pow2, triangle_count,
+    HullFactors, Inputs, Lod, SURFACE_SHARE, Tessellation, distance_factor, edge_length_factor, last_factor,
+    paper_edge_factor, process, triangle_count,
 };
 
 /// The factors that LOD gives to a mesh.
@@ -303,7 +303,7 @@ mod tests {
 
     use super::*;
     use crate::mesh::{Shape, Topology};
-    use crate::tessellate::LodView;
+    use crate::tessellate::{LodView, Partitioning};
 
     #[test]
     fn all_edges_get_the_least_factor_that_suffices_if_patches_have_more_triangles() {

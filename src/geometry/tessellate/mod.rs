@@ -50,7 +50,7 @@ pub use cull::Clip;
 pub use displace::Displacement;
 pub use factors::{Partitioning, PatchFactors};
 pub use inputs::{Edges, Inputs, Tessellation};
-pub use lod::{Lod, LodView};
+pub use lod::{Lod, LodReads, LodView};
 pub use mesh_tessellation::{Tessellated, tessellate};
 pub use normal::Normals;
 pub use octahedral_normal::unpack_normal;

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use glam::{Mat4, Vec3};
 use rayon::prelude::*;
 
-use super::{Displacement, Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
+use super::{Edges, Inputs, Surface, beyond_near, side_control_points, straight_control_point};
 use crate::mesh::{Alpha, EdgeKind, Material, Mesh, Topology};
 
 /// A closed mesh whose parts are all wound outward and whose materials are single-sided, without places where one sees the backs that

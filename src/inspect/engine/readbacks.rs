@@ -9,7 +9,7 @@ use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor};
 use crate::render::Scene;
 use geometry::mesh::Curves;
 use geometry::progress::Progress;
-use geometry::tessellate::{HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation, Vertex};
+use geometry::tessellate::{HullFactors, Inputs, PatchFactors, Tessellated, Tessellation, Vertex};
 use gpu::layout::Chunk;
 use gpu::layout::CurveNet;
 use gpu::{Given, Gpu, GpuError, Readback, Recorder, Timing, put_together, read_buffer, read_buffers};

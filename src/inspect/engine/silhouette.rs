@@ -4,9 +4,7 @@ use super::Engine;
 use crate::measure::{OutlineOf, SampleGrid, Silhouette};
 use crate::render::{Scene, SilhouetteCoverage, padded_clip};
 use geometry::progress::Progress;
-use geometry::tessellate::{
-    Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Partitioning, Surface, Tessellation,
-};
+use geometry::tessellate::{Clip, Convention, Edges, Inputs, LodView, Partitioning, Surface, Tessellation};
 use gpu::{Gpu, GpuError, Readback, Recorder, Tessellator, Timing};
 
 /// Memory for the output of the tessellator that outlines are drawn with, in bytes.

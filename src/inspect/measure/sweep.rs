@@ -13,8 +13,7 @@ use glam::{DVec3, Vec3};
 use super::accuracy::blocks;
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{
-    Clip, Convention, FIXED_ONE, Inputs, Lod, Partitioning, PatchFactors, Tessellated, Tessellation, Vertex, process,
-    round_pow2, tessellate,
+    Convention, FIXED_ONE, Inputs, Partitioning, PatchFactors, Tessellated, Tessellation, Vertex, process, tessellate,
 };
 
 /// The step of the factor in charts.

@@ -35,8 +35,8 @@ pub(crate) struct DrawnColors {
 }
 
 impl DrawnColors {
-    pub fn new(colors: Colors) -> Self {
-        let bit = |bit| Self { branch: Branch::Bit(1 << bit), scale: None };
+    pub(crate) fn new(colors: Colors) -> Self {
+        let bit = |bit: u32| Self { branch: Branch::Bit(1 << bit), scale: None };
         let variant = |look| Self { branch: Branch::Variant(look), scale: None };
         match colors {
             Colors::Material => Self { branch: Branch::Usual, scale: None },
@@ -59,11 +59,11 @@ impl DrawnColors {
     }
 
     /// The bit of the overlays; 0 if there is none.
-    pub fn bit(&self) -> u32 {
+    pub(crate) fn bit(&self) -> u32 {
         if let Branch::Bit(bit) = self.branch { bit } else { 0 }
     }
 
-    pub fn look(&self) -> Option<Look> {
+    pub(crate) fn look(&self) -> Option<Look> {
         if let Branch::Variant(look) = self.branch { Some(look) } else { None }
     }
 }

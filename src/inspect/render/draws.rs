@@ -2,7 +2,7 @@
 
 use super::colors::Look;
 use super::needs::{Cut, Needs};
-use crate::settings::{Choice, NormalsAt};
+use crate::settings::NormalsAt;
 
 /// What a pipeline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

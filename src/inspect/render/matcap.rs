@@ -7,7 +7,7 @@ use glam::{Vec3, vec3};
 use super::layout::{self, srgb};
 use super::materials::Materials;
 use super::textures::{ImageUse, upload};
-use crate::settings::{Choice, Matcap};
+use crate::settings::Matcap;
 use geometry::mesh::Texture;
 use geometry::mesh::mipmap::MipFilter;
 use gpu::{Gpu, GpuError, Lazy, bind_group, uniform_buffer};

@@ -3,6 +3,7 @@
 mod adding;
 pub mod blur_levels;
 pub mod camera;
+mod colors;
 mod coverage;
 mod covered_area;
 pub mod cube_map;
@@ -24,7 +25,6 @@ mod leaks;
 mod legend;
 #[cfg(test)]
 mod light_tests;
-mod colors;
 mod marks;
 pub mod matcap;
 mod materials;

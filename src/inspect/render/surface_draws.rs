@@ -1,12 +1,12 @@
 //! Decides what draws the surface of each material, by what a picture shows.
 
+use super::colors::DrawnColors;
 use super::draws::{Draw, Faces, Shading, SurfaceDraw, Triangles};
 use super::layout::overlay_bits;
-use super::colors::DrawnColors;
 use super::needs::{Cut, Needs, PictureKind};
 use crate::settings::{Colors, NormalsAt, Overlays, Settings};
 use geometry::mesh::{Material, Mesh};
-use geometry::tessellate::{Displacement, Tessellation};
+//PAD
 
 /// The pipeline for emitted triangles of a material, in such pictures.
 pub(super) fn surface_draw(

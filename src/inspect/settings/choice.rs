@@ -1,6 +1,7 @@
 //! Values with names: how the command line, saved settings and the window call the values of an option.
 
-pub use geometry::choice::{Choice, Description, choices, descriptions};
+pub(crate) use geometry::choice::choices;
+pub use geometry::choice::{Choice, Description, descriptions};
 
 #[cfg(test)]
 mod tests {
@@ -8,6 +9,8 @@ mod tests {
     use load::{LengthUnit, NormalSource};
 
     use super::super::{Colors, DeviationUnit, Lighting, NormalsAt, Overlay, ToneCurve};
+    use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+
     use super::*;
 
     fn check<T: Choice + std::fmt::Debug>() {

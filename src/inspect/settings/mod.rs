@@ -4,7 +4,6 @@
 //! the window's rows are made from these declarations.
 
 mod choice;
-mod import;
 pub mod light;
 mod matcap;
 pub mod options;
@@ -16,7 +15,7 @@ mod value;
 use glam::{Mat4, Vec2};
 
 use geometry::mesh::{Heights, Material, Mesh};
-use geometry::tessellate::{Clip, Displacement, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
+use geometry::tessellate::{Clip, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
 use load::Import;
 
 pub(crate) use choice::choices;

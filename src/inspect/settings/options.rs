@@ -5,11 +5,13 @@
 
 use super::value::Field;
 use super::{
-    Access, ColorSource, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps, NormalsAt,
-    Overlay, Range, Settings, ToneCurve, Value, descriptions,
+    Access, ColorSource, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps,
+    NormalsAt, Overlay, Range, Settings, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
-use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface, Tessellation};
+use geometry::tessellate::{
+    Clip, Convention, Displacement, Edges, Lod, LodReads, Normals, Partitioning, Surface, Tessellation,
+};
 use load::{LengthUnit, NormalSource, UNIT_METRES};
 
 /// Tessellation factors, as Direct3D 11 has them.
@@ -425,7 +427,7 @@ options! {
         unset: Description::new(
             "file",
             "As the file says",
-            "FBX files say which axis points up. In glTF files it is Y. OBJ, STL and PLY files don't say, and count as Y up.",
+            "FBX files say which axis points up. In glTF it is Y, in 3MF Z. OBJ, STL, PLY and OFF files don't say, and count as Y up.",
         ),
         saved_as: &[],
     }
@@ -440,8 +442,8 @@ options! {
         unset: Description::new(
             "file",
             "As the file says",
-            "FBX files say what their unit is. In glTF files it is the metre. OBJ, STL and PLY files don't say, and their numbers are \
-             taken as they are.",
+            "FBX and 3MF files say what their unit is; in 3MF it is the millimetre unless the file says otherwise. In glTF it is the metre. OBJ, STL, PLY and OFF \
+             files don't say, and their numbers are taken as they are.",
         ),
         saved_as: &[],
     }

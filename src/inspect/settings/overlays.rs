@@ -211,7 +211,7 @@ mod tests {
     #[test]
     fn one_overlay_at_a_time_colours_the_surface() {
         let mut overlays = Overlays::default();
-        for &overlay in Overlay::ALL {
+        for overlay in Overlay::ALL {
             overlays.toggle(overlay);
             assert_ne!(overlays, Overlays::default(), "{overlay:?}");
         }

@@ -2,7 +2,13 @@
 
 use std::fmt;
 
-use super::{Choice, Description, Overlay, Overlays, Settings};
+use super::{
+    Choice, Description, DeviationUnit, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays,
+    Settings, ToneCurve,
+};
+use geometry::mesh::UpAxis;
+use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use load::{FileUnit, LengthUnit, NormalSource};
 
 /// An option, declared once for the command line, saved settings and the window.
 pub struct Declaration {
@@ -256,13 +262,40 @@ pub(super) trait Field: Sized {
     }
 }
 
-impl<T: Choice> Field for T {
+/// Fields that hold the name of a value.
+macro_rules! named_fields {
+    ($($type:ty),+ $(,)?) => {
+        $(impl Field for $type {
+            fn value(&self) -> Value {
+                Value::Name(self.name())
+            }
+
+            fn of(value: Value) -> Option<Self> {
+                if let Value::Name(name) = value { Self::named(name) } else { None }
+            }
+        })+
+    };
+}
+
+named_fields! {
+    Clip, Convention, DeviationUnit, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals, NormalsAt,
+    Partitioning, Surface, ToneCurve, UpAxis,
+}
+
+impl Field for FileUnit {
     fn value(&self) -> Value {
-        Value::Name(self.name())
+        match self {
+            Self::Named(unit) => Value::Name(unit.name()),
+            Self::Metres(metres) => Value::Number(*metres),
+        }
     }
 
     fn of(value: Value) -> Option<Self> {
-        if let Value::Name(name) = value { Self::named(name) } else { None }
+        match value {
+            Value::Name(name) => LengthUnit::named(name).map(Self::Named),
+            Value::Number(metres) => Self::of_metres(metres),
+            _ => None,
+        }
     }
 }
 

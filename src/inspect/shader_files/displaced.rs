@@ -2,7 +2,7 @@
 
 use super::declarations::Declaration;
 use super::translation::StageLanguage;
-use geometry::tessellate::{Displacement, Lod, Tessellation};
+use geometry::tessellate::Tessellation;
 
 /// The function that reads a px of the height image. Every language has its own.
 const FETCH: &str = "fetch_height";

@@ -11,7 +11,7 @@ fn text(language: Language, own: &Tessellation) -> String {
 
 #[test]
 fn what_is_off_is_left_out() {
-    for &language in Language::ALL {
+    for language in Language::ALL {
         let culling = |clip, cull_back_faces| {
             let own = text(language, &Tessellation { clip, cull_back_faces, ..Tessellation::default() });
             ["patch_is_clipped(", "patch_is_outside(", "faces_away("].map(|name| own.contains(name))

@@ -9,7 +9,7 @@ use super::turn::Turn;
 use crate::engine::Preparation;
 use crate::render::Camera;
 use crate::settings::{ColorSource, Declaration, Lighting, Settings, Value, options};
-use geometry::tessellate::{Displacement, Lod, Tessellation};
+use geometry::tessellate::{Displacement, Tessellation};
 use load::files::Limits;
 use load::{HeightSource, Source};
 
@@ -114,7 +114,11 @@ impl CopiedCommand<'_> {
         let has_lod = self.factors.is_none() && self.lod_shader.is_none();
         let tessellation = if has_lod { own } else { Tessellation { lod, factor, ..own } };
         let usual = Settings::default().under(tessellation.lod);
-        let usual = if has_lod { usual.with(Tessellation { lod: Settings::usual().tessellation.lod, ..usual.tessellation }) } else { usual };
+        let usual = if has_lod {
+            usual.with(Tessellation { lod: Settings::usual().tessellation.lod, ..usual.tessellation })
+        } else {
+            usual
+        };
         let shown = Settings { background, ..self.settings.with(tessellation) };
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {

@@ -16,7 +16,6 @@ use crate::measure::{Measured, SeamTurns, Seams};
 use crate::render::Scene;
 use crate::settings::{Choice, Declaration, Settings, options};
 use geometry::mesh::{EdgeCounts, Topology};
-use geometry::tessellate::Displacement;
 use geometry::view::{ScreenView, ulp};
 use gpu::PassTime;
 

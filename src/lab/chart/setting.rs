@@ -205,9 +205,7 @@ impl Plan {
                 let common = [lod.partitioning()];
                 let has_common = self.partitionings.is_empty() || lod == LodKind::ErrorRows;
                 let listed = if has_common { &common[..] } else { &self.partitionings };
-                let possible = |partitioning: &&Partitioning| {
-                    lod == LodKind::Uniform || !partitioning.has_one_factor()
-                };
+                let possible = |partitioning: &&Partitioning| lod == LodKind::Uniform || !partitioning.has_one_factor();
                 let method = |&partitioning: &Partitioning| {
                     let under_rows = lod == LodKind::Error && partitioning.has_rows();
                     let lod = if under_rows { LodKind::ErrorRows } else { lod };

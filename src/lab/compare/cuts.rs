@@ -76,7 +76,7 @@ impl Cut {
             Spacing::TwoShorter => partitioning.is_fractional(),
             Spacing::Uneven => false,
         };
-        spacing && partitioning.has_segments(self.segments())
+        spacing && partitioning.has_segments(self.segments() as u32)
     }
 }
 

@@ -10,8 +10,7 @@ use super::matching::Reach;
 use geometry::mesh::Mesh;
 use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{
-    Convention, HullFactors, Inputs, Lod, Partitioning, PatchFactors, Tessellation, domain_side, factor_side,
-    hull_factors,
+    Convention, HullFactors, Inputs, Partitioning, PatchFactors, Tessellation, domain_side, factor_side, hull_factors,
 };
 
 /// A change of what the hull shader writes.

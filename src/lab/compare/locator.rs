@@ -84,11 +84,7 @@ impl<'a> Locator<'a> {
         let segments = ((triangles / topology.patches.len().max(1)) as f32).sqrt().floor().clamp(1.0, 16.0);
         let tessellation = Tessellation {
             partitioning: Partitioning::Subtriangulation,
-            lod: Lod::Uniform,
-            factor: segments,
-            clip: Clip::Off,
-            cull_back_faces: false,
-            ..inputs.tessellation
+            ..inputs.tessellation.with_one_factor(segments)
         };
         let mut cut = tessellate(mesh, topology, &Inputs { tessellation, ..*inputs }, None);
         if mistake.is_some() {

@@ -13,7 +13,7 @@ use super::own_mesh::{OwnMesh, OwnPatch};
 use super::{Exactness, Ours};
 use geometry::mesh::EdgeKind;
 use geometry::progress::{Cancelled, Progress};
-use geometry::tessellate::{FACTOR_VALUE, Inputs, Lod, Partitioning, Tessellation, hull_factors, segments};
+use geometry::tessellate::{FACTOR_VALUE, Inputs, Partitioning, Tessellation, hull_factors, segments};
 use geometry::view::ulp;
 
 /// How every patch came out.

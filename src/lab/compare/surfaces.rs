@@ -8,7 +8,7 @@ use super::locator::{COARSE, Locator, OwnSurface};
 use super::net_mistakes::{NetMistake, THIRD};
 use geometry::mesh::Mesh;
 use geometry::progress::{Cancelled, Progress};
-use geometry::tessellate::{Displacement, Inputs, Surface, Tessellation};
+use geometry::tessellate::{Inputs, Surface, Tessellation};
 
 /// How many vertices of each kind are tried: those that lie on our surface, and those that don't.
 const SAMPLE: usize = 400;

@@ -646,8 +646,8 @@ fn examples() -> Vec<Finding> {
 }
 
 #[test]
-fn the_manual_has_every_sentence_and_kind() {
-    let page = documents::in_repository("docs/manual/compare-meshes.md");
+fn the_results_have_every_sentence_and_kind() {
+    let page = documents::in_repository("docs/results/compare-meshes.md");
     let page = std::fs::read_to_string(page).expect("a page");
     for finding in examples() {
         assert!(page.contains(&format!("| {} |", finding.text())), "the page lacks: {}", finding.text());

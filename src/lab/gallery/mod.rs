@@ -17,7 +17,7 @@ pub use page::{PAGE, page};
 pub(crate) use tile::TileResults;
 
 use geometry::progress::Progress;
-use geometry::tessellate::{Displacement, Surface, Tessellation, displacement_reach};
+use geometry::tessellate::{Surface, Tessellation, displacement_reach};
 use gpu::{GpuError, Timing};
 use inspect::engine::{Engine, Loaded, Preparation, load};
 use inspect::measure::EmittedChunk;
@@ -135,8 +135,7 @@ impl<'a> Gallery<'a> {
                 continue;
             }
             seen.push(settings.tessellation.surface);
-            let plain =
-                settings.with(Tessellation { factor: FRAMING_FACTOR, ..settings.tessellation.undisplaced() });
+            let plain = settings.with(Tessellation { factor: FRAMING_FACTOR, ..settings.tessellation.undisplaced() });
             places.extend(self.places(&mut scene, plain, &camera, target)?);
         }
         camera.fit(places.into_iter(), farthest, target.viewport());

@@ -2,7 +2,7 @@
 
 use image::{DynamicImage, RgbImage};
 
-use geometry::tessellate::{Displacement, Inputs, Lod, Tessellation};
+use geometry::tessellate::{Inputs, Tessellation};
 use gpu::{DRAWING, GpuError, PassTime, Timing};
 use inspect::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
 use inspect::measure::{CrackedEdge, Measured};

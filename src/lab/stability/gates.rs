@@ -70,6 +70,7 @@ fn failure(Gate { kind, limit }: &Gate, rows: &[Row]) -> Option<Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geometry::tessellate::Surface;
 
     #[test]
     fn the_worst_row_of_a_gate_is_named() {
@@ -91,7 +92,10 @@ mod tests {
             row("cube", "PN", Quantity::Leaks, 4.0),
         ];
         assert!(are_judged(GateKind::Cracks, &[Method::Surface(Surface::Pn), Method::Surface(Surface::Phong)], &rows));
-        assert!(!are_judged(GateKind::Leaks, &[Method::Surface(Surface::Pn), Method::Surface(Surface::Phong)], &rows), "Phong has no such row");
+        assert!(
+            !are_judged(GateKind::Leaks, &[Method::Surface(Surface::Pn), Method::Surface(Surface::Phong)], &rows),
+            "Phong has no such row"
+        );
         assert!(!are_judged(GateKind::Warnings, &[Method::Surface(Surface::Pn)], &rows), "no row has them");
         let gate = |text: &str| text.parse::<Gate>().expect("a gate");
         let found = failures(&[gate("cracks"), gate("leaks:4"), gate("folds"), gate("warnings")], &rows);

@@ -9,7 +9,7 @@ use super::sweep_chart::sweep_chart;
 use super::{Method, Probe, Subject, views};
 use geometry::mesh::{Moment, Topology, t_junctions};
 use geometry::progress::Progress;
-use geometry::tessellate::{LodView, Partitioning};
+use geometry::tessellate::{LodView, Partitioning, Surface};
 use gpu::{GpuError, Timing};
 use inspect::engine::Engine;
 use inspect::measure::{SWEEP_STEP, sweep};

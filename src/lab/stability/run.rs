@@ -13,7 +13,7 @@ use super::{Method, Probe, Quantity, Row, Subject, Tried, views};
 use geometry::mesh::{Bounds, Mesh, Moment, Pose, Topology, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{
-    Clip, FACTOR_VALUE, FIXED_ONE, Lod, LodView, Partitioning, PosedMesh, Tessellation, bounds_through, tessellate,
+    Clip, FACTOR_VALUE, FIXED_ONE, LodView, Partitioning, PosedMesh, Tessellation, bounds_through, tessellate,
 };
 use gpu::{GpuError, Timing};
 use inspect::engine::Engine;

@@ -6,7 +6,7 @@ use glam::{Mat4, Vec2, vec3};
 use super::*;
 use crate::mesh::{HeightMap, Heights, Shape};
 use crate::progress::Progress;
-use crate::tessellate::{Displacement, LodView, Surface, edge_factors, hull_factors, tessellate};
+use crate::tessellate::{Displacement, Lod, LodView, Surface, edge_factors, hull_factors, tessellate};
 
 const TOLERANCE: f32 = 0.5;
 

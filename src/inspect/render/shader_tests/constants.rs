@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use super::modules;
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::camera::FIELD_OF_VIEW;
+use crate::render::colors::Look;
 use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::draws::LayerDraw;
@@ -13,7 +14,6 @@ use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
     LEAST_SEEN, NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
 };
-use crate::render::colors::Look;
 use crate::render::matcap::MATCAP_REACH;
 use crate::render::mipmap_pass::ALPHAS;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
@@ -32,8 +32,8 @@ use geometry::tessellate::shared_constants::{
 };
 use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use gpu::layout::LOD_GIVEN;
-use gpu::shader_constants::enum_constants;
 use gpu::relief_buffers::HEIGHTS_ACROSS;
+use gpu::shader_constants::enum_constants;
 use gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, WORKGROUP};
 
 /// Constants that only WGSL has, with the reason.

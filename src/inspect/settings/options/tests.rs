@@ -3,7 +3,7 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 
 use super::*;
-use crate::settings::random;
+use crate::settings::{Colors, random};
 use load::Import;
 
 /// Every field with its value. Patterns have no `..`, so a new field must be named here and then reached by a declaration.

@@ -5,7 +5,7 @@ use super::lods::Range;
 use super::{Part, titled};
 use crate::chart::{Race, distinct, has_converged};
 use geometry::numbers::short;
-use geometry::tessellate::Surface;
+use geometry::tessellate::{Surface, SurfaceFamily};
 use inspect::settings::{Choice, Settings};
 use load::markdown;
 
@@ -113,11 +113,9 @@ fn reason(surface: Surface) -> String {
         SurfaceFamily::Flat => {
             "its points lie on the mesh's own triangles, so no factor moves a point or turns a normal".into()
         }
-        SurfaceFamily::Pn => {
-            "a cubic patch follows the positions and normals of its corners, \
+        SurfaceFamily::Pn => "a cubic patch follows the positions and normals of its corners, \
             which gives it the curvature of a smooth surface; only a finer mesh comes closer"
-                .into()
-        }
+            .into(),
         SurfaceFamily::Phong => {
             let alpha = Settings::default().tessellation.alpha;
             let rises = 2.0 * alpha;
@@ -127,11 +125,9 @@ fn reason(surface: Surface) -> String {
                 (rises - 1.0).abs()
             )
         }
-        SurfaceFamily::Nagata => {
-            "a quadratic patch has the right slopes at the ends of its edges, which gives it \
+        SurfaceFamily::Nagata => "a quadratic patch has the right slopes at the ends of its edges, which gives it \
             the curvature of a smooth surface; only a finer mesh comes closer"
-                .into()
-        }
+            .into(),
     }
 }
 
