@@ -12,7 +12,7 @@ use std::path::Path;
 use canvas::Canvas;
 use glam::vec3;
 use image::RgbaImage;
-use pnaen::embed::{Context, Room, TessellatedMesh};
+use pnaen::embed::{Capacity, Context, TessellatedMesh};
 use pnaen::load::{Limits, load};
 use pnaen::mesh::Moment;
 use pnaen::progress::Progress;
@@ -31,7 +31,7 @@ pub fn frames() -> Result<Vec<(RgbaImage, u32)>, Box<dyn Error>> {
 
     let canvas = Canvas::new(SIZE)?;
     let context = Context::new(&canvas.device, &canvas.queue)?;
-    let mut mesh = TessellatedMesh::new(&context, tube, Room { vertices: 20_000, triangles: 40_000 })?;
+    let mut mesh = TessellatedMesh::new(&context, tube, Capacity { vertices: 20_000, triangles: 40_000 })?;
     let mut frames = Vec::new();
     for moment in 0..MOMENTS {
         let part = f64::from(moment) / f64::from(MOMENTS - 1);

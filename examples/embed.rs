@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 use canvas::Canvas;
 use glam::{Vec3, vec3};
 use image::RgbaImage;
-use pnaen::embed::{Context, OutputStatus, Room, TessellatedMesh};
+use pnaen::embed::{Capacity, Context, OutputStatus, TessellatedMesh};
 use pnaen::mesh::{Mesh, MeshSlices, SliceError};
 use pnaen::tessellate::{Lod, Tessellation};
 
@@ -31,11 +31,11 @@ fn torus() -> Result<Mesh, SliceError> {
 }
 
 /// Draws the torus with an LOD under which no triangle is farther than `tolerance` px from the curved surface. Returns
-/// the picture, the status of the output, and whether the output was too large for `room`.
-pub fn picture(tolerance: f32, room: Room) -> Result<(RgbaImage, OutputStatus, bool), Box<dyn Error>> {
+/// the picture, the status of the output, and whether the output was too large for `capacity`.
+pub fn picture(tolerance: f32, capacity: Capacity) -> Result<(RgbaImage, OutputStatus, bool), Box<dyn Error>> {
     let canvas = Canvas::new([320, 240])?;
     let context = Context::new(&canvas.device, &canvas.queue)?;
-    let mut mesh = TessellatedMesh::new(&context, torus()?, room)?;
+    let mut mesh = TessellatedMesh::new(&context, torus()?, capacity)?;
 
     let view = canvas.look(vec3(0.0, 2.6, 3.2), Vec3::ZERO, 1.45);
     let mut encoder = canvas.device.create_command_encoder(&Default::default());
@@ -49,11 +49,11 @@ pub fn picture(tolerance: f32, room: Room) -> Result<(RgbaImage, OutputStatus, b
 #[allow(dead_code, reason = "tests take the picture")]
 fn main() -> Result<(), Box<dyn Error>> {
     let path = std::env::args().nth(1).unwrap_or_else(|| "embed.png".to_owned());
-    let (picture, status, has_overflowed) = picture(0.5, Room { vertices: 100_000, triangles: 200_000 })?;
+    let (picture, status, has_overflowed) = picture(0.5, Capacity { vertices: 100_000, triangles: 200_000 })?;
     picture.save(&path)?;
     println!("{path}: {} vertices, {} triangles", status.vertices, status.triangles);
     if has_overflowed {
-        println!("some patches are missing: the room is too small");
+        println!("some patches are missing: the capacity is too small");
     }
     Ok(())
 }

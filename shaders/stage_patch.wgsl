@@ -93,7 +93,7 @@ fn chosen_normals(one: SideNormals, other: SideNormals, takes_other: bool) -> Si
 }
 
 // Returns the control points that one side of an edge from `a` to `b` proposes.
-fn own_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, side: SideNormals) -> CurveNet {
+fn unshared_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, side: SideNormals) -> CurveNet {
     let proposed = side_control_points(CHOSEN_SURFACE, alpha, a, b, side.at_a, side.at_b);
     return CurveNet(proposed[0], proposed[1]);
 }
@@ -101,8 +101,8 @@ fn own_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, side: SideNormals) -> Curve
 // Returns the control points of an edge from `a` to `b` that two sides share: the mean of what both propose, or on a crease
 // those along it.
 fn shared_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, one: SideNormals, other: SideNormals) -> CurveNet {
-    let of_one = own_curve(alpha, a, b, one);
-    let of_other = own_curve(alpha, a, b, other);
+    let of_one = unshared_curve(alpha, a, b, one);
+    let of_other = unshared_curve(alpha, a, b, other);
     let ab = (of_one.ab + of_other.ab) * 0.5;
     let ba = (of_one.ba + of_other.ba) * 0.5;
     if CHOSEN_SURFACE == SURFACE_PN_CREASE {
@@ -117,7 +117,7 @@ fn shared_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, one: SideNormals, other:
 // Returns the curve of a patch's side: shared with the side across the edge if the surface doesn't tear, else the patch's own.
 fn side_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, own: SideNormals, across: SideNormals, reversed: bool) -> CurveNet {
     if CHOSEN_SURFACE == SURFACE_FLAT || CHOSEN_SURFACE == SURFACE_PN || CHOSEN_SURFACE == SURFACE_PHONG || CHOSEN_SURFACE == SURFACE_NAGATA {
-        return own_curve(alpha, a, b, own);
+        return unshared_curve(alpha, a, b, own);
     }
     // The side that runs along the edge first, so that both sides add up in the same order.
     return shared_curve(alpha, a, b, chosen_normals(own, across, reversed), chosen_normals(across, own, reversed));
@@ -155,7 +155,7 @@ fn hull_side_factor(
         return own;
     }
     if CHOSEN_SURFACE == SURFACE_PN || CHOSEN_SURFACE == SURFACE_PHONG || CHOSEN_SURFACE == SURFACE_NAGATA {
-        return max(own, edge_curve_factor(constants, a, own_curve(constants.alpha, a, b, across), b));
+        return max(own, edge_curve_factor(constants, a, unshared_curve(constants.alpha, a, b, across), b));
     }
     return own;
 }
@@ -181,9 +181,9 @@ fn hull_side(
     let reversed = side_is_reversed(start, end);
     let a = select(start, end, reversed);
     let b = select(end, start, reversed);
-    let own_along = along_edge(own, reversed);
+    let side_along = along_edge(own, reversed);
     let across_along = along_edge(across, reversed);
-    let curve = side_curve(constants.alpha, a, b, own_along, across_along, reversed);
+    let curve = side_curve(constants.alpha, a, b, side_along, across_along, reversed);
     let factor = written_factor(hull_side_factor(constants, a, b, curve, across_along));
     return HullSide(select(curve.ab, curve.ba, reversed), select(curve.ba, curve.ab, reversed), factor);
 }

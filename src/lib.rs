@@ -17,7 +17,7 @@
 //!     ..Default::default()
 //! })?;
 //! let inputs = Inputs::new(&Tessellation { factor: 8.0, ..Default::default() }, LodView::default());
-//! let made = tessellate(&mesh, &Topology::of(&mesh), &inputs, None);
+//! let made = tessellate(&mesh, &Topology::new(&mesh), &inputs, None);
 //! let highest = made.vertices.iter().map(|vertex| vertex.position[2]).fold(0.0, f32::max);
 //! assert!(highest > 0.1, "the surface rises above its corners");
 //! # Ok::<(), pnaen::mesh::SliceError>(())

@@ -85,7 +85,7 @@ struct WindowState {
 }
 
 impl WindowState {
-    fn of(app: &App) -> Self {
+    fn new(app: &App) -> Self {
         Self {
             source: app.source().cloned(),
             settings: *app.settings(),
@@ -199,7 +199,7 @@ fn a_window_replaces_a_lost_device_once_and_then_reports_the_loss() {
             still = 0;
             let number = seen.borrow().len() + 1;
             picture(&format!("{number}-window.png"));
-            seen.borrow_mut().push(WindowState::of(app));
+            seen.borrow_mut().push(WindowState::new(app));
             let gpu = app.gpu().clone();
             match number {
                 1 => lose(&gpu),

@@ -5,7 +5,7 @@ use std::error::Error;
 use glam::camera::rh::{proj::directx::perspective_infinite_reverse, view::look_at_mat4};
 use glam::{Mat4, Vec3};
 use pnaen::embed::{NORMAL_WGSL, OutputStatus, TessellatedMesh, VERTEX_LAYOUTS};
-use pnaen::tessellate::LodView;
+use pnaen::tessellate::{DepthRange, LodView};
 
 const COLOR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -93,7 +93,7 @@ impl Canvas {
         let clip_from_view = perspective_infinite_reverse(0.7, width / height, 0.1);
         let clip_from_object = clip_from_view * look_at_mat4(eye, target, Vec3::Y);
         self.queue.write_buffer(&self.camera, 0, bytemuck::bytes_of(&clip_from_object));
-        LodView { eye, radius, ..LodView::new(clip_from_object, glam::vec2(width, height) * 0.5) }
+        LodView::from_camera(clip_from_object, DepthRange::Reversed, glam::vec2(width, height), radius)
     }
 
     /// Draws the mesh in a render pass of the host's own.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::App;
 use super::jobs::job_list::Work;
-use crate::commands::Beside;
+use crate::commands::CompanionFile;
 use gpu::{LodShader, SurfaceShader};
 use inspect::engine::Preparation;
 use inspect::render::Camera;
@@ -25,7 +25,7 @@ pub(super) struct Undoable {
     pub settings: Settings,
     /// How the mesh is prepared, but for the import, which is in the settings.
     pub preparation: Preparation,
-    pub beside: [Option<Source>; Beside::ALL.len()],
+    pub companions: [Option<Source>; CompanionFile::ALL.len()],
 }
 
 /// The states before and after the present one.
@@ -117,13 +117,13 @@ impl App {
         Undoable {
             settings: self.settings_without_files(),
             preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
-            beside: Beside::ALL.map(|beside| self.beside(beside)),
+            companions: CompanionFile::ALL.map(|companion| self.companion(companion)),
         }
     }
 
     /// Whether the mesh, or a file beside it, is being read anew, so that settings may follow from it.
     fn is_opening(&self) -> bool {
-        self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_beside()
+        self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_companions()
     }
 
     /// Takes over the hidden parts of a mesh that was opened: those of the command line, or none. This isn't a step of undo: all steps
@@ -135,8 +135,8 @@ impl App {
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
-            step.beside[Beside::Truth as usize] = None;
-            step.beside[Beside::Factors as usize] = None;
+            step.companions[CompanionFile::Truth as usize] = None;
+            step.companions[CompanionFile::Factors as usize] = None;
         });
     }
 
@@ -190,7 +190,7 @@ impl App {
     }
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
-        let Some(Undoable { settings, preparation, beside: files }) = step else { return };
+        let Some(Undoable { settings, preparation, companions: files }) = step else { return };
         [Work::Truth, Work::Matcap, Work::Light].into_iter().for_each(|work| self.jobs.stop(work));
         if self.given.is_none() {
             self.jobs.stop(Work::Factors);
@@ -198,10 +198,10 @@ impl App {
         if self.jobs.load().is_some_and(|load| load.keep_view) {
             self.jobs.stop(Work::Mesh);
         }
-        for (beside, source) in Beside::ALL.into_iter().zip(files) {
-            if self.beside(beside) != source {
-                self.close_beside(beside);
-                source.into_iter().for_each(|source| self.open_beside(context, beside, source));
+        for (companion, source) in CompanionFile::ALL.into_iter().zip(files) {
+            if self.companion(companion) != source {
+                self.close_companion(companion);
+                source.into_iter().for_each(|source| self.open_companion(context, companion, source));
             }
         }
         self.put_settings(settings);

@@ -67,7 +67,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     }
     let computed = args.indices.indices(&loaded.topology);
     if let Some(path) = &args.output {
-        let format = args.format.unwrap_or(Format::of_name(path));
+        let format = args.format.unwrap_or(Format::from_name(path));
         write_adjacency(&loaded, args.indices, &computed, format, path)?;
         let (left_out, all) = (loaded.topology.degenerate, loaded.mesh.triangles.len());
         if format == Format::Bin && left_out > 0 {

@@ -25,7 +25,7 @@ pub(super) struct CameraInfo {
 }
 
 impl CameraInfo {
-    pub(super) fn of(camera: &FileCamera) -> Self {
+    pub(super) fn new(camera: &FileCamera) -> Self {
         let (kind, field_of_view, height) = match camera.projection {
             Projection::Perspective(angle) => ("perspective", Some(angle.to_degrees()), None),
             Projection::Orthographic(half) => ("orthographic", None, Some(2.0 * half)),

@@ -13,7 +13,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use super::interrupt::stop_on_interrupt;
 use super::options::{CameraOption, Size, whole_from};
 use super::{
-    AdapterOption, CliError, SurfaceOptions, Telling, WeldOption, file_error, file_of, keep_apart, load_apart,
+    AdapterOption, CliError, ProgressPrinter, SurfaceOptions, WeldOption, file_error, file_of, keep_apart, load_apart,
     make_folder, options, refuse, write_text,
 };
 use geometry::progress::Progress;
@@ -138,7 +138,7 @@ impl Args {
     /// The reference surface of a mesh, and its name: that of `--truth`, or else the exact surface of a shape.
     fn truth_of(&self, mesh: &Source) -> Result<Option<(Truth, String)>, CliError> {
         let asked = self.truth.as_ref();
-        let exact = asked.unwrap_or(mesh).shape().and_then(Truth::of_shape);
+        let exact = asked.unwrap_or(mesh).shape().and_then(Truth::from_shape);
         let Some(source) = asked.filter(|_| exact.is_none()) else {
             return Ok(exact.map(|exact| (exact, "the exact surface".to_owned())));
         };
@@ -175,7 +175,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         engine,
         tables: tables.map(|path| Table::new(&path)).collect::<Result<_, CliError>>()?,
         stop: stop_on_interrupt("setting"),
-        telling: Telling::new(),
+        progress_printer: ProgressPrinter::new(),
         done: 0,
         all: settings.len() * meshes.len(),
     };
@@ -204,7 +204,7 @@ struct Session {
     target: Target,
     tables: Vec<Table>,
     stop: Arc<AtomicBool>,
-    telling: Telling,
+    progress_printer: ProgressPrinter,
     /// How many settings are done, of `all`.
     done: usize,
     all: usize,
@@ -241,7 +241,7 @@ impl Session {
                 self.done = number;
                 continue;
             }
-            self.telling.say(|| format!("{title}, {number} of {}: {}, {setting}", self.all, setting.method));
+            self.progress_printer.print(|| format!("{title}, {number} of {}: {}, {setting}", self.all, setting.method));
             match bench.measure(setting)? {
                 Some(row) => {
                     self.tables.iter_mut().try_for_each(|table| table.add(&row.record()))?;

@@ -14,7 +14,7 @@ use clap::ValueEnum;
 
 use super::gate_options::FailOnOption;
 use super::interrupt::stop_on_interrupt;
-use super::{AdapterOption, CliError, Telling, file_of, keep_apart, make_folder, note, options, write_text};
+use super::{AdapterOption, CliError, ProgressPrinter, file_of, keep_apart, make_folder, note, options, write_text};
 use geometry::cores::in_ranges;
 use inspect::engine::Engine;
 use lab::check::{Asset, Cache, Report, junit, page, sarif};
@@ -138,14 +138,14 @@ fn measured(
     cache: Option<&Cache>,
     stop: &AtomicBool,
 ) -> BTreeMap<usize, Measured> {
-    let (next, done) = (AtomicUsize::new(0), Mutex::new((BTreeMap::new(), Telling::new())));
+    let (next, done) = (AtomicUsize::new(0), Mutex::new((BTreeMap::new(), ProgressPrinter::new())));
     let work = || {
         while !stop.load(Ordering::Relaxed) {
             let Some(&index) = left.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             let measured = measuring::measured(&jobs[index], engine, args.page.is_some(), cache);
-            let (found, telling) = &mut *done.lock().unwrap_or_else(PoisonError::into_inner);
+            let (found, progress_printer) = &mut *done.lock().unwrap_or_else(PoisonError::into_inner);
             found.insert(index, measured);
-            telling.say(|| format!("{} of {} assets are checked", found.len(), left.len()));
+            progress_printer.print(|| format!("{} of {} assets are checked", found.len(), left.len()));
         }
     };
     let usual = thread::available_parallelism().map_or(1, NonZero::get).min(4);

@@ -15,7 +15,7 @@ use geometry::progress::Progress;
 use geometry::view::ulp;
 use inspect::engine::Loaded;
 use inspect::export::ending;
-use lab::compare::{Exactness, ForeignMesh, Ours, compare};
+use lab::compare::{ForeignMesh, OurTessellation, Tolerances, compare};
 use load::csv_vertices::{CsvVertices, read_vertices};
 use load::files::Limits;
 use load::selection::Selection;
@@ -36,7 +36,7 @@ pub struct Args {
     /// Picture to write, a PNG file: their triangles in the colours of their distance from ours, and what differs as lines
     #[arg(short, long, value_name = "OUT.png", value_parser = options::picture())]
     pub output: Option<PathBuf>,
-    /// How far vertices may be from ours and be the same: object units, or ULP of the mesh's largest coordinate, such as 16ulp
+    /// Distance within which vertices count as equal: object units, or ULP of the mesh's largest coordinate, such as 16ulp
     #[arg(long, value_name = "DISTANCE", default_value = "16ulp", value_parser = within, allow_negative_numbers = true)]
     pub within: Within,
     /// The columns of a .csv file that are the position, by their name without the component: position for position.x, position.y
@@ -117,7 +117,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     })?;
     let (theirs, resolution) = theirs(args, is_csv)?;
     let within = args.within.units(ulp(topology)).max(2.0 * resolution);
-    let ours = Ours {
+    let ours = OurTessellation {
         mesh,
         topology,
         inputs: &inputs,
@@ -125,7 +125,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         matrix: args.surface.view.matrix().map(|matrix| matrix.clip_from_object),
         tessellated: &tessellated,
     };
-    let exactness = Exactness { within, resolution };
+    let exactness = Tolerances { within, resolution };
     let comparison = compare(&ours, &theirs, exactness, &Progress::new())?;
     let name = shown_path(&args.theirs);
     let report =
@@ -165,7 +165,7 @@ fn of_file(path: &Path, limits: &Limits) -> Result<ForeignMesh, CliError> {
     let selected = Selection { import, ..Selection::default() };
     let loaded = Source::File(path.to_owned()).load_selected(selected, limits, &Progress::new())?;
     warn(&loaded.warnings);
-    Ok(ForeignMesh::of_mesh(&loaded.mesh))
+    Ok(ForeignMesh::from_mesh(&loaded.mesh))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use gpu::Given;
 use inspect::engine::Engine;
 use inspect::render::Scene;
 use inspect::shot::files::computed;
-use inspect::shot::report_own_lod;
+use inspect::shot::report_user_lod;
 use load::Source;
 use load::factors_file::to_csv;
 
@@ -30,7 +30,7 @@ pub struct Args {
     #[command(flatten)]
     pub surface: SurfaceOptions,
     #[command(flatten)]
-    pub own_lod: LodShaderOption,
+    pub user_lod: LodShaderOption,
     #[command(flatten)]
     pub cameras: CamerasOption,
     /// Where to compute; the CPU needs no graphics driver
@@ -43,22 +43,22 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check(None)?;
     args.adapter.check(args.device == Device::Cpu)?;
-    args.own_lod.check(args.device == Device::Cpu)?;
+    args.user_lod.check(args.device == Device::Cpu)?;
     let files = ViewFiles::new(&args.output, &["csv"], &args.cameras);
     let several = "--cameras writes several files: name a folder with -o, or put {} where the views' names go";
     let views = files.views(&args.cameras, &args.surface, several)?;
     let written = files.checked(&views);
     let heights = file_of_heights(args.surface.height.as_ref());
-    let shader = args.own_lod.lod_shader.as_deref();
+    let shader = args.user_lod.lod_shader.as_deref();
     keep_apart([file_of(&args.file), heights, shader, args.cameras.file()], written.iter().copied())?;
-    let own_lod = args.own_lod.read(&args.surface.tessellation())?;
+    let user_lod = args.user_lod.read(&args.surface.tessellation())?;
     let mesh = Posed::load(&args.surface, &args.file, &written)?;
     let topology = &mesh.posed.topology;
     let lod_view = |view: &View| Ok(mesh.lod_view(&mesh.camera(view)?));
     let lod_views = views.iter().map(lod_view).collect::<Result<Vec<_>, CliError>>()?;
     let mut on_gpu = match args.device {
         Device::Cpu => None,
-        Device::Gpu => Some(args.uploaded(&mesh, own_lod)?),
+        Device::Gpu => Some(args.uploaded(&mesh, user_lod)?),
     };
     files.make_folder()?;
     for (index, (view, lod_view)) in views.iter().zip(lod_views).enumerate() {
@@ -73,10 +73,10 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 
 impl Args {
     /// A mesh on the device, in its pose, and what takes the place of LOD there.
-    fn uploaded(&self, mesh: &Posed, own_lod: Option<Given>) -> Result<(Engine, Scene), CliError> {
+    fn uploaded(&self, mesh: &Posed, user_lod: Option<Given>) -> Result<(Engine, Scene), CliError> {
         let engine = Engine::chosen(&self.adapter.choice())?;
         let mut scene = engine.scene(&mesh.loaded, self.surface.arena_bytes())?;
-        scene.tessellator.give(own_lod)?;
+        scene.tessellator.give(user_lod)?;
         scene.set_moment(mesh.moment)?;
         Ok((engine, scene))
     }
@@ -92,7 +92,7 @@ impl Args {
         let settings = self.surface.within_budget_on(engine, scene, lod_view)?;
         let factors = computed(engine, scene, &settings.inputs(lod_view))?;
         if is_first {
-            report_own_lod(engine, scene)?;
+            report_user_lod(engine, scene)?;
         }
         Ok(factors)
     }

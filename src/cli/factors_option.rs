@@ -39,7 +39,7 @@ impl FactorsOption {
         let convention = tessellation.convention;
         let Some(path) = &self.given else { return Ok(None) };
         let factors = read_factors(path, mesh, topology, tessellation.partitioning)?;
-        let agreement = Agreement::of(topology, &factors, convention);
+        let agreement = Agreement::new(topology, &factors, convention);
         said(topology, &agreement, convention).iter().for_each(|line| note(line));
         let stats = FactorsFile::new(path, topology, &agreement, convention);
         Ok(Some(Given { factors, stats }))

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
-use super::{AdapterOption, CliError, Telling, WeldOption, make_folder, options, refuse, warn, write_text};
+use super::{AdapterOption, CliError, ProgressPrinter, WeldOption, make_folder, options, refuse, warn, write_text};
 use inspect::engine::{Engine, Preparation};
 use inspect::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 use inspect::shot::write_picture;
@@ -60,9 +60,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     make_folder(&args.output)?;
     let mut gallery = Gallery::new(options, &engine);
     warn(&gallery.warnings()?);
-    let (mut all, mut telling) = (Vec::new(), Telling::new());
+    let (mut all, mut progress_printer) = (Vec::new(), ProgressPrinter::new());
     for exhibit in exhibits() {
-        let (picture, shown) = gallery.draw(&exhibit, |tile| telling.say(|| place(&exhibit, tile)))?;
+        let (picture, shown) = gallery.draw(&exhibit, |tile| progress_printer.print(|| place(&exhibit, tile)))?;
         write_picture(&args.output.join(format!("{}.png", exhibit.name)), &picture.into())?;
         all.push((exhibit, shown));
     }

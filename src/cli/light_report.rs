@@ -25,7 +25,7 @@ pub(super) struct LightInfo {
 }
 
 impl LightInfo {
-    pub(super) fn of(light: &Light) -> Self {
+    pub(super) fn new(light: &Light) -> Self {
         let (kind, range, cone) = match light.kind {
             LightKind::Directional => ("directional", None, None),
             LightKind::Point { range } => ("point", range, None),

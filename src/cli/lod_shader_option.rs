@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::{CliError, FactorsOption, refuse};
 use geometry::tessellate::Tessellation;
 use gpu::Given;
-use inspect::own_shader::read_own_shader;
+use inspect::user_shader::read_user_shader;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct LodShaderOption {
@@ -27,7 +27,7 @@ impl LodShaderOption {
             tessellation.partitioning.has_one_factor(),
             "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
         )?;
-        Ok(Some(Given::Shader(read_own_shader(path)?)))
+        Ok(Some(Given::Shader(read_user_shader(path)?)))
     }
 
     /// Checks that no file has factors as well.
@@ -40,9 +40,6 @@ impl LodShaderOption {
 
     /// Checks that nothing is to be computed on the CPU.
     pub fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
-        refuse(
-            self.lod_shader.is_some() && is_on_cpu,
-            "--lod-shader runs on the graphics adapter: leave --device cpu away",
-        )
+        refuse(self.lod_shader.is_some() && is_on_cpu, "--lod-shader runs on the graphics adapter: omit --device cpu")
     }
 }

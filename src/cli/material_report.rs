@@ -54,7 +54,7 @@ pub(super) struct MapInfo {
 }
 
 impl MaterialInfo {
-    pub(super) fn of(material: &Material) -> Self {
+    pub(super) fn new(material: &Material) -> Self {
         let Look { metallic, roughness, emissive, unlit, ior, specular, specular_color, .. } = material.look;
         let Look { clearcoat, clearcoat_roughness, transmission, sheen_color, sheen_roughness, .. } = material.look;
         let (alpha, alpha_cutoff) = match material.look.alpha {
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn a_plain_material_has_two_lines() {
-        let text = MaterialInfo::of(&Material::plain("clay", [1.0; 4])).to_string();
+        let text = MaterialInfo::new(&Material::plain("clay", [1.0; 4])).to_string();
         assert_eq!(text, "material      clay: 0 triangles\n  look          metallic 0, roughness 0.5\n");
     }
 
@@ -177,7 +177,7 @@ mod tests {
         (look.normal_scale, look.clearcoat, look.alpha, look.unlit) = (0.5, 1.0, Alpha::Mask(0.25), true);
         look.transmission = 0.75;
         (look.sheen_color, look.sheen_roughness) = ([0.5, 0.0, 1.0], 0.25);
-        let info = MaterialInfo::of(&material);
+        let info = MaterialInfo::new(&material);
         let text = info.to_string();
         let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, sheen 0.5 0 1 of roughness 0.25, cut out below alpha 0.25, unlit";
         assert!(text.contains(&format!("\n  look          {look}\n")), "{text}");

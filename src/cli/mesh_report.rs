@@ -98,13 +98,13 @@ pub(super) struct BoundsInfo {
 }
 
 impl Info {
-    pub(super) fn of(loaded: &Loaded, progress: &Progress) -> Result<Self, Cancelled> {
+    pub(super) fn new(loaded: &Loaded, progress: &Progress) -> Result<Self, Cancelled> {
         let (mesh, topology, weld) = (&*loaded.mesh, &*loaded.topology, loaded.preparation.weld);
         // A weld tolerance applies to the mesh as it was read, before it got its crease band.
         let exact = (weld == 0.0 && loaded.crease_band.width == 0.0).then_some(topology);
         let t_junctions = t_junctions(topology, progress)?;
         // Divided among the cores already.
-        let normal_faults = NormalFaults::of(mesh, topology);
+        let normal_faults = NormalFaults::new(mesh, topology);
         let counts = || (topology.edge_counts(), euler_characteristic(topology), mesh.bounds());
         let ((edges, euler_characteristic, bounds), joins) =
             rayon::join(counts, || weld_previews(&loaded.read, exact, progress));
@@ -117,9 +117,9 @@ impl Info {
             collinear: collinear(topology),
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
-            materials: mesh.materials.iter().map(MaterialInfo::of).collect(),
-            lights: mesh.lights.iter().map(LightInfo::of).collect(),
-            cameras: mesh.cameras.iter().map(CameraInfo::of).collect(),
+            materials: mesh.materials.iter().map(MaterialInfo::new).collect(),
+            lights: mesh.lights.iter().map(LightInfo::new).collect(),
+            cameras: mesh.cameras.iter().map(CameraInfo::new).collect(),
             variants: loaded.variants.clone(),
             scenes: loaded.scenes.clone(),
             scene: loaded.scene,
@@ -298,8 +298,8 @@ mod tests {
         let progress = Progress::new();
         let topology = Topology::build_within(mesh, weld, &progress).unwrap();
         let preparation = Preparation { weld, ..Preparation::default() };
-        let loaded = Loaded { preparation, ..Loaded::of_mesh(Arc::new(mesh.clone()), Arc::new(topology)) };
-        Info::of(&loaded, &progress).unwrap()
+        let loaded = Loaded { preparation, ..Loaded::from_mesh(Arc::new(mesh.clone()), Arc::new(topology)) };
+        Info::new(&loaded, &progress).unwrap()
     }
 
     #[test]
@@ -322,7 +322,7 @@ mod tests {
         let turned = info(&mesh, 0.0);
         assert_eq!((turned.closed, turned.oriented), (true, false));
         assert!(turned.to_string().contains("closed, wound both ways, Euler characteristic 0"), "{turned}");
-        let topology = Topology::of(&mesh);
+        let topology = Topology::new(&mesh);
         assert!(topology.is_closed() && !topology.is_closed_and_oriented(), "as leaks are judged by");
     }
 

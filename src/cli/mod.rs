@@ -61,10 +61,10 @@ use geometry::progress::{Cancelled, Progress};
 use gpu::GpuError;
 use inspect::engine::{Loaded, Preparation};
 use inspect::export::ExportError;
-use inspect::own_shader::OwnShaderError;
 use inspect::shader_files::ShaderError;
 use inspect::shot::files::{file_error, read_bytes, read_text, to_json, write_bytes, write_text};
 use inspect::shot::{ShotError, given};
+use inspect::user_shader::UserShaderError;
 use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
 use load::files::file_reason;
@@ -111,7 +111,7 @@ pub enum Command {
     Adjacency(adjacency::Args),
     /// Write the shaders of a tessellation for other programs, in HLSL, GLSL or WGSL, with a page on how to run them
     Shaders(shaders::Args),
-    /// Hold a tessellated mesh that another program emitted against ours, and say what differs
+    /// Compare another program's tessellated mesh with ours
     ///
     /// Nothing but positions and triangles is looked at, in any order. The exit code is 0 if they are the same, and 1 if not.
     Compare(compare::Args),
@@ -129,7 +129,7 @@ pub enum Command {
     /// not compared with each other. Ctrl-C ends the command after the current setting: the CSV and the picture have what was
     /// done, and the exit code is 130. A second Ctrl-C ends it at once.
     Chart(chart::Args),
-    /// Hold a folder of assets to gates, and report what was found
+    /// Check a folder of assets against quality gates
     ///
     /// The exit code is 1 if an asset fails a gate or can't be checked. Ctrl-C ends the command after the assets that are being
     /// checked: the report has what was done, and the exit code is 130. A second Ctrl-C ends it at once.
@@ -158,7 +158,7 @@ pub enum CliError {
     #[error(transparent)]
     Matcap(#[from] MatcapError),
     #[error(transparent)]
-    OwnShader(#[from] OwnShaderError),
+    UserShader(#[from] UserShaderError),
     #[error(transparent)]
     Export(#[from] ExportError),
     #[error("{path}: there is no folder {folder} to write it in; make it first")]
@@ -180,7 +180,7 @@ pub enum CliError {
         "{} has no camera {}; {}",
         shown(mesh),
         shown(wanted),
-        choice(known, "it has no cameras, so leave --file-camera away")
+        choice(known, "it has no cameras, so omit --file-camera")
     )]
     NoCamera { mesh: String, wanted: String, known: Vec<String> },
     #[error("{view}: {error}")]
@@ -207,7 +207,7 @@ pub enum CliError {
     TooFine { file: String, triangles: u64, most: u64 },
     #[error("{theirs} isn't our tessellation: {count} {} above", if *count == 1 { "difference is" } else { "differences are" })]
     NotTheSame { theirs: String, count: usize },
-    #[error("no picture is drawn, since coordinates are too large: leave -o away, or scale the other program's output")]
+    #[error("no picture is drawn, since coordinates are too large: omit -o, or scale the other program's output")]
     NothingToDraw,
     #[error("{file} can't be a reference surface: it has no triangles; choose another mesh")]
     NoTruth { file: String },
@@ -225,7 +225,7 @@ pub enum CliError {
     Check(String),
     #[error(transparent)]
     Config(#[from] ConfigError),
-    #[error("there is nothing to check: the folders have no meshes in them; name others")]
+    #[error("there is nothing to check: no meshes found in these folders; name others")]
     NoAssets,
     #[error("the output could not be written: {0}")]
     Output(std::io::Error),
@@ -304,16 +304,16 @@ fn load_apart(source: &Source, preparation: &Preparation, written: &[Option<&Pat
 }
 
 /// Reports the progress of a long command on standard error, at most once a second.
-struct Telling(Instant);
+struct ProgressPrinter(Instant);
 
-impl Telling {
+impl ProgressPrinter {
     const EVERY: Duration = Duration::from_secs(1);
 
     fn new() -> Self {
         Self(Instant::now())
     }
 
-    fn say(&mut self, text: impl FnOnce() -> String) {
+    fn print(&mut self, text: impl FnOnce() -> String) {
         if self.0.elapsed() >= Self::EVERY {
             self.0 = Instant::now();
             note(&text());

@@ -92,7 +92,7 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
     let places: Vec<Option<PathBuf>> = views.iter().map(|view| args.reference_of(view)).collect();
     let read: Vec<_> = places.iter().map(Option::as_deref).chain([args.cameras.file()]).collect();
     args.shot.check(&args.file, &read, &written)?;
-    args.shot.own_surface.check(false, &args.gates.gates.fail_on)?;
+    args.shot.user_surface.check(false, &args.gates.gates.fail_on)?;
     let references = args.references(&places)?;
     let (subject, factors_file) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(engine()?, subject)?;
@@ -104,7 +104,7 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
             shot.look_from(camera)?;
         }
         if index == 0 {
-            shot.report_own_shaders()?;
+            shot.report_user_shaders()?;
         }
         let mut drawn = draw(args, line, &mut shot, view, reference.as_ref())?;
         if let Some(own) = &mut drawn.stats {

@@ -28,9 +28,9 @@ pub struct ShotOptions {
     #[command(flatten)]
     pub given: FactorsOption,
     #[command(flatten)]
-    pub own_lod: LodShaderOption,
+    pub user_lod: LodShaderOption,
     #[command(flatten)]
-    pub own_surface: SurfaceShaderOption,
+    pub user_surface: SurfaceShaderOption,
     #[command(flatten)]
     pub picture: PictureOptions,
     /// Panorama whose light shines in place of the studio's: a Radiance (.hdr) or OpenEXR (.exr) file, longitude across and
@@ -46,7 +46,7 @@ pub struct ShotOptions {
     /// PNG, JPEG or WebP image of a lit sphere for the matcap overlay, in place of that of --matcap
     #[arg(long, value_name = "IMAGE", conflicts_with = "matcap")]
     pub matcap_image: Option<PathBuf>,
-    /// Draw on nothing in place of a colour: where no mesh, line or grid is, the picture is transparent
+    /// Transparent background
     #[arg(long, conflicts_with = "background")]
     pub transparent: bool,
     /// Draw the legend of the surface's colours into the lower right corner, if the colours stand for something
@@ -64,7 +64,7 @@ impl ShotOptions {
         written: &[Option<&Path>],
     ) -> Result<(), CliError> {
         self.surface.check(self.picture.0.split_surface)?;
-        self.own_lod.check_alone(&self.given)?;
+        self.user_lod.check_alone(&self.given)?;
         refuse(
             self.matcap_image.is_some() && self.picture.0.overlays.colors.source() != ColorSource::LitSphere,
             "--matcap-image needs --overlay matcap, which shows it",
@@ -75,7 +75,7 @@ impl ShotOptions {
         let truth = self.truth.truth.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
-        let shaders = [self.own_lod.lod_shader.as_deref(), self.own_surface.surface_shader.as_deref()];
+        let shaders = [self.user_lod.lod_shader.as_deref(), self.user_surface.surface_shader.as_deref()];
         let own = [file_of(file), truth, heights, factors, matcap, self.environment.as_deref()];
         keep_apart(own.into_iter().chain(shaders).chain(read.iter().copied()), written.iter().copied())
     }
@@ -100,21 +100,21 @@ impl ShotOptions {
     /// Like [`Self::subject`], for a mesh that was loaded as these options say.
     pub(super) fn subject_of(&self, loaded: Loaded) -> Result<(Subject, Option<FactorsFile>), CliError> {
         let limits = self.surface.weld.limit.limits();
-        let own_lod = self.own_lod.read(&self.surface.tessellation())?;
-        let surface_shader = self.own_surface.read()?;
+        let user_lod = self.user_lod.read(&self.surface.tessellation())?;
+        let surface_shader = self.user_surface.read()?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let is_shown = self.picture.0.overlays.colors.source() == ColorSource::ReferenceSurface;
         let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;
         if matches!(reference_surface, Some(ReferenceSurface::Limit)) {
-            self.own_surface.check_deviation()?;
+            self.user_surface.check_deviation()?;
         }
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
         let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
         let subject = Subject {
             moment: self.surface.animation.moment(&loaded)?,
-            given: given.map(Given::from).or(own_lod),
+            given: given.map(Given::from).or(user_lod),
             surface_shader,
             matcap: matcap.map(Arc::new),
             environment,
@@ -137,9 +137,9 @@ impl ShotOptions {
     /// Uploads the subject, and tessellates it as these options say, within the budget of triangles.
     pub(super) fn shot(&self, engine: Engine, mut subject: Subject) -> Result<Shot, CliError> {
         let mut scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
-        subject.dress(&engine, &mut scene)?;
+        subject.apply_to_scene(&engine, &mut scene)?;
         if let Some(panorama) = subject.environment.take() {
-            scene.set_environment(Some(Arc::new(Environment::of_panorama(&engine.gpu, panorama)?)));
+            scene.set_environment(Some(Arc::new(Environment::from_panorama(&engine.gpu, panorama)?)));
         }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {

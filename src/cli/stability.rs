@@ -27,7 +27,7 @@ pub struct Args {
     /// Meshes to run as well, after the cases chosen with --case; without --case, only these
     #[arg(value_parser = super::options::source())]
     pub files: Vec<Source>,
-    /// For the files; cases have tolerances of their own
+    /// Weld tolerance for the given files (built-in cases use their own)
     #[command(flatten)]
     pub weld: WeldOption,
     /// Run only this case; may be given several times
@@ -129,7 +129,7 @@ impl Args {
             junctions: Some(&junctions),
             warnings: Some(warnings),
             leaks: Some(&leaks),
-            ..Facts::of_mesh(&topology)
+            ..Facts::from_mesh(&topology)
         };
         let judged = judge(&gates, &facts);
         let failed = judged.iter().filter(|judgement| !judgement.passed);

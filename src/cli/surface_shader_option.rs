@@ -7,7 +7,7 @@ use std::sync::Arc;
 use super::{CliError, refuse};
 use gpu::SurfaceShader;
 use inspect::gates::{Gate, GateKind};
-use inspect::own_shader::read_own_shader;
+use inspect::user_shader::read_user_shader;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct SurfaceShaderOption {
@@ -21,7 +21,7 @@ pub struct SurfaceShaderOption {
 impl SurfaceShaderOption {
     /// Reads the file, if one was named.
     pub fn read(&self) -> Result<Option<Arc<SurfaceShader>>, CliError> {
-        Ok(self.surface_shader.as_deref().map(read_own_shader).transpose()?)
+        Ok(self.surface_shader.as_deref().map(read_user_shader).transpose()?)
     }
 
     /// Checks that nothing is to be computed on the CPU, and that no gate needs the surface there.
@@ -29,7 +29,7 @@ impl SurfaceShaderOption {
         if self.surface_shader.is_none() {
             return Ok(());
         }
-        refuse(is_on_cpu, "--surface-shader runs on the graphics adapter: leave --device cpu away")?;
+        refuse(is_on_cpu, "--surface-shader runs on the graphics adapter: omit --device cpu")?;
         refuse(
             gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance),
             "--fail-on above-tolerance measures on the CPU, where the surface of --surface-shader isn't known: choose other gates",

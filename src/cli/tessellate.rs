@@ -22,7 +22,7 @@ use inspect::export::Exported;
 use inspect::gates::{Facts, GateKind, Judgement, judge};
 use inspect::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
 use inspect::render::{Camera, Scene};
-use inspect::shot::{Shot, ShotView, Subject, report_own_lod, report_own_surface};
+use inspect::shot::{Shot, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;
 
 #[derive(Debug, clap::Args)]
@@ -39,9 +39,9 @@ pub struct Args {
     #[command(flatten)]
     pub given: FactorsOption,
     #[command(flatten)]
-    pub own_lod: LodShaderOption,
+    pub user_lod: LodShaderOption,
     #[command(flatten)]
-    pub own_surface: SurfaceShaderOption,
+    pub user_surface: SurfaceShaderOption,
     #[command(flatten)]
     pub cameras: CamerasOption,
     /// Where to tessellate; the CPU needs no graphics driver
@@ -73,11 +73,11 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
     let written = files.checked(&views);
     let heights = file_of_heights(args.surface.height.as_ref());
     let factors = args.given.given.as_deref();
-    let shaders = [args.own_lod.lod_shader.as_deref(), args.own_surface.surface_shader.as_deref()];
+    let shaders = [args.user_lod.lod_shader.as_deref(), args.user_surface.surface_shader.as_deref()];
     let read = [file_of(&args.file), heights, factors, args.cameras.file()].into_iter().chain(shaders);
     keep_apart(read, written.iter().copied())?;
-    let own_lod = args.own_lod.read(&args.surface.tessellation())?;
-    let surface_shader = args.own_surface.read()?;
+    let user_lod = args.user_lod.read(&args.surface.tessellation())?;
+    let surface_shader = args.user_surface.read()?;
     let ready = Ready { args, mesh: Posed::load(&args.surface, &args.file, &written)? };
     let Loaded { mesh, topology, .. } = &ready.mesh.posed;
     let given = args.given.read(mesh, topology, &args.surface.tessellation())?;
@@ -85,7 +85,7 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
     let views = views.iter().map(|view| Ok((view, ready.mesh.camera(view)?))).collect::<Result<Vec<_>, CliError>>()?;
     let failed = match args.device {
         Device::Cpu => ready.on_cpu(&views, given.as_deref())?,
-        Device::Gpu => ready.on_gpu(&views, engine()?, given.map(Given::from).or(own_lod), surface_shader)?,
+        Device::Gpu => ready.on_gpu(&views, engine()?, given.map(Given::from).or(user_lod), surface_shader)?,
     };
     if failed.is_empty() { Ok(()) } else { Err(CliError::Gates(failed)) }
 }
@@ -95,9 +95,9 @@ impl Args {
     fn check(&self) -> Result<(), CliError> {
         self.surface.check(None)?;
         self.adapter.check(self.device == Device::Cpu)?;
-        self.own_lod.check(self.device == Device::Cpu)?;
-        self.own_lod.check_alone(&self.given)?;
-        self.own_surface.check(self.device == Device::Cpu, &self.gates.gates.fail_on)?;
+        self.user_lod.check(self.device == Device::Cpu)?;
+        self.user_lod.check_alone(&self.given)?;
+        self.user_surface.check(self.device == Device::Cpu, &self.gates.gates.fail_on)?;
         self.gates.check(self.device == Device::Cpu)?;
         Exported::check_ending(&self.output)?;
         Ok(())
@@ -153,15 +153,15 @@ impl Ready<'_> {
             arena_bytes: self.args.surface.arena_bytes(),
             ..Subject::new(self.mesh.loaded.clone(), self.args.surface.settings())
         };
-        subject.dress(&engine, &mut scene)?;
+        subject.apply_to_scene(&engine, &mut scene)?;
         let mut failed = Vec::new();
         for (index, (view, camera)) in views.iter().enumerate() {
             let lod_view = self.mesh.lod_view(camera);
             let settings = self.args.surface.within_budget_on(&engine, &mut scene, lod_view)?;
             engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
             if index == 0 {
-                report_own_surface(&engine, &scene)?;
-                report_own_lod(&engine, &scene)?;
+                report_user_surface(&engine, &scene)?;
+                report_user_lod(&engine, &scene)?;
             }
             let (vertices, triangles) = scene.tessellator.totals();
             self.check(view, vertices, triangles)?;
@@ -203,7 +203,7 @@ impl Ready<'_> {
         let measured = gates.fail_on.iter().any(|gate| gate.kind.needs_survey()).then(|| {
             let of_lod = || AskedFactors::new(edges, convention, out.edge_factors.clone());
             let asked = given.map_or_else(of_lod, |given| AskedFactors::given(convention, given));
-            Measured::of(mesh, topology, asked, out)
+            Measured::new(mesh, topology, asked, out)
         });
         let above = gates.has(GateKind::AboveTolerance).then(|| {
             let measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, out.triangles.len() as u64);
@@ -219,7 +219,7 @@ impl Ready<'_> {
             measured: measured.as_ref(),
             junctions: junctions.as_deref(),
             above: above.as_ref(),
-            ..Facts::of_mesh(topology)
+            ..Facts::from_mesh(topology)
         };
         Ok(judge(&gates.fail_on, &facts))
     }

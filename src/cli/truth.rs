@@ -40,7 +40,7 @@ impl TruthOption {
             return Ok(None);
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();
-        let exact = loaded.source.shape().filter(|_| is_plain).and_then(Truth::of_shape);
+        let exact = loaded.source.shape().filter(|_| is_plain).and_then(Truth::from_shape);
         let found = exact.map(|truth| ReferenceSurface::Truth(loaded.source.to_string(), Arc::new(truth)));
         Ok(Some(found.unwrap_or(ReferenceSurface::Limit)))
     }

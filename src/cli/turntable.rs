@@ -6,7 +6,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use super::options::whole;
 use super::shot_options::ShotOptions;
-use super::{AdapterOption, CliError, Telling, refuse};
+use super::{AdapterOption, CliError, ProgressPrinter, refuse};
 use geometry::progress::Progress;
 use inspect::engine::Engine;
 use inspect::export::ending;
@@ -45,9 +45,9 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
     )?;
     let (subject, _) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(Engine::chosen(&args.adapter.choice())?, subject)?;
-    shot.report_own_shaders()?;
-    let mut telling = Telling::new();
-    let mut say = |frame| telling.say(|| format!("picture {} of {}", frame + 1, turn.frames));
+    shot.report_user_shaders()?;
+    let mut progress_printer = ProgressPrinter::new();
+    let mut say = |frame| progress_printer.print(|| format!("picture {} of {}", frame + 1, turn.frames));
     Ok(turn.write(&mut shot, |_| line.to_owned(), &args.output, &Progress::new(), &mut say)?)
 }
 

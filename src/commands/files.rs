@@ -4,7 +4,7 @@ use geometry::names::every;
 
 /// What can be open beside the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Beside {
+pub enum CompanionFile {
     /// The reference surface.
     Truth,
     Factors,
@@ -15,8 +15,8 @@ pub enum Beside {
     Environment,
 }
 
-impl Beside {
-    pub const ALL: [Self; 6] = every![Beside: Truth, Factors, LodShader, SurfaceShader, Matcap, Environment];
+impl CompanionFile {
+    pub const ALL: [Self; 6] = every![CompanionFile: Truth, Factors, LodShader, SurfaceShader, Matcap, Environment];
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,6 +37,6 @@ pub enum Written {
 pub enum Purpose {
     Open,
     Heights,
-    Beside(Beside),
+    CompanionFile(CompanionFile),
     Write(Written),
 }

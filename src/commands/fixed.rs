@@ -3,8 +3,8 @@
 use egui::{Key, ThemePreference};
 
 use super::{
-    Action, Beside, CameraAction, Change, Command, Direction, FileAction, Menu, Need, Purpose, QUIT, Submenu, Written,
-    ctrl, ctrl_shift, plain, shift,
+    Action, CameraAction, Change, Command, CompanionFile, Direction, FileAction, Menu, Need, Purpose, QUIT, Submenu,
+    Written, ctrl, ctrl_shift, plain, shift,
 };
 use geometry::mesh::Shape;
 use inspect::render::Standpoint;
@@ -41,7 +41,7 @@ const MESH: &str = "Writes the tessellated mesh as a .glb or .obj file, as it is
 fn file() -> Vec<Command> {
     use Menu::{Edit, File};
     let document: &[Need] = &[Need::Document];
-    let beside = |beside, name: &'static str, text: &'static str| ask(Purpose::Beside(beside), name, text);
+    let beside = |beside, name: &'static str, text: &'static str| ask(Purpose::CompanionFile(beside), name, text);
     let close = |beside, need: &'static [Need], name: &'static str, text: &'static str| {
         Command::new(FileAction::Close(beside), name).text(text).needs(need)
     };
@@ -50,50 +50,50 @@ fn file() -> Vec<Command> {
         ask(Purpose::Open, "Open…", "Opens a mesh file.").keys([ctrl(Key::O)]).menu(File, 0),
         Command::new(FileAction::OpenPath, "Open path…").text(path_text).keys([ctrl(Key::L)]).menu(File, 0),
         ask(Purpose::Heights, "Height image…", HEIGHT_IMAGE).menu(File, 1).needs(document),
-        beside(Beside::Matcap, "Matcap image…", MATCAP_IMAGE).menu(File, 1).needs(document),
+        beside(CompanionFile::Matcap, "Matcap image…", MATCAP_IMAGE).menu(File, 1).needs(document),
         Command::new(FileAction::Reload, "Reload")
             .text("Loads the file again; settings and camera stay.")
             .keys([plain(Key::R)])
             .menu(File, 1)
             .needs(document),
-        beside(Beside::Truth, "Reference surface…", TRUTH).menu(File, 2),
+        beside(CompanionFile::Truth, "Reference surface…", TRUTH).menu(File, 2),
         close(
-            Beside::Truth,
+            CompanionFile::Truth,
             &[Need::Truth],
             "Forget reference surface",
             "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.",
         )
         .menu(File, 2),
-        beside(Beside::Factors, "Factors of a file…", FACTORS).menu(File, 2).needs(document),
+        beside(CompanionFile::Factors, "Factors of a file…", FACTORS).menu(File, 2).needs(document),
         close(
-            Beside::Factors,
+            CompanionFile::Factors,
             &[Need::Factors],
             "Close the factors file",
             "Closes the file of factors. LOD computes them again.",
         )
         .menu(File, 2),
-        beside(Beside::LodShader, "LOD shader…", LOD_SHADER).menu(Edit, 2).needs(document),
+        beside(CompanionFile::LodShader, "LOD shader…", LOD_SHADER).menu(Edit, 2).needs(document),
         close(
-            Beside::LodShader,
+            CompanionFile::LodShader,
             &[Need::LodShader],
             "Close the LOD shader",
             "Closes the LOD shader. LOD computes factors again.",
         )
         .menu(Edit, 2),
-        beside(Beside::SurfaceShader, "Surface shader…", SURFACE_SHADER).menu(Edit, 2).needs(document),
+        beside(CompanionFile::SurfaceShader, "Surface shader…", SURFACE_SHADER).menu(Edit, 2).needs(document),
         close(
-            Beside::SurfaceShader,
+            CompanionFile::SurfaceShader,
             &[Need::SurfaceShader],
             "Close the surface shader",
             "Closes the surface shader. The surface that was chosen before is back.",
         )
         .menu(Edit, 2),
-        beside(Beside::Environment, "Open environment…", ENVIRONMENT).menu(File, 2),
+        beside(CompanionFile::Environment, "Open environment…", ENVIRONMENT).menu(File, 2),
         close(
-            Beside::Environment,
+            CompanionFile::Environment,
             &[Need::Environment],
             "Close environment",
-            "Closes the panorama of light. The studio shines again.",
+            "Close the environment map; studio light is used again.",
         )
         .menu(File, 2),
     ];

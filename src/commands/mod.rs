@@ -21,7 +21,7 @@ use inspect::render::Standpoint;
 pub use availability::{Availability, Need};
 pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
 pub use change::Change;
-pub use files::{Beside, Purpose, Written};
+pub use files::{CompanionFile, Purpose, Written};
 pub use fixed::ENVIRONMENT;
 pub(crate) use fixed::{HEIGHT_IMAGE, MATCAP_IMAGE};
 
@@ -100,7 +100,7 @@ pub enum FileAction {
     OpenShape(Shape),
     OpenVase,
     Reload,
-    Close(Beside),
+    Close(CompanionFile),
     /// Opens the window that chooses how a picture is saved.
     SavePicture,
     SaveTurntable,

@@ -1,8 +1,30 @@
 //! Projects positions to the screen, and gives the size of a ULP.
 
-use glam::{Mat4, Vec2, Vec3, dvec3, vec2, vec4};
+use glam::{DVec4, Mat4, Vec2, Vec3, dvec3, vec2, vec4};
 
 use crate::mesh::Topology;
+
+/// What the depth of a clip space is on the near plane, after the division by w, and where it goes from there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthRange {
+    /// 0 on the near plane, 1 far away: Direct3D, Vulkan, Metal and WebGPU.
+    ZeroToOne,
+    /// 1 on the near plane, 0 far away: the same with depth reversed.
+    Reversed,
+    /// -1 on the near plane, 1 far away: OpenGL.
+    MinusOneToOne,
+}
+
+impl DepthRange {
+    /// The row whose product with a point is 0 on the near plane and grows into the view, of the rows z and w of a matrix.
+    pub fn near_plane(self, z: DVec4, w: DVec4) -> DVec4 {
+        match self {
+            Self::ZeroToOne => z,
+            Self::Reversed => w - z,
+            Self::MinusOneToOne => w + z,
+        }
+    }
+}
 
 /// A view of a mesh: what turns positions in object units into px.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -26,31 +26,31 @@ pub fn chunks_an_arena(gpu: &Gpu) -> u32 {
 
 /// Memory for the vertices and triangles of one chunk.
 pub(super) struct Arena {
-    /// The first halves of all vertices that there is room for, then the second halves: see `Vertex` in `shaders/types.wgsl`.
+    /// The first halves of all vertices that there is capacity for, then the second halves: see `Vertex` in `shaders/types.wgsl`.
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
-    pub room: Room,
+    pub capacity: Capacity,
     /// What a chunk has at most where a slab doesn't fit the arena at once.
-    pub chunk: Room,
+    pub chunk: Capacity,
 }
 
 /// A number of vertices and of triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Room {
+pub(super) struct Capacity {
     pub vertices: u32,
     pub triangles: u32,
 }
 
-impl Room {
+impl Capacity {
     /// Room for the largest patch.
-    fn of_patch() -> Self {
+    fn from_patch() -> Self {
         let factors = largest_patch();
         Self { vertices: point_count(factors), triangles: triangle_count(factors) }
     }
 
     /// A part of it, but no less than for the largest patch.
     fn divided(self, parts: u32) -> Self {
-        let patch = Self::of_patch();
+        let patch = Self::from_patch();
         Self {
             vertices: (self.vertices / parts).max(patch.vertices),
             triangles: (self.triangles / parts).max(patch.triangles),
@@ -58,10 +58,10 @@ impl Room {
     }
 
     /// A bound on the number of chunks of this size that any tessellation of so many patches takes. It follows from this: every
-    /// chunk but the last has no room left for the vertices, or for the triangles, of one more patch; and two that follow each other
+    /// chunk but the last has no capacity left for the vertices, or for the triangles, of one more patch; and two that follow each other
     /// would not fit one.
     fn most_chunks(self, patch_count: u32) -> u32 {
-        let patch = Self::of_patch();
+        let patch = Self::from_patch();
         let full = |capacity: u32, patch: u32| {
             let needed = u64::from(patch) * u64::from(patch_count);
             if needed <= u64::from(capacity) {
@@ -81,7 +81,7 @@ impl Arena {
     /// # Errors
     /// A buffer would be larger than the adapter binds.
     pub(super) fn new(gpu: &Gpu, mesh: &MeshBuffers, arena_bytes: u64) -> Result<Self, GpuError> {
-        let (patch, patch_count) = (Room::of_patch(), mesh.patch_count);
+        let (patch, patch_count) = (Capacity::from_patch(), mesh.patch_count);
         let limits = gpu.device.limits();
         let half = (arena_bytes / 2).min(limits.max_storage_buffer_binding_size).min(limits.max_buffer_size);
         let capacity = |item: usize, patch: u32| {
@@ -89,8 +89,8 @@ impl Arena {
             (half / item as u64).clamp(u64::from(patch), needed.max(u64::from(patch))) as u32
         };
         let vertices = capacity(size_of::<Vertex>(), patch.vertices);
-        let arena = Self::with_room(gpu, vertices, capacity(size_of::<[u32; 3]>(), patch.triangles))?;
-        let chunk = chunk_of(arena.room, chunks_an_arena(gpu), mesh);
+        let arena = Self::with_capacity(gpu, vertices, capacity(size_of::<[u32; 3]>(), patch.triangles))?;
+        let chunk = chunk_of(arena.capacity, chunks_an_arena(gpu), mesh);
         Ok(Self { chunk, ..arena })
     }
 
@@ -98,13 +98,13 @@ impl Arena {
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub(super) fn with_room(gpu: &Gpu, vertices: u32, triangles: u32) -> Result<Self, GpuError> {
-        let room = Room { vertices, triangles }.divided(1);
+    pub(super) fn with_capacity(gpu: &Gpu, vertices: u32, triangles: u32) -> Result<Self, GpuError> {
+        let capacity = Capacity { vertices, triangles }.divided(1);
         Ok(Self {
-            vertices: empty::<Vertex>(gpu, "arena.vertices", room.vertices as usize)?,
-            indices: empty::<[u32; 3]>(gpu, "arena.indices", room.triangles as usize)?,
-            room,
-            chunk: room,
+            vertices: empty::<Vertex>(gpu, "arena.vertices", capacity.vertices as usize)?,
+            indices: empty::<[u32; 3]>(gpu, "arena.indices", capacity.triangles as usize)?,
+            capacity,
+            chunk: capacity,
         })
     }
 
@@ -115,10 +115,10 @@ impl Arena {
 }
 
 /// The size of chunks: so small a part of the arena, unless the tables of so many chunks would be large.
-fn chunk_of(room: Room, parts: u32, mesh: &MeshBuffers) -> Room {
+fn chunk_of(capacity: Capacity, parts: u32, mesh: &MeshBuffers) -> Capacity {
     let halves = std::iter::successors(Some(parts), |parts| Some(parts / 2)).take_while(|&parts| parts > 0);
-    let draws = |chunk: Room| u64::from(chunk.most_chunks(mesh.patch_count)) * u64::from(mesh.material_count);
-    halves.map(|parts| room.divided(parts)).find(|&chunk| draws(chunk) <= MOST_DRAWS).unwrap_or(room)
+    let draws = |chunk: Capacity| u64::from(chunk.most_chunks(mesh.patch_count)) * u64::from(mesh.material_count);
+    halves.map(|parts| capacity.divided(parts)).find(|&chunk| draws(chunk) <= MOST_DRAWS).unwrap_or(capacity)
 }
 
 /// Bytes of half a vertex: its position and normal, or its key and texture coordinates.

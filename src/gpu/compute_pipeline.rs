@@ -33,7 +33,7 @@ impl ShaderModule {
     }
 
     /// The module with this text.
-    pub(super) fn of_text(name: &'static str, text: String) -> Self {
+    pub(super) fn from_text(name: &'static str, text: String) -> Self {
         Self::with(name, ModuleText::Made(text))
     }
 
@@ -147,11 +147,11 @@ pub struct ComputePipeline {
 
 impl ComputePipeline {
     pub fn new(module: &Arc<ShaderModule>, entry_point: &'static str) -> Self {
-        Self::of(module, Pass::new(module.name, entry_point))
+        Self::from_module(module, Pass::new(module.name, entry_point))
     }
 
     /// The pipeline of a pass of this module.
-    pub(super) fn of(module: &Arc<ShaderModule>, pass: Pass) -> Self {
+    pub(super) fn from_module(module: &Arc<ShaderModule>, pass: Pass) -> Self {
         Self { module: module.clone(), pass, made: Lazy::default() }
     }
 

@@ -6,7 +6,7 @@
 //! ```no_run
 //! # mod pnaen { pub use geometry::{mesh, tessellate}; pub use pnaen_gpu::embed; }
 //! # fn main() {}
-//! use pnaen::embed::{Context, Room, TessellatedMesh};
+//! use pnaen::embed::{Context, Capacity, TessellatedMesh};
 //! use pnaen::mesh::{Mesh, MeshSlices};
 //! use pnaen::tessellate::{LodView, Tessellation};
 //!
@@ -15,8 +15,8 @@
 //! # -> Result<(), Box<dyn std::error::Error>> {
 //! // Once:
 //! let context = Context::new(device, queue)?;
-//! let room = Room { vertices: 100_000, triangles: 200_000 };
-//! let mut mesh = TessellatedMesh::new(&context, Mesh::from_slices(slices)?, room)?;
+//! let capacity = Capacity { vertices: 100_000, triangles: 200_000 };
+//! let mut mesh = TessellatedMesh::new(&context, Mesh::from_slices(slices)?, capacity)?;
 //!
 //! // Every frame, before the render pass begins:
 //! mesh.set(&Tessellation { factor: 12.0, ..Default::default() }, view)?;
@@ -33,7 +33,8 @@
 //! # }
 //! ```
 //!
-//! A mesh that is seen from several cameras with adaptive LOD needs a [`TessellatedMesh`] for each.
+//! A mesh that is seen from several cameras with adaptive LOD needs a [`TessellatedMesh`] for each:
+//! [`TessellatedMesh::another_view`] makes them, and they share the mesh.
 //!
 //! `examples/embed.rs` is a whole program; `examples/animate.rs` changes settings and a pose over time.
 
@@ -86,7 +87,7 @@ pub struct Context {
 /// patch: 8,256 vertices and 16,129 triangles. WebGPU's default limits allow 4,194,304 vertices and
 /// 11,184,810 triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Room {
+pub struct Capacity {
     /// The most vertices that are emitted.
     pub vertices: u32,
     /// The most triangles that are emitted.
@@ -103,12 +104,10 @@ pub struct TessellatedMesh {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
 pub struct OutputStatus {
-    /// Always 0, since the output begins with the first patch.
-    pub first_patch: u32,
+    first_patch: u32,
     /// The number of patches that were tessellated, of [`TessellatedMesh::patches`].
     pub patches: u32,
-    /// Both are always 0.
-    pub first: [u32; 2],
+    first: [u32; 2],
     /// The number of vertices that were emitted.
     pub vertices: u32,
     /// The number of triangles that were emitted.
@@ -159,12 +158,22 @@ impl TessellatedMesh {
     /// # Errors
     /// [`GpuError::TooLarge`] if the mesh or its output is larger than the device binds, and [`GpuError::TooManyPatches`] if
     /// the mesh has more than 262,144 triangles.
-    pub fn new(context: &Context, mesh: Mesh, room: Room) -> Result<Self, GpuError> {
-        let topology = Topology::of(&mesh);
+    pub fn new(context: &Context, mesh: impl Into<Arc<Mesh>>, capacity: Capacity) -> Result<Self, GpuError> {
+        let mesh = mesh.into();
+        let topology = Arc::new(Topology::new(&mesh));
         let (gpu, pipelines) = (&context.gpu, context.pipelines.clone());
-        let room = [room.vertices, room.triangles];
-        let tessellator = Tessellator::with_room(gpu, pipelines, Arc::new(mesh), Arc::new(topology), room)?;
-        Ok(Self { tessellator, inputs: None })
+        let counts = [capacity.vertices, capacity.triangles];
+        Ok(Self { tessellator: Tessellator::with_capacity(gpu, pipelines, mesh, topology, counts)?, inputs: None })
+    }
+
+    /// Makes another view of the same mesh, with its own settings, pose and output. Both share the mesh, its topology and its height
+    /// images.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] if the output is larger than the device binds.
+    pub fn another_view(&self, capacity: Capacity) -> Result<Self, GpuError> {
+        let counts = [capacity.vertices, capacity.triangles];
+        Ok(Self { tessellator: self.tessellator.sibling_with_capacity(counts)?, inputs: None })
     }
 
     /// The mesh at rest.
@@ -262,13 +271,13 @@ impl TessellatedMesh {
     }
 
     /// The buffer that holds an [`OutputStatus`], and the range of its bytes there. The host may copy
-    /// these bytes and read them later, to learn whether the output fits its [`Room`].
+    /// these bytes and read them later, to learn whether the output fits its [`Capacity`].
     pub fn status_buffer(&self) -> (&wgpu::Buffer, Range<u64>) {
         let (_, status) = self.tessellator.first_chunk();
         (status, 0..size_of::<OutputStatus>() as u64)
     }
 
-    /// Whether the last patches were left out, since the output doesn't fit its [`Room`]. The others are whole.
+    /// Whether the last patches were left out, since the output doesn't fit its [`Capacity`]. The others are whole.
     /// `status` must be of passes that have run: before, it is all zeros, which means that all patches were left out.
     pub fn has_overflowed(&self, status: &OutputStatus) -> bool {
         status.patches < self.patches()

@@ -50,9 +50,9 @@ pub enum GpuError {
     PictureTooLarge { width: u32, height: u32, limit: u32 },
     /// Loops of functions of the user's own took too long.
     #[error(
-        "the loops of the {0} took too long, for one edge or for all together, so it was stopped: let them end sooner"
+        "the loops of the {0} took too long, for one edge or for all together, so it was stopped: bound the loops more tightly"
     )]
-    OwnStopped(&'static str),
+    UserShaderTimedOut(&'static str),
     /// The device has no memory left.
     #[error("the graphics device is out of memory: ask for a smaller picture, or open a smaller mesh")]
     OutOfMemory,

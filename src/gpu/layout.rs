@@ -105,7 +105,7 @@ pub struct CornerDetail {
 }
 
 impl CornerDetail {
-    pub fn of(detail: &geometry::mesh::CornerDetail) -> Self {
+    pub fn new(detail: &geometry::mesh::CornerDetail) -> Self {
         Self {
             uvs: detail.uvs.map(|uv| uv.to_array()),
             color: detail.color.to_array(),

@@ -120,7 +120,7 @@ fn corner(own: &geometry::mesh::Corner) -> Corner {
 fn corner_details(gpu: &Gpu, mesh: &Mesh) -> Result<wgpu::Buffer, GpuError> {
     let none = [geometry::mesh::CornerDetail::default()];
     let details = mesh.details.as_deref().map_or(&none[..], |details| details);
-    filled_by(gpu, "corner details", details.len(), |i| CornerDetail::of(&details[i]))
+    filled_by(gpu, "corner details", details.len(), |i| CornerDetail::new(&details[i]))
 }
 
 /// A bit for each patch: whether its material has a texture.

@@ -2,7 +2,7 @@
 
 use super::MeshBuffers;
 use super::layout::{LOD_GIVEN, LodView, Params};
-use super::own_lod::Given;
+use super::user_lod::Given;
 use geometry::mesh::Mesh;
 use geometry::tessellate::{self, Clip, Inputs, Lod, LodReads};
 

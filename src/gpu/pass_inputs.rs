@@ -7,10 +7,10 @@ use super::arena::Arena;
 use super::bound_pass::{BoundPass, Step, Workgroups};
 use super::compute_pipeline::{ComputePipeline, Pass};
 use super::mesh_buffers::MeshBuffers;
-use super::own_functions::OWN_PREFIX;
 use super::pipelines::{ComputePipelines, grid};
 use super::relief_buffers::HeightImages;
 use super::slab::SlabBuffers;
+use super::user_functions::USER_PREFIX;
 use super::{Gpu, GpuError};
 
 /// What passes are bound to.
@@ -74,7 +74,7 @@ impl<'a> PassInputs<'a> {
     fn resource(&self, name: &str) -> Option<wgpu::BindingResource<'a>> {
         match name {
             "heights" => Some(wgpu::BindingResource::TextureView(&self.images?.view)),
-            name => self.buffer(name.strip_prefix(OWN_PREFIX).unwrap_or(name)).map(wgpu::Buffer::as_entire_binding),
+            name => self.buffer(name.strip_prefix(USER_PREFIX).unwrap_or(name)).map(wgpu::Buffer::as_entire_binding),
         }
     }
 
@@ -85,7 +85,7 @@ impl<'a> PassInputs<'a> {
         let (mesh, relief, slab) = (self.mesh, self.mesh.relief.as_ref(), self.slab);
         Some(match name {
             "params" => self.params,
-            "given_factors" | "own_factors" => self.given,
+            "given_factors" | "user_factors" => self.given,
             "points" => &mesh.points,
             "corners" | "corner_words" | "corner_attributes" => &mesh.corners,
             "corner_details" => &mesh.corner_details,

@@ -6,9 +6,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use super::buffer::uniform_buffer;
 use super::compute_pipeline::{ComputePipeline, Pass, ShaderModules};
 use super::lazy::Lazy;
-use super::own_functions::{OwnPipelines, RecentPipelines};
-use super::own_lod::LodShader;
-use super::own_surface::SurfaceShader;
+use super::user_functions::{RecentPipelines, UserPipelines};
+use super::user_lod::LodShader;
+use super::user_surface::SurfaceShader;
 use super::{Gpu, GpuError};
 use geometry::tessellate::connectivity_table;
 
@@ -26,7 +26,7 @@ pub(super) const FRAMES: Pass = Pass::new("pass_levels", "frames_main");
 pub(super) const EDGE_FACTORS: Pass = Pass::new("pass_factors", "edge_factors_main");
 /// The factor that the heights of every patch need inside it.
 pub(super) const HEIGHTS_INSIDE: Pass = Pass::new("pass_factors", "heights_inside_main");
-/// The patches whose own least needs no search.
+/// The patches whose minimum needs no search.
 pub(super) const LEAST_TRIANGLES: Pass = Pass::new("pass_least", "least_triangles_main");
 /// The others. Like all searches it has a size of its workgroups and a kind of pattern: see [`ComputePipelines::search`].
 pub(super) const SEARCH_LEAST_TRIANGLES: Pass = Pass::new("pass_least", "search_least_triangles_main");
@@ -57,8 +57,8 @@ pub struct ComputePipelines {
     modules: ShaderModules,
     pipelines: Mutex<HashMap<Pass, Arc<ComputePipeline>>>,
     patterns: Lazy<wgpu::Buffer>,
-    own_lods: RecentPipelines<LodShader>,
-    own_surfaces: RecentPipelines<SurfaceShader>,
+    user_lods: RecentPipelines<LodShader>,
+    user_surfaces: RecentPipelines<SurfaceShader>,
 }
 
 impl Default for ComputePipelines {
@@ -86,8 +86,8 @@ impl ComputePipelines {
             modules: ShaderModules::default(),
             pipelines: Mutex::default(),
             patterns: Lazy::default(),
-            own_lods: RecentPipelines::default(),
-            own_surfaces: RecentPipelines::default(),
+            user_lods: RecentPipelines::default(),
+            user_surfaces: RecentPipelines::default(),
         }
     }
 
@@ -97,7 +97,7 @@ impl ComputePipelines {
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         let made = pipelines
             .entry(pass)
-            .or_insert_with(|| Arc::new(ComputePipeline::of(&self.modules.get(pass.module), pass)));
+            .or_insert_with(|| Arc::new(ComputePipeline::from_module(&self.modules.get(pass.module), pass)));
         made.clone()
     }
 
@@ -116,13 +116,13 @@ impl ComputePipelines {
     }
 
     /// The pipelines of functions of the user's own for factors.
-    pub fn own_lod(&self, shader: &Arc<LodShader>) -> Arc<OwnPipelines> {
-        self.own_lods.of(shader)
+    pub fn user_lod(&self, shader: &Arc<LodShader>) -> Arc<UserPipelines> {
+        self.user_lods.of(shader)
     }
 
     /// The pipelines of a function of the user's own for control points.
-    pub fn own_surface(&self, shader: &Arc<SurfaceShader>) -> Arc<OwnPipelines> {
-        self.own_surfaces.of(shader)
+    pub fn user_surface(&self, shader: &Arc<SurfaceShader>) -> Arc<UserPipelines> {
+        self.user_surfaces.of(shader)
     }
 
     /// The table in which [`EMIT_TRIANGLES`] looks up which points triangles join: see `shaders/connectivity_table.wgsl`.

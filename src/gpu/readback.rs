@@ -38,7 +38,7 @@ enum State {
 
 impl Readback {
     /// Records copies of ranges of bytes of buffers, which will come one after another. Their bounds are multiples of 4.
-    pub fn of_buffers<'a>(
+    pub fn from_buffers<'a>(
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>,
@@ -57,7 +57,7 @@ impl Readback {
 
     /// Records a copy of a texture's texels, which will come row by row without gaps. The texture has one layer, one mip level
     /// and a format that isn't compressed.
-    pub fn of_texture(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) -> Self {
+    pub fn from_texture(gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, texture: &wgpu::Texture) -> Self {
         let size = texture.size();
         let used = size.width * texture.format().block_copy_size(None).unwrap_or(0);
         let stride = used.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -71,7 +71,7 @@ impl Readback {
 
     /// Copies ranges of bytes of buffers in a submission of its own, and asks for them.
     pub fn start<'a>(gpu: &Gpu, parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>) -> Self {
-        Self::submitted(gpu, |encoder| Self::of_buffers(gpu, encoder, parts))
+        Self::submitted(gpu, |encoder| Self::from_buffers(gpu, encoder, parts))
     }
 
     fn submitted(gpu: &Gpu, record: impl FnOnce(&mut wgpu::CommandEncoder) -> Self) -> Self {
@@ -194,12 +194,12 @@ pub fn read_buffers<'a>(
     if parts.is_empty() { Ok(Vec::new()) } else { Readback::start(gpu, parts).wait(gpu) }
 }
 
-/// Reads a texture's texels row by row, waiting for them: see [`Readback::of_texture`].
+/// Reads a texture's texels row by row, waiting for them: see [`Readback::from_texture`].
 ///
 /// # Errors
 /// The device was lost.
 pub fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, GpuError> {
-    Readback::submitted(gpu, |encoder| Readback::of_texture(gpu, encoder, texture)).wait(gpu)
+    Readback::submitted(gpu, |encoder| Readback::from_texture(gpu, encoder, texture)).wait(gpu)
 }
 
 /// A buffer that copies are written into and that the host maps. It has at least one word, since an empty one can't be mapped.

@@ -43,8 +43,8 @@ impl SlabBuffers {
         let slab = Slab {
             first_patch,
             patch_count,
-            vertex_capacity: arena.room.vertices,
-            triangle_capacity: arena.room.triangles,
+            vertex_capacity: arena.capacity.vertices,
+            triangle_capacity: arena.capacity.triangles,
             chunk_vertices: arena.chunk.vertices,
             chunk_triangles: arena.chunk.triangles,
             chunk_capacity,

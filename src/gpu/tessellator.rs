@@ -2,8 +2,8 @@
 
 mod given;
 mod output;
-mod own_surface;
 mod passes;
+mod user_surface;
 
 use std::sync::Arc;
 
@@ -12,19 +12,19 @@ use glam::Mat4;
 use super::arena::Arena;
 use super::buffer::{filled, uniform_buffer};
 use super::layout::{Chunk, Params};
-use super::own_least::OwnLeast;
+use super::minimum::Minimum;
 use super::params::params_of;
 use super::pass_inputs::BoundPasses;
 use super::readback::Readback;
 use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
 use super::slab::SlabBuffers;
-use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, OwnReport, hull};
+use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, UserReport, hull};
 use geometry::mesh::{Mesh, Pose, Sharing, Topology};
-use geometry::tessellate::{self, Clip, Convention, Edges, HullFactors, Inputs, PosedMesh, Solid};
+use geometry::tessellate::{Clip, Convention, Edges, HullFactors, Inputs, PosedMesh, Solid};
 
 pub use output::ChunkBuffers;
-use own_surface::OwnSurface;
+use user_surface::UserSurface;
 
 /// Patches that one scan covers: few enough that no count of vertices or triangles overflows 32 bits with the most rows.
 const SLAB_PATCHES: u32 = 1 << 18;
@@ -48,12 +48,12 @@ pub struct Tessellator {
     convention: Convention,
     given: Option<Given>,
     given_buffer: wgpu::Buffer,
-    /// Where functions of the user's own report, an [`OwnReport`], if they give factors.
-    own_report: Option<wgpu::Buffer>,
+    /// Where functions of the user's own report, an [`UserReport`], if they give factors.
+    user_report: Option<wgpu::Buffer>,
     /// What they reported last.
-    own_lod_report: Option<OwnReport>,
+    user_lod_report: Option<UserReport>,
     /// What takes the place of the surface, if something does.
-    own_surface: Option<OwnSurface>,
+    user_surface: Option<UserSurface>,
     arena: Arena,
     slabs: Vec<SlabBuffers>,
     /// The passes over the mesh.
@@ -61,7 +61,7 @@ pub struct Tessellator {
     /// Those over each slab.
     slab_passes: Vec<BoundPasses>,
     /// Made when it is first asked for.
-    own_least: Option<OwnLeast>,
+    minimum: Option<Minimum>,
     /// None if the mesh has no heights.
     images: Option<HeightImages>,
     /// The surface that the nets were made for, and how strong it is ([`Params::surface`] and [`Params::alpha`]).
@@ -98,7 +98,7 @@ impl Tessellator {
     ///
     /// # Errors
     /// The mesh is larger than the adapter binds, or has more patches than one scan covers.
-    pub fn with_room(
+    pub fn with_capacity(
         gpu: &Gpu,
         pipelines: Arc<ComputePipelines>,
         mesh: Arc<Mesh>,
@@ -110,13 +110,25 @@ impl Tessellator {
             return Err(GpuError::TooManyPatches { patches, limit });
         }
         let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
-        let (solid, arena) = (Solid::find(&mesh, &topology), Arena::with_room(gpu, vertices, triangles)?);
+        let (solid, arena) = (Solid::find(&mesh, &topology), Arena::with_capacity(gpu, vertices, triangles)?);
         Self::with(gpu, pipelines, mesh, topology, solid, images, |_| Ok(arena))
+    }
+
+    /// Makes another one of the same mesh for another view of a host program, as [`Self::with_capacity`] does: it shares mesh, topology and
+    /// height images, and has output of its own.
+    ///
+    /// # Errors
+    /// The output is larger than the adapter binds.
+    pub fn sibling_with_capacity(&self, [vertices, triangles]: [u32; 2]) -> Result<Self, GpuError> {
+        let images = self.images.as_ref().map(HeightImages::shared);
+        let arena = Arena::with_capacity(&self.gpu, vertices, triangles)?;
+        let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
+        Self::with(&self.gpu, self.pipelines.clone(), mesh, topology, self.solid.clone(), images, |_| Ok(arena))
     }
 
     /// Makes another tessellator of the same mesh, on whatever thread: it shares mesh, topology and height images, and has
     /// output of its own. What takes the place of LOD and of the surface is the same.
-    pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
+    pub fn sibling(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let (gpu, pipelines, solid) = (self.gpu.clone(), self.pipelines.clone(), self.solid.clone());
         let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
         let images = self.images.as_ref().map(HeightImages::shared);
@@ -166,14 +178,14 @@ impl Tessellator {
             convention: Convention::default(),
             given: None,
             given_buffer: filled::<HullFactors>(gpu, "given factors", &[])?,
-            own_report: None,
-            own_lod_report: None,
-            own_surface: None,
+            user_report: None,
+            user_lod_report: None,
+            user_surface: None,
             arena,
             slab_passes: slabs.iter().map(|_| BoundPasses::default()).collect(),
             slabs,
             bound: BoundPasses::default(),
-            own_least: None,
+            minimum: None,
             images,
             nets_done: None,
             counts_done: false,
@@ -189,7 +201,7 @@ impl Tessellator {
     /// # Errors
     /// The mesh's curves under another surface are larger than the adapter binds.
     pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
-        let inputs = &self.with_own_surface(inputs);
+        let inputs = &self.with_user_surface(inputs);
         let sharing = self.sharing(inputs);
         if sharing != self.buffers.sharing {
             self.upload(sharing)?;
@@ -251,7 +263,7 @@ impl Tessellator {
     /// Lets go of what passes are bound to, since some of those buffers were replaced.
     fn unbind(&mut self) {
         self.bound = BoundPasses::default();
-        self.own_least = None;
+        self.minimum = None;
         self.slab_passes.fill_with(BoundPasses::default);
     }
 
@@ -259,8 +271,8 @@ impl Tessellator {
     pub fn forget(&mut self) {
         self.is_deformed = false;
         self.nets_done = None;
-        if let Some(own_least) = &mut self.own_least {
-            own_least.forget();
+        if let Some(minimum) = &mut self.minimum {
+            minimum.forget();
         }
     }
 
@@ -274,13 +286,13 @@ impl Tessellator {
     pub fn shows_fronts_only(&self, clip_from_object: Mat4) -> bool {
         let Some(inputs) = self.inputs else { return false };
         let leaves_out = inputs.tessellation.cull_back_faces || inputs.tessellation.clip != Clip::Off;
-        let seen = Inputs { view: tessellate::LodView { clip_from_object, ..inputs.view }, ..inputs };
+        let seen = Inputs { view: inputs.view.seen_through(clip_from_object, inputs.view.half_viewport), ..inputs };
         (!leaves_out || inputs.view.clip_from_object == clip_from_object) && self.hides_backs(&seen)
     }
 
     /// Given factors and control points of the user's own may tear any edge, and a pose may turn a part inside out.
     fn hides_backs(&self, inputs: &Inputs) -> bool {
-        let is_ours = self.given.is_none() && self.own_surface.is_none();
+        let is_ours = self.given.is_none() && self.user_surface.is_none();
         let hides = |solid: &Solid| solid.hides_backs(&self.mesh, &self.topology, inputs);
         is_ours && self.posed.pose().is_none() && self.solid.as_ref().is_some_and(hides)
     }
@@ -334,10 +346,10 @@ impl Tessellator {
         Ok(())
     }
 
-    /// The own least of every patch: the number of triangles with which it alone would keep the tolerance. None until
-    /// [`Self::record_own_least`] has run.
-    pub fn own_least(&self) -> Option<&wgpu::Buffer> {
-        self.own_least.as_ref().map(|own_least| &own_least.triangles)
+    /// The minimum triangle count of every patch: the number of triangles with which it alone would keep the tolerance. None until
+    /// [`Self::record_minimum`] has run.
+    pub fn minimum(&self) -> Option<&wgpu::Buffer> {
+        self.minimum.as_ref().map(|minimum| &minimum.triangles)
     }
 
     /// The factors that LOD gave, and whether they are the edges' or the sides'.
@@ -391,7 +403,7 @@ impl Tessellator {
     pub fn work_bytes(&self) -> u64 {
         let images = self.images.as_ref().map_or(0, HeightImages::bytes);
         let rig = self.rig.as_ref().map_or(0, RigBuffers::bytes);
-        let least = self.own_least.as_ref().map_or(0, OwnLeast::bytes);
+        let least = self.minimum.as_ref().map_or(0, Minimum::bytes);
         images + rig + least + self.slabs.iter().map(SlabBuffers::bytes).sum::<u64>()
     }
 }

@@ -21,13 +21,13 @@ choices! {
 
 impl Format {
     /// Returns the format that is written into a file of this name: bare indices for .bin, otherwise JSON.
-    pub fn of_name(path: &Path) -> Self {
+    pub fn from_name(path: &Path) -> Self {
         if ends_in(path, "bin") { Self::Bin } else { Self::Json }
     }
 
     /// Returns the format of a file that is read. Text has no zero bytes, and bare indices have some unless all of them
     /// are beyond 16 million.
-    fn of_file(path: &Path, bytes: &[u8]) -> Self {
+    fn from_file(path: &Path, bytes: &[u8]) -> Self {
         let is_text = bytes.trim_ascii_start().starts_with(b"{") && !bytes.contains(&0);
         if is_text || ends_in(path, "json") { Self::Json } else { Self::Bin }
     }
@@ -160,7 +160,7 @@ pub fn read(
     topology: &Topology,
     layout: Layout,
 ) -> Result<Vec<u32>, IndicesFault> {
-    let indices = match Format::of_file(path, bytes) {
+    let indices = match Format::from_file(path, bytes) {
         Format::Json => read_json(bytes, mesh, topology, layout)?,
         Format::Bin => read_bin(bytes, mesh, topology, layout)?,
     };
@@ -258,10 +258,10 @@ mod tests {
     #[test]
     fn bare_indices_that_start_with_a_brace_are_not_taken_for_json() {
         let bin = to_bin(&[123, 5, 6]);
-        assert_eq!(Format::of_file("indices".as_ref(), &bin), Format::Bin);
-        assert_eq!(Format::of_file("indices".as_ref(), b" {\"patches\": []}"), Format::Json);
-        assert_eq!(Format::of_file("INDICES.JSON".as_ref(), b"text"), Format::Json);
-        assert_eq!(Format::of_file("indices.bin".as_ref(), b""), Format::Bin);
+        assert_eq!(Format::from_file("indices".as_ref(), &bin), Format::Bin);
+        assert_eq!(Format::from_file("indices".as_ref(), b" {\"patches\": []}"), Format::Json);
+        assert_eq!(Format::from_file("INDICES.JSON".as_ref(), b"text"), Format::Json);
+        assert_eq!(Format::from_file("indices.bin".as_ref(), b""), Format::Bin);
     }
 
     /// Compares with a file of meshoptimizer's indices. Where the Möbius strip is joined, neighbours run along their edge in

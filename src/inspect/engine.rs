@@ -94,7 +94,7 @@ impl Engine {
     /// # Errors
     /// The mesh needs a larger buffer than the adapter can bind.
     pub fn split(&self, scene: &mut Scene, arena_bytes: u64) -> Result<(), GpuError> {
-        let left = scene.beside(arena_bytes)()?;
+        let left = scene.sibling(arena_bytes)()?;
         scene.set_left(Some(left))
     }
 
@@ -111,7 +111,7 @@ impl Engine {
         }
         scene.tessellator.read_counts()?;
         match scene.tessellator.stopped_shader() {
-            Some(name) => Err(GpuError::OwnStopped(name)),
+            Some(name) => Err(GpuError::UserShaderTimedOut(name)),
             None => Ok(()),
         }
     }

@@ -120,7 +120,7 @@ impl EnvironmentFile {
             EnvironmentFault::Cancelled(cancelled) => EnvironmentError::Cancelled(cancelled),
             fault => EnvironmentError::Broken { path: path.to_owned(), fault },
         };
-        let known = |start: &[u8]| Kind::of(start).map(|_| ()).map_err(broken);
+        let known = |start: &[u8]| Kind::new(start).map(|_| ()).map_err(broken);
         let bytes = read_file(path, limits, known, progress)?;
         let own = Self::read(&bytes, limits, progress).map_err(broken)?;
         let name = shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())));
@@ -132,7 +132,7 @@ impl EnvironmentFile {
     /// # Errors
     /// [`EnvironmentFault`].
     pub fn read(bytes: &[u8], limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentFault> {
-        let kind = Kind::of(bytes)?;
+        let kind = Kind::new(bytes)?;
         let budget = Budget::new(bytes.len(), limits.memory);
         let pixels = pixels(kind, bytes, &budget, &progress.part(0.0, 0.7));
         // Cancelling stops the decoder with some error.
@@ -156,7 +156,7 @@ enum Kind {
 }
 
 impl Kind {
-    fn of(start: &[u8]) -> Result<Self, EnvironmentFault> {
+    fn new(start: &[u8]) -> Result<Self, EnvironmentFault> {
         match start {
             _ if start.starts_with(RADIANCE) => Ok(Self::Radiance { is_old: false }),
             _ if start.starts_with(OLD_RADIANCE) => Ok(Self::Radiance { is_old: true }),

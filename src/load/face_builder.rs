@@ -81,7 +81,7 @@ pub(super) struct FaceBuilder<'a> {
     /// Corners at the position of the corner before them.
     repeated: usize,
     /// Polygons whose triangles may overlap.
-    somehow: usize,
+    maybe_overlapping: usize,
     /// Corners with texture coordinates that aren't finite.
     bad_uvs: usize,
     /// Faces with a position that isn't finite or is too far away, and the place of the first one.
@@ -111,7 +111,7 @@ impl<'a> FaceBuilder<'a> {
             work: polygon::WorkBudget::new(usize::try_from(memory.files()).unwrap_or(usize::MAX)),
             too_small: 0,
             repeated: 0,
-            somehow: 0,
+            maybe_overlapping: 0,
             bad_uvs: 0,
             unplaced: (0, None),
             misnumbered: (0, None),
@@ -327,7 +327,7 @@ impl<'a> FaceBuilder<'a> {
         let outline: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
         self.cut.clear();
         let cut = triangulate(&outline, &mut self.work, &mut self.cut);
-        self.somehow += usize::from(cut == CutQuality::MayOverlap);
+        self.maybe_overlapping += usize::from(cut == CutQuality::MayOverlap);
         for triangle in &self.cut {
             add(triangle.map(|i| corners[i]));
         }
@@ -379,7 +379,7 @@ impl<'a> FaceBuilder<'a> {
             (self.too_small, "faces of fewer than 3 corners, left out"),
             (self.repeated, "corners of polygons at the position of the corner before, left out"),
             (
-                self.somehow,
+                self.maybe_overlapping,
                 "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap",
             ),
         ]));

@@ -71,7 +71,7 @@ pub fn to_csv(topology: &Topology, written: &[HullFactors], partitioning: Partit
     let mut text = columns(has_rows).join(",") + "\n";
     for (patch, HullFactors { edges: [e0, e1, e2], inside }) in topology.patches.iter().zip(written) {
         text += &format!("{},{e0},{e1},{e2},", patch.triangle);
-        text += &match (has_rows, RowChoice::of(*inside)) {
+        text += &match (has_rows, RowChoice::new(*inside)) {
             (false, _) => format!("{inside}\n"),
             (true, RowChoice { base: Some((base, flips)), width }) => format!("{base},{width},{}\n", u32::from(flips)),
             (true, RowChoice { base: None, width }) => format!(",{width},0\n"),

@@ -94,7 +94,7 @@ pub(crate) struct Stamp {
 }
 
 impl Stamp {
-    pub(crate) fn of(about: &Metadata) -> Self {
+    pub(crate) fn new(about: &Metadata) -> Self {
         Self { bytes: about.len(), modified: about.modified().ok() }
     }
 
@@ -105,7 +105,7 @@ impl Stamp {
     /// [`FileError::Changed`].
     pub(crate) fn check(&self, path: &Path) -> Result<(), FileError> {
         match std::fs::metadata(path) {
-            Ok(about) if Self::of(&about) != *self => Err(FileError::Changed { path: path.to_owned() }),
+            Ok(about) if Self::new(&about) != *self => Err(FileError::Changed { path: path.to_owned() }),
             // A file that was removed had been read before.
             _ => Ok(()),
         }
@@ -166,7 +166,7 @@ fn read_whole(
     let now = rest.into_inner().metadata().map_err(io)?;
     match bytes.len() as u64 {
         read if read > limits.file => Err(too_large(read)),
-        _ if Stamp::of(&now) != Stamp::of(about) => Err(FileError::Changed { path: path.to_owned() }),
+        _ if Stamp::new(&now) != Stamp::new(about) => Err(FileError::Changed { path: path.to_owned() }),
         _ => Ok(bytes),
     }
 }
@@ -206,7 +206,7 @@ impl PartFile {
         if permissions.as_ref().is_some_and(std::fs::Permissions::readonly) {
             return Err(io::Error::new(io::ErrorKind::PermissionDenied, "it is read-only"));
         }
-        let (folder, prefix) = beside(&place);
+        let (folder, prefix) = temporary_path(&place);
         // A temporary file of the crate's own could be read by nobody else, and this one stays.
         let file = Builder::new().prefix(&prefix).suffix(PART).make_in(folder, |path| File::create_new(path))?;
         Ok(Self { file, place, permissions })
@@ -246,9 +246,9 @@ impl PartFolder {
     pub fn create(path: &Path) -> io::Result<Self> {
         let place = std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         if place.exists() && !place.is_dir() {
-            return Err(io::Error::new(ErrorKind::NotADirectory, "it is no folder; choose another name"));
+            return Err(io::Error::new(ErrorKind::NotADirectory, "it is not a folder; choose another name"));
         }
-        let (folder, prefix) = beside(&place);
+        let (folder, prefix) = temporary_path(&place);
         let made = Builder::new().prefix(&prefix).suffix(PART).tempdir_in(folder);
         // The crate's own error has the path, which every message begins with.
         let beside = made.map_err(|error| error.kind())?;
@@ -276,7 +276,7 @@ impl PartFolder {
 const PART: &str = ".part";
 
 /// The folder in which something is written that isn't whole yet, and how its name begins there.
-fn beside(place: &Path) -> (&Path, OsString) {
+fn temporary_path(place: &Path) -> (&Path, OsString) {
     let mut prefix = place.file_name().unwrap_or_default().to_owned();
     prefix.push(".");
     (place.parent().unwrap_or(Path::new("")), prefix)
@@ -421,7 +421,7 @@ mod tests {
         let later = SystemTime::now() + std::time::Duration::from_secs(2);
         File::options().write(true).open(&path).and_then(|file| file.set_modified(later)).unwrap();
         assert!(read(before).is_err_and(|error| error.contains("open it again")), "the same length, another time");
-        let before = Stamp::of(&std::fs::metadata(&path).unwrap());
+        let before = Stamp::new(&std::fs::metadata(&path).unwrap());
         assert!(before.check(&path).is_ok());
         write(100);
         assert!(before.check(&path).is_err_and(|error| error.to_string().contains("changed while it was read")));

@@ -44,7 +44,7 @@ pub enum Format {
 
 impl Format {
     /// Returns the format that a file's name says, by its extension.
-    pub fn of_name(path: &Path) -> Option<Self> {
+    pub fn from_name(path: &Path) -> Option<Self> {
         let extension = extension_of(path)?;
         EXTENSIONS.into_iter().find(|(known, _)| extension == *known).map(|(_, format)| format)
     }

@@ -57,7 +57,7 @@ pub enum FileUnit {
 
 impl FileUnit {
     /// A unit of this length; none if no unit may have it.
-    pub fn of_metres(metres: f32) -> Option<Self> {
+    pub fn from_metres(metres: f32) -> Option<Self> {
         UNIT_METRES.contains(&metres).then_some(Self::Metres(metres))
     }
 

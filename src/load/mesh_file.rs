@@ -69,7 +69,7 @@ pub enum LoadError {
         "{} has no material variant {}; {}",
         shown_path(path),
         shown(variant),
-        choice(known, "it has no variants, so leave --variant away")
+        choice(known, "it has no variants, so omit --variant")
     )]
     NoVariant { path: PathBuf, variant: String, known: Vec<String> },
     /// The file doesn't have a part that should be left out.
@@ -77,18 +77,18 @@ pub enum LoadError {
         "{} has no part {}; {}",
         shown_path(path),
         shown(part),
-        choice(known, "it has no named parts, so leave --hide-part away")
+        choice(known, "it has no named parts, so omit --hide-part")
     )]
     NoPart { path: PathBuf, part: String, known: Vec<String> },
     /// The shape is made in code, where Y is up.
-    #[error("{shape} is made in code with Y up, in metres: leave --up and --unit away")]
+    #[error("{shape} is made in code with Y up, in metres: omit --up and --unit")]
     Shape { shape: String },
     /// The file doesn't have the scene.
     #[error(
         "{} has no scene {}; {}",
         shown_path(path),
         shown(scene),
-        choice(known, "it has no scenes, so leave --scene away")
+        choice(known, "it has no scenes, so omit --scene")
     )]
     NoScene { path: PathBuf, scene: String, known: Vec<String> },
 }
@@ -152,9 +152,9 @@ pub fn load_selected(
     if !file.is_file() {
         return Err(LoadError::NotAFile { path: path.to_owned() });
     }
-    let before = Stamp::of(&file);
+    let before = Stamp::new(&file);
     let mut judged = None;
-    let judge = |start: &[u8]| Judged::of(path, start, file.len()).map(|found| judged = Some(found));
+    let judge = |start: &[u8]| Judged::new(path, start, file.len()).map(|found| judged = Some(found));
     let bytes = read_file(path, limits, judge, progress)?;
     let Some(Judged { format, is_utf16, warning }) = judged else {
         return Err(LoadError::NoBytes { path: path.to_owned() });
@@ -205,11 +205,11 @@ impl Judged {
     ///
     /// # Errors
     /// [`LoadError::NoBytes`], [`LoadError::NotRead`], [`LoadError::UnknownFormat`] and [`LoadError::NoGltf`].
-    fn of(path: &Path, start: &[u8], length: u64) -> Result<Self, LoadError> {
+    fn new(path: &Path, start: &[u8], length: u64) -> Result<Self, LoadError> {
         if start.is_empty() {
             return Err(LoadError::NoBytes { path: path.to_owned() });
         }
-        let (named, extension) = (Format::of_name(path), extension_of(path).unwrap_or_default());
+        let (named, extension) = (Format::from_name(path), extension_of(path).unwrap_or_default());
         let by_name = |format| Self { format, is_utf16: false, warning: None };
         // Whatever an OBJ file begins with, lines that OBJ doesn't have are left out.
         let is_binary = start.contains(&0);
@@ -377,7 +377,7 @@ mod tests {
                 let mesh = loaded(name, &bytes).unwrap_or_else(|error| panic!("{title} as {name}: {error}"));
                 let said = format!("content is {title}, so it was read as {title}.");
                 let is_said = mesh.warnings.first().is_some_and(|warning| warning.ends_with(&said));
-                assert_eq!(is_said, Format::of_name(Path::new(name)) != Some(format), "{title} as {name}");
+                assert_eq!(is_said, Format::from_name(Path::new(name)) != Some(format), "{title} as {name}");
             }
         }
     }

@@ -23,7 +23,7 @@ pub(super) struct ModelFile<'a> {
 #[cfg(test)]
 impl<'a> ModelFile<'a> {
     /// A file that is read whole, in a folder that isn't there.
-    pub(super) fn of_test(name: &'a str, progress: &'a Progress) -> Self {
+    pub(super) fn from_test(name: &'a str, progress: &'a Progress) -> Self {
         Self { folder: Path::new("nowhere"), name, selected: Selection::default(), limits: Limits::default(), progress }
     }
 }

@@ -114,7 +114,7 @@ struct Statement<'a> {
 }
 
 impl<'a> Statement<'a> {
-    fn of(line: &Line<'a>) -> Self {
+    fn new(line: &Line<'a>) -> Self {
         let (word, rest) = first_word(line.text);
         let is_comment = word.first() == Some(&b'#');
         let (word, rest) = if is_comment { (&b""[..], &b""[..]) } else { (word, rest) };
@@ -143,10 +143,10 @@ fn each_statement(
         // A comment may end with a backslash, as in the path of a Windows folder.
         let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
         if is_whole {
-            take(&Statement::of(&line))?;
+            take(&Statement::new(&line))?;
         } else {
             let text = continued(line.text, &mut lines)?;
-            take(&Statement::of(&Line { text: &text, number: line.number }))?;
+            take(&Statement::new(&Line { text: &text, number: line.number }))?;
         }
     }
     Ok(())

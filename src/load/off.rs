@@ -41,7 +41,7 @@ pub(super) fn begins(text: &[u8]) -> bool {
     let mut rows = Rows::new(text, None);
     let mut next = || rows.next().ok().flatten().map_or(&b""[..], |row| row.text);
     let (word, mut rest) = keyword(next());
-    if VertexKind::of(word).is_none() {
+    if VertexKind::new(word).is_none() {
         return false;
     }
     if rest.is_empty() {
@@ -118,7 +118,7 @@ struct VertexKind {
 
 impl VertexKind {
     /// Parses the keyword: `OFF` behind any of `ST`, `C`, `N`, `4` and `n`, in this order or in another.
-    fn of(keyword: &[u8]) -> Option<Self> {
+    fn new(keyword: &[u8]) -> Option<Self> {
         let mut rest = keyword.strip_suffix(b"OFF")?;
         let mut kind = Self::default();
         while let Some((first, tail)) = rest.split_first() {
@@ -151,7 +151,7 @@ impl Header {
         let mut row = rows.next()?.ok_or_else(empty)?;
         let (word, mut rest) = keyword(row.text);
         // The keyword may be missing.
-        let kind = match VertexKind::of(word).or(VertexKind::of(&word.to_ascii_uppercase())) {
+        let kind = match VertexKind::new(word).or(VertexKind::new(&word.to_ascii_uppercase())) {
             Some(kind) => kind,
             None if counts(row.text).is_some() => {
                 rest = row.text;
@@ -186,7 +186,7 @@ fn keyword(text: &[u8]) -> (&[u8], &[u8]) {
     let (word, rest) = first_word(text);
     let digits = word.iter().rev().take_while(|byte| byte.is_ascii_digit()).count();
     match word.split_at(word.len() - digits) {
-        (keyword, number) if !number.is_empty() && VertexKind::of(keyword).is_some() => {
+        (keyword, number) if !number.is_empty() && VertexKind::new(keyword).is_some() => {
             (keyword, &text[keyword.len()..])
         }
         _ => (word, rest),

@@ -40,7 +40,7 @@ impl Panorama {
     }
 
     /// The panorama of so many pixels that shows this radiance from each direction.
-    pub fn of(size: [u32; 2], radiance: impl Fn(Vec3) -> Vec3) -> Self {
+    pub fn from_radiance(size: [u32; 2], radiance: impl Fn(Vec3) -> Vec3) -> Self {
         let [width, height] = size.map(|length| length.max(1) as usize);
         let light = |x: usize, y: usize| {
             let longitude = ((x as f32 + 0.5) / width as f32 - 0.5) * TAU;
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn a_direction_finds_its_pixel_also_in_a_smaller_copy() {
         // Each pixel has its direction as a colour.
-        let whole = Panorama::of([256, 128], |direction| 0.5 + 0.5 * direction);
+        let whole = Panorama::from_radiance([256, 128], |direction| 0.5 + 0.5 * direction);
         let colors = whole.pixels().iter().map(Vec3::to_array).collect();
         assert_eq!(Panorama::new(whole.size(), colors), (whole.clone(), Repaired::default()));
         for (most_rows, size) in [(128, [256, 128]), (64, [128, 64])] {

@@ -209,7 +209,7 @@ impl RigBuilder {
             rig.tangents = bindings.map(tangent).collect();
         }
         refer_to_tangents(rig, &self.tangent_deltas);
-        rig.reach = Reach::of(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
+        rig.reach = Reach::new(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
     }
 
     fn joint(&mut self, joint: Joint) -> u32 {

@@ -123,7 +123,7 @@ impl Reader<'_> {
         // A closed surface has half as many points as triangles.
         self.faces.expect(there, there / 2);
         let attributes = triangles.iter().take(there).map(|&[.., low, high]| u16::from_le_bytes([low, high]));
-        let colors = Colors::of(&bytes[..HEADER - 4], attributes.clone());
+        let colors = Colors::new(&bytes[..HEADER - 4], attributes.clone());
         if let Some(colors) = &colors {
             self.faces.material_mut(self.material).base_color = colors.of_all();
         }

@@ -78,7 +78,7 @@ fn complete(
         mapped.iter().for_each(|mapped| warn(&mapped.name, refused.to_string()));
         return Ok(warnings);
     }
-    let mut around = Around::of(detailed.mesh);
+    let mut around = Around::new(detailed.mesh);
     for Mapped { name, faces, uv } in &mapped {
         if let Err(reason) = around.check_fans(detailed.mesh, faces) {
             warn(name, reason);
@@ -119,7 +119,7 @@ struct Around {
 }
 
 impl Around {
-    fn of(mesh: &Mesh) -> Self {
+    fn new(mesh: &Mesh) -> Self {
         let (points, point_of) = weld(mesh.corners.len(), |corner| mesh.corners[corner].position);
         let (touched, given) = (vec![false; points.len()], vec![false; point_of.len()]);
         Self { point_of, touched, given, copies: HashMap::new() }

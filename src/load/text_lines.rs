@@ -40,7 +40,7 @@ impl<'a> Lines<'a> {
     }
 
     /// Splits a part of a text, above which there are so many lines.
-    pub(super) fn of_part(rest: &'a [u8], end: u8, above: usize) -> Self {
+    pub(super) fn from_part(rest: &'a [u8], end: u8, above: usize) -> Self {
         Self { rest, end, count: above, is_open: false }
     }
 

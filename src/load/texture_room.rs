@@ -66,7 +66,7 @@ pub(super) fn read_images<'b, I: Copy>(
 ) -> Result<Vec<ReadImage>, Cancelled> {
     let size = |image: &I| borrowing(budget, || bytes(*image).ok().and_then(|(bytes, _)| texture_size(&bytes)));
     let sizes: Vec<_> = images.iter().map(|image| size(image).unwrap_or_default()).collect();
-    let scalings = TextureRoom::of(budget, reserved).scalings(&sizes);
+    let scalings = TextureRoom::new(budget, reserved).scalings(&sizes);
     let all = images.iter().zip(sizes).zip(scalings);
     let read = all.map(|((image, size), scaling)| {
         progress.check()?;
@@ -81,7 +81,7 @@ pub(super) fn read_images<'b, I: Copy>(
 impl TextureRoom {
     /// The room in a budget of which `reserved` bytes are left for the rest of the load. On the graphics card, textures may take as
     /// much as the whole load.
-    pub(super) fn of(budget: &Budget, reserved: u64) -> Self {
+    pub(super) fn new(budget: &Budget, reserved: u64) -> Self {
         let host = budget.left().saturating_sub(reserved);
         let device = budget.allowed();
         Self { host, device, used: device.saturating_sub(host) }

@@ -39,7 +39,7 @@ const HEADER: &str = "VTX, IDX, gl_Position.x, gl_Position.y, gl_Position.z, gl_
                       outPosition.x, outPosition.y, outPosition.z";
 
 #[test]
-fn our_own_exports_are_the_same_in_every_format() {
+fn our_our_exports_are_the_same_in_every_format() {
     let folder = Folder::new();
     for name in ["a.obj", "a.glb"] {
         let theirs = emitted(&folder, name, &VARIED);

@@ -39,7 +39,7 @@ fn adaptive() -> [Settings; 4] {
 fn on_cpu(loaded: &Loaded, inputs: &Inputs) -> (Tessellated, Measured) {
     let out = tessellate(&loaded.mesh, &loaded.topology, inputs, None);
     let asked = AskedFactors::new(inputs.tessellation.edges, inputs.tessellation.convention, out.edge_factors.clone());
-    let measured = Measured::of(&loaded.mesh, &loaded.topology, asked, &out);
+    let measured = Measured::new(&loaded.mesh, &loaded.topology, asked, &out);
     (out, measured)
 }
 
@@ -241,7 +241,7 @@ fn a_side_is_cut_by_the_factor_that_the_convention_puts_there() {
         let settings =
             Settings::from(Tessellation { convention, partitioning: Partitioning::Integer, ..Tessellation::default() });
         let out = tessellate_given(&loaded.mesh, &loaded.topology, &inputs(&loaded, &settings), &given);
-        let measured = Measured::of(&loaded.mesh, &loaded.topology, AskedFactors::given(convention, &given), &out);
+        let measured = Measured::new(&loaded.mesh, &loaded.topology, AskedFactors::given(convention, &given), &out);
         for (index, patch) in (0..).zip(&loaded.topology.patches) {
             let found = patch.sides.map(|side| {
                 let edge = measured.outlines.edge(&loaded.topology, loaded.topology.sides[side as usize].edge);

@@ -1,7 +1,7 @@
 //! Culling: what is left out is never missed.
 
 use geometry::mesh::Shape;
-use geometry::tessellate::{Clip, Edges, Inputs, Lod, LodView, Surface, Tessellation, tessellate};
+use geometry::tessellate::{Clip, Edges, Inputs, Lod, Surface, Tessellation, tessellate};
 use glam::{Mat4, Vec2, Vec3};
 use gpu::Timing;
 use inspect::measure::Culled;
@@ -133,8 +133,10 @@ fn nearly_the_view(inputs: &Inputs) -> [Inputs; 8] {
         .map(|axis| clip_from_object * Mat4::from_translation(axis * inputs.view.radius * ROUNDING));
     let [a, b] = scaled;
     let [c, d, e, f, g, h] = moved;
-    [a, b, c, d, e, f, g, h]
-        .map(|clip_from_object| Inputs { view: LodView { clip_from_object, ..inputs.view }, ..*inputs })
+    [a, b, c, d, e, f, g, h].map(|clip_from_object| Inputs {
+        view: inputs.view.seen_through(clip_from_object, inputs.view.half_viewport),
+        ..*inputs
+    })
 }
 
 #[test]

@@ -43,7 +43,7 @@ fn drawn(
     let engine = engine();
     let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
     engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
-    let truth = Truth::of_shape(shape).expect("a shape that is sampled from a surface");
+    let truth = Truth::from_shape(shape).expect("a shape that is sampled from a surface");
     let field = deviation_from(scene, &DeviationTarget::Truth(Arc::new(truth)));
     let scale = deviation_scale(field.worst().expect("something is emitted").value, scene.ulp());
     scene.set_deviation(&engine.gpu, Some((&field, scale)));
@@ -166,7 +166,7 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let right = settings(Surface::PnAen, 4.0);
     let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
-    let truth = Arc::new(Truth::of_shape(Shape::Icosahedron).expect("a sphere"));
+    let truth = Arc::new(Truth::from_shape(Shape::Icosahedron).expect("a sphere"));
     let view = camera.lod_view(target.viewport(), &scene.bounds);
     let fields = SplitSide::BOTH.map(|half| {
         let (scene, settings) = scene.half_mut(half).zip(split.half(half)).expect("both halves");

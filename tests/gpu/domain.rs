@@ -4,7 +4,10 @@ use std::path::Path;
 
 use bytemuck::{Pod, Zeroable};
 use geometry::tessellate::domain::{domain_plan, domain_point, domain_triangle};
-use geometry::tessellate::factors::{Partitioning, PatchFactors, point_count, process, round_pow2, triangle_count};
+use geometry::tessellate::factors::{
+    MOST_ROWS, Partitioning, PatchFactors, ROW_BASE_STEP, point_count, process, round_pow2, triangle_count,
+};
+use gpu::wgsl::joined;
 use wgpu::util::DeviceExt;
 
 /// One workgroup a patch; its invocations take turns with the points and triangles.
@@ -122,18 +125,8 @@ fn read(device: &wgpu::Device, buffer: &wgpu::Buffer) -> Vec<u8> {
 /// Runs the shader over all cases; gives the bytes of its results, points and triangles.
 fn dispatch(cases: &[Case], sizes: [usize; 3]) -> [Vec<u8>; 3] {
     let (device, queue) = device();
-    let source = [
-        include_str!("../../shaders/quotients.wgsl"),
-        include_str!("../../shaders/factors.wgsl"),
-        include_str!("../../shaders/domain_row.wgsl"),
-        include_str!("../../shaders/rings.wgsl"),
-        include_str!("../../shaders/rows.wgsl"),
-        include_str!("../../shaders/domain.wgsl"),
-        include_str!("../../shaders/connectivity.wgsl"),
-        include_str!("../../shaders/subtriangulation.wgsl"),
-        ENTRY,
-    ]
-    .concat();
+    let files = ["quotients", "factors", "domain_row", "rings", "rows", "domain", "connectivity", "subtriangulation"];
+    let source = joined(&files) + ENTRY;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: Some("domain parity"),
         source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -248,9 +241,9 @@ fn all_cases() -> Vec<Factors> {
         }
     }
     // Rows beside every edge, as wide as LOD by error may find.
-    for (n, base) in (1..=127).flat_map(|n| [1, 2, 3].map(|base| (n, base))) {
-        let width = (256 * base + 1 + n * 37 % 127) as f32;
-        for edges in [[n, 128 - n, 7], [9, n, 127], [n, 1, n]] {
+    for (n, base) in (1..=MOST_ROWS).flat_map(|n| [1, 2, 3].map(|base| (n, base))) {
+        let width = (ROW_BASE_STEP * base + 1 + n * 37 % MOST_ROWS) as f32;
+        for edges in [[n, MOST_ROWS + 1 - n, 7], [9, n, MOST_ROWS], [n, 1, n]] {
             cases.push(Factors { partitioning: Partitioning::Rows, edges: edges.map(|n| n as f32), inside: width });
         }
     }

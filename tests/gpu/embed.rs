@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use geometry::mesh::{Corner, Mesh, MeshSlices, Moment, Pose, Shape, Topology};
 use geometry::tessellate::{Clip, Edges, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
 use glam::{Mat4, Vec2, Vec3};
-use gpu::embed::{Context, GpuError, OutputStatus, Room, TessellatedMesh};
+use gpu::embed::{Capacity, Context, GpuError, OutputStatus, TessellatedMesh};
 use gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
 use inspect::engine::Engine;
 
@@ -34,7 +34,7 @@ fn host_with(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
     pollster::block_on(adapter.expect("an adapter").request_device(&descriptor)).expect("a device")
 }
 
-const ROOM: Room = Room { vertices: 40_000, triangles: 70_000 };
+const ROOM: Capacity = Capacity { vertices: 40_000, triangles: 70_000 };
 
 fn uniform(factor: f32) -> Tessellation {
     Tessellation { factor, ..Tessellation::default() }
@@ -67,6 +67,23 @@ fn from_arrays(mesh: &Mesh) -> Mesh {
 }
 
 #[test]
+fn another_view_of_a_mesh_shares_it_and_has_settings_and_output_of_its_own() {
+    let (device, queue) = host();
+    let context = Context::new(&device, &queue).expect("default limits");
+    let shape = std::sync::Arc::new(Shape::Torus.build());
+    let mut first = TessellatedMesh::new(&context, shape.clone(), ROOM).expect("small");
+    let mut second = first.another_view(ROOM).expect("small");
+    assert!(std::ptr::eq(first.mesh(), second.mesh()) && std::ptr::eq(first.topology(), second.topology()));
+    for (mesh, factor) in [(&mut first, 2.0), (&mut second, 5.0)] {
+        let tessellation = Tessellation { factor, ..Tessellation::default() };
+        mesh.set(&tessellation, LodView::default()).expect("small");
+        let (_, output) = emitted(&queue, &device, mesh);
+        let inputs = Inputs::new(&tessellation, LodView::default());
+        assert_eq!(output.triangles, tessellate(&shape, &Topology::new(&shape), &inputs, None).triangles, "{factor}");
+    }
+}
+
+#[test]
 fn a_host_gets_what_the_reference_emits() {
     let (device, queue) = host();
     let context = Context::new(&device, &queue).expect("default limits are enough");
@@ -79,9 +96,10 @@ fn a_host_gets_what_the_reference_emits() {
         mesh.set(&tessellation, LodView::default()).expect("a small mesh");
         let (status, output) = emitted(&queue, &device, &mut mesh);
         let inputs = Inputs::new(&tessellation, LodView::default());
-        let expected = tessellate(&shape, &Topology::of(&shape), &inputs, None);
+        let expected = tessellate(&shape, &Topology::new(&shape), &inputs, None);
         assert!(!mesh.has_overflowed(&status));
-        assert_eq!((status.first_patch, status.first, status.patches), (0, [0; 2], mesh.patches()));
+        let [first_patch, patches, first_vertex, first_triangle, ..] = bytemuck::cast::<_, [u32; 6]>(status);
+        assert_eq!([first_patch, first_vertex, first_triangle, patches], [0, 0, 0, mesh.patches()]);
         assert_eq!(output.triangles, expected.triangles);
         assert_eq!(output.vertices.len(), expected.vertices.len());
         for (vertex, expected) in output.vertices.iter().zip(&expected.vertices) {
@@ -98,11 +116,12 @@ fn output_that_does_not_fit_is_a_flag_and_whole_patches() {
     let (device, queue) = host();
     let context = Context::new(&device, &queue).expect("default limits are enough");
     let shape = Shape::Icosphere.build();
-    let mut mesh = TessellatedMesh::new(&context, shape.clone(), Room { vertices: 0, triangles: 0 }).expect("small");
+    let mut mesh =
+        TessellatedMesh::new(&context, shape.clone(), Capacity { vertices: 0, triangles: 0 }).expect("small");
     mesh.set(&uniform(20.0), LodView::default()).expect("a small mesh");
     let (status, output) = emitted(&queue, &device, &mut mesh);
     assert!(mesh.has_overflowed(&status));
-    let whole = tessellate(&shape, &Topology::of(&shape), &Inputs::new(&uniform(20.0), LodView::default()), None);
+    let whole = tessellate(&shape, &Topology::new(&shape), &Inputs::new(&uniform(20.0), LodView::default()), None);
     assert!(status.patches > 0 && status.patches < mesh.patches(), "{status:?}");
     assert_eq!(output.triangles, whole.triangles[..output.triangles.len()]);
     assert!(output.vertices.iter().all(|vertex| vertex.patch() < status.patches));
@@ -164,8 +183,9 @@ impl RecordPasses for Names {
 #[test]
 fn only_what_changed_is_recorded() {
     let Engine { gpu, pipelines, .. } = engine();
-    let (mesh, topology) = (Arc::new(Shape::CubeSplit.build()), Arc::new(Topology::of(&Shape::CubeSplit.build())));
-    let mut tessellator = Tessellator::with_room(gpu, pipelines.clone(), mesh, topology, [0, 0]).expect("a small mesh");
+    let (mesh, topology) = (Arc::new(Shape::CubeSplit.build()), Arc::new(Topology::new(&Shape::CubeSplit.build())));
+    let mut tessellator =
+        Tessellator::with_capacity(gpu, pipelines.clone(), mesh, topology, [0, 0]).expect("a small mesh");
     let mut recorded = |tessellation: Option<Tessellation>| {
         let mut names = Names::default();
         if let Some(tessellation) = tessellation {

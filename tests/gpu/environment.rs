@@ -37,7 +37,7 @@ fn lit_by_file() -> Settings {
 /// A scene in the light of a panorama.
 fn scene_in(mesh: Mesh, panorama: Panorama) -> Scene {
     let mut scene = scene_of(mesh, 0.0);
-    let environment = Environment::of_panorama(&engine().gpu, panorama).expect("a small environment");
+    let environment = Environment::from_panorama(&engine().gpu, panorama).expect("a small environment");
     scene.set_environment(Some(Arc::new(environment)));
     scene
 }
@@ -110,7 +110,7 @@ fn the_brightness_is_that_of_the_light_from_all_around_alone() {
     let seen = |environment_brightness: f32, emissive: f32| {
         let look = Look { roughness: 1.0, emissive: [emissive; 3], ..Look::default() };
         let mesh = square_of(Material { look, ..Material::plain("square", [0.5, 0.5, 0.5, 1.0]) }, Vec3::Z, Vec2::ONE);
-        let mut scene = scene_in(mesh, Panorama::of([64, 32], |_| Vec3::splat(0.3)));
+        let mut scene = scene_in(mesh, Panorama::from_radiance([64, 32], |_| Vec3::splat(0.3)));
         let target = Target::new(&engine().gpu, [64; 2]).expect("a small picture");
         let camera = Camera { azimuth: 0.0, elevation: 0.0, ..Camera::framing(&scene.bounds, target.viewport()) };
         let picture = self::seen(&mut scene, &target, &Settings { environment_brightness, ..lit_by_file() }, &camera);
@@ -139,7 +139,7 @@ fn the_light_is_seen_behind_the_mesh() {
     let colors = |direction: Vec3| 0.4 + 0.3 * direction;
     let size = [160, 90];
     let viewport = Vec2::new(160.0, 90.0);
-    let mut scene = scene_in(Shape::Icosphere.build(), Panorama::of([512, 256], colors));
+    let mut scene = scene_in(Shape::Icosphere.build(), Panorama::from_radiance([512, 256], colors));
     let base = Camera::framing(&scene.bounds, viewport);
     let usual = Settings { environment_background: true, tone_curve: ToneCurve::Neutral, ..lit_by_file() };
     for (azimuth, elevation, orthographic, settings) in [
@@ -281,7 +281,7 @@ fn lights_of_the_file_shine_on_a_matte_square_as_the_formula_says() {
 fn lights_add_to_the_environment() {
     let settings = Settings { lights: FileLights::Off, ..lit_by_file() };
     let seen = |settings: Settings| {
-        let mut scene = scene_in(square_under(three_lights()), Panorama::of([64, 32], |_| Vec3::splat(0.1)));
+        let mut scene = scene_in(square_under(three_lights()), Panorama::from_radiance([64, 32], |_| Vec3::splat(0.1)));
         let target = Target::new(&engine().gpu, [64; 2]).expect("a small picture");
         let camera = Camera { azimuth: 0.0, elevation: 0.0, ..Camera::framing(&scene.bounds, target.viewport()) };
         linear_of(&self::seen(&mut scene, &target, &settings, &camera), [32, 32])
@@ -307,7 +307,7 @@ fn outdoors(direction: Vec3) -> Vec3 {
 fn environments_look_as_they_did() {
     let target = Target::new(&engine().gpu, [320, 160]).expect("a small picture");
     let neutral = Settings { tone_curve: ToneCurve::Neutral, ..lit_by_file() };
-    let mut balls = scene_in(crate::materials::metal_and_matte_balls(), Panorama::of([1024, 512], outdoors));
+    let mut balls = scene_in(crate::materials::metal_and_matte_balls(), Panorama::from_radiance([1024, 512], outdoors));
     let camera = Camera { azimuth: 10.0, elevation: 10.0, ..Camera::framing(&balls.bounds, target.viewport()) };
     let file = seen(&mut balls, &target, &Settings { environment_background: true, ..neutral }, &camera);
     let studio = Settings { lighting: Lighting::Studio, environment_background: true, ..neutral };

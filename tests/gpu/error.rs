@@ -6,7 +6,7 @@ use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
-    hull_factors, own_least_triangles, tessellate,
+    hull_factors, minimum_triangles, tessellate,
 };
 use glam::Vec2;
 use gpu::{ComputePipelines, Timing, take_times};
@@ -218,13 +218,13 @@ fn the_size_of_a_group_changes_no_factor() {
         let camera = cameras(&usual)[1];
         let settings = by_error(Settings::default(), 0.25);
         let (_, out) = on_device(&mut usual, &settings, &camera);
-        let (own_least, edges) = (engine().own_least(&mut usual).expect("a readback"), edge_factors(&usual));
+        let (minimum, edges) = (engine().minimum(&mut usual).expect("a readback"), edge_factors(&usual));
         for (size, engine) in &engines {
             let mut scene = engine.scene(&loaded, ARENA_BYTES).expect("shapes are small");
             let (_, other) = on_device(&mut scene, &settings, &camera);
             assert_eq!(edge_factors(&scene), edges, "{shape:?}, groups of {size}");
             assert_eq!(other.patch_factors, out.patch_factors, "{shape:?}, groups of {size}");
-            assert_eq!(engine.own_least(&mut scene).expect("a readback"), own_least, "{shape:?}, groups of {size}");
+            assert_eq!(engine.minimum(&mut scene).expect("a readback"), minimum, "{shape:?}, groups of {size}");
         }
     }
 }
@@ -370,10 +370,10 @@ fn the_device_finds_the_own_least_that_the_cpu_does() {
             let settings = Settings::from(tessellation);
             let inputs = settings.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
             engine().count(scene, &inputs, &mut Timing::Off).expect("counts");
-            let least = engine().own_least(scene).expect("a readback");
+            let least = engine().minimum(scene).expect("a readback");
             let near = [1.0, 1.0 - ROUNDING, 1.0 + ROUNDING].map(|part| {
                 let own = Tessellation { tolerance: tessellation.tolerance * part, ..inputs.tessellation };
-                own_least_triangles(&loaded.mesh, &loaded.topology, &Inputs { tessellation: own, ..inputs })
+                minimum_triangles(&loaded.mesh, &loaded.topology, &Inputs { tessellation: own, ..inputs })
             });
             assert_eq!(least.len(), loaded.topology.patches.len());
             for (patch, own) in least.iter().enumerate() {

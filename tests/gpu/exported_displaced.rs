@@ -112,7 +112,7 @@ impl Passes {
         let heights = mesh.heights.as_deref().expect("heights");
         let map = &heights.maps()[0];
         let inputs = Inputs::new(own, view);
-        let view = LodView { reach: displacement_reach(mesh, &inputs), ..view };
+        let view = view.with_reach(displacement_reach(mesh, &inputs));
         let scale = height_units(heights, &inputs).to_bits();
         let [width, height] = map.size;
         let height_constants = [width, height, map.levels, u32::from(map.repeats), scale, own.midlevel.to_bits(), 0, 0];

@@ -399,7 +399,7 @@ fn layers_of_many_chunks_and_of_both_halves_give_the_same_picture() {
     let mesh = ball_in_ball(blended_ball());
     let settings = of_picture(ToneCurve::Neutral);
     let settings = settings.with(Tessellation { factor: 40.0, ..settings.tessellation });
-    let topology = Arc::new(Topology::of(&mesh));
+    let topology = Arc::new(Topology::new(&mesh));
     let mesh = Arc::new(mesh);
     let [whole, pieces] = [256 << 20, 1 << 20].map(|arena| {
         let mut scene = engine().scene_of(mesh.clone(), topology.clone(), arena).expect("a small mesh");

@@ -181,7 +181,7 @@ struct Twin {
 impl Twin {
     fn studio(rotation: f32) -> Self {
         static FILTERED: OnceLock<CubeMap> = OnceLock::new();
-        let source = CubeMap::of(128, studio_light);
+        let source = CubeMap::new(128, studio_light);
         let turn = Mat3::from_rotation_y(-rotation.to_radians());
         Self { filtered: FILTERED.get_or_init(|| prefiltered(&source)), irradiance: irradiance(&source), turn }
     }
@@ -268,7 +268,7 @@ fn white_surfaces_cannot_be_seen_in_a_white_room() {
 fn the_pass_blurs_as_its_twin_does() {
     let twin = Twin::studio(0.0);
     let environment = Environment::studio(&engine().gpu).expect("a small environment");
-    let directions: Vec<Vec3> = CubeMap::of(16, |_| Vec3::ZERO).lights().map(|(direction, ..)| direction).collect();
+    let directions: Vec<Vec3> = CubeMap::new(16, |_| Vec3::ZERO).lights().map(|(direction, ..)| direction).collect();
     for level in 0..ENVIRONMENT_LEVELS {
         let roughness = roughness_of_level(level);
         let case = |&direction: &Vec3| {
@@ -299,8 +299,8 @@ fn environments_are_the_same_every_time() {
 #[test]
 fn panoramas_stand_the_right_way_round_and_turn_from_front_to_right() {
     let [red, green] = [vec3(1.0, 0.0, 0.0), vec3(0.0, 1.0, 0.0)];
-    let panorama = Panorama::of([64, 32], |direction| if direction.x < 0.0 { green } else { red });
-    let environment = Environment::of_panorama(&engine().gpu, panorama).expect("a small environment");
+    let panorama = Panorama::from_radiance([64, 32], |direction| if direction.x < 0.0 { green } else { red });
+    let environment = Environment::from_panorama(&engine().gpu, panorama).expect("a small environment");
     let seen = |direction: Vec3, rotation: f32| {
         let [normal, to_eye, to_light] = [direction.extend(0.0); 3];
         let look = LookAt { roughness: 0.0, metallic: 1.0, ..LookAt::default() };

@@ -19,7 +19,7 @@ use crate::{engine, scene};
 fn flat(factor: f32, overlay: Option<Overlay>) -> Settings {
     let tessellation =
         Tessellation { surface: Surface::Flat, partitioning: Partitioning::Integer, factor, ..Tessellation::default() };
-    let overlays = Overlays::of(overlay.as_slice()).expect("at most one overlay");
+    let overlays = Overlays::new(overlay.as_slice()).expect("at most one overlay");
     Settings { overlays, ..Settings::from(tessellation) }
 }
 

@@ -26,9 +26,6 @@ mod masks;
 mod materials;
 mod moving_lights;
 mod orientation;
-mod own_lod;
-mod own_shaders;
-mod own_surface;
 mod passes;
 mod picking;
 mod pictures;
@@ -41,6 +38,9 @@ mod silhouette;
 mod specification;
 mod stability;
 mod threemf;
+mod user_lod;
+mod user_shaders;
+mod user_surface;
 // The bench on hardware has the rest of it.
 #[allow(dead_code, unreachable_pub, unused_imports)]
 #[path = "../vulkan/mod.rs"]
@@ -83,7 +83,7 @@ pub(crate) fn loaded(shape: Shape) -> Loaded {
 /// A mesh that no file was read for.
 pub(crate) fn loaded_mesh(source: Source, mesh: Mesh) -> Loaded {
     let topology = Arc::new(Topology::build(&mesh, &Progress::new()).expect("nobody cancels"));
-    Loaded { source, ..Loaded::of_mesh(Arc::new(mesh), topology) }
+    Loaded { source, ..Loaded::from_mesh(Arc::new(mesh), topology) }
 }
 
 pub(crate) fn scene(shape: Shape) -> (Loaded, Scene) {

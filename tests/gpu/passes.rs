@@ -191,7 +191,7 @@ fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
             let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
             engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
             let asked = engine().asked_factors(&scene).expect("a readback");
-            let on_cpu = Measured::of(&loaded.mesh, &loaded.topology, asked, &cpu);
+            let on_cpu = Measured::new(&loaded.mesh, &loaded.topology, asked, &cpu);
             let on_gpu = engine().measure(&mut scene).expect("a readback");
             let what = format!("{partitioning:?} {factor}");
             assert_eq!(on_gpu.patches_low, on_cpu.patches_low, "{what}");

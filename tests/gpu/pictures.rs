@@ -137,7 +137,7 @@ fn overlays_look_as_they_did() {
         ("normals", Shape::CubeSplit, Overlay::Normals),
     ] {
         let (_, mut scene) = scene(shape);
-        let overlays = Overlays::of(&[overlay]).expect("one overlay");
+        let overlays = Overlays::new(&[overlay]).expect("one overlay");
         let settings = Settings {
             tessellation: Tessellation { surface: Surface::Pn, ..Tessellation::default() },
             overlays,
@@ -295,7 +295,7 @@ fn lines_have_the_colours_of_their_legend() {
     ];
     for (shape, overlay, color) in legend {
         let (_, mut scene) = scene(shape);
-        let overlays = Overlays::of(&[overlay]).expect("one overlay");
+        let overlays = Overlays::new(&[overlay]).expect("one overlay");
         let settings = Settings {
             tessellation: Tessellation { surface: Surface::Pn, ..Tessellation::default() },
             overlays,
@@ -389,7 +389,7 @@ fn every_patch_has_the_colour_of_its_excess_triangles() {
     };
     let picture = seen(&mut saddle, &target, &settings, &camera);
     let factors = engine().patch_factors(&saddle).expect("a readback");
-    let least = engine().own_least(&mut saddle).expect("a readback");
+    let least = engine().minimum(&mut saddle).expect("a readback");
     let clip = camera.clip_from_object(target.viewport(), &saddle.bounds);
     let times = |patch: usize| triangle_count(factors[patch]) as f32 / least[patch] as f32;
     let mut largest = 0.0f32;

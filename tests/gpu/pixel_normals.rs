@@ -132,7 +132,7 @@ fn normals_at_pixels_are_the_same_under_overlays() {
 }
 
 #[test]
-fn each_half_of_a_split_has_normals_of_its_own_surface() {
+fn each_half_of_a_split_has_normals_of_its_user_surface() {
     let (_, mut scene) = scene(Shape::Icosahedron);
     engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");

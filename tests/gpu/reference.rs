@@ -1,5 +1,5 @@
 //! Whether `--reference` tells what is wrong with a picture: on the same driver, where all px must be equal, and with the usual
-//! threshold, which is for references of other drivers. The manual's tables of pairs, in `docs/results/compare-pictures.md`, are made of
+//! threshold, which is for references of other drivers. The tables of pairs, in `docs/results/compare-pictures.md`, are made of
 //! them; `PNAEN_UPDATE_PAGES=1` writes them again.
 //!
 //! There is no second driver here. What drivers are allowed to do otherwise is made instead: colours are rounded otherwise, and
@@ -64,7 +64,7 @@ impl Look {
     }
 
     fn camera(&self, size: [u32; 2]) -> Camera {
-        let bounds = geometry::mesh::Bounds::of(self.mesh.corners.iter().map(|corner| corner.position));
+        let bounds = geometry::mesh::Bounds::new(self.mesh.corners.iter().map(|corner| corner.position));
         let camera = Camera::framing(&bounds, size.map(|side| side as f32).into());
         Camera { azimuth: camera.azimuth + self.turn, ..camera }
     }
@@ -90,7 +90,7 @@ fn moved(camera: &Camera, by: [f64; 2], target: &Target, bounds: &geometry::mesh
     shift.w_axis = dvec4(2.0 * by[0] / f64::from(viewport.x), 2.0 * by[1] / f64::from(viewport.y), 0.0, 1.0);
     let clip_from_object = shift * camera.clip_from_object(viewport, bounds).as_dmat4();
     let matrix = ViewProjection { clip_from_object, depth: DepthRange::Reversed, y: ClipY::Up };
-    Camera::of_matrix(&matrix, bounds).expect("a view")
+    Camera::from_matrix(&matrix, bounds).expect("a view")
 }
 
 /// A number from -1 to 1 that looks random.
@@ -344,7 +344,7 @@ fn all_pairs() -> Pairs {
     pairs
 }
 
-/// The table as the manual has it.
+/// The table as the page has it.
 const PAGE: &str = "docs/results/compare-pictures.md";
 const TABLES: [(&str, bool); 2] = [("same", true), ("different", false)];
 
@@ -426,7 +426,7 @@ fn matrices_of_engines_draw_what_our_cameras_do() {
         let rows = [x, -y, near * 2.0 - w, w].map(|row| (row * 3.0).to_array());
         let clip_from_object = DMat4::from_cols_array_2d(&rows).transpose();
         let matrix = ViewProjection { clip_from_object, depth: DepthRange::MinusOneToOne, y: ClipY::Down };
-        let seen = Camera::of_matrix(&matrix, &scene.bounds).expect("a view");
+        let seen = Camera::from_matrix(&matrix, &scene.bounds).expect("a view");
         let moved = moved(&own, [4.0, 0.0], &target, &scene.bounds);
         let mut draw = |camera: &Camera| {
             engine.draw(&mut scene, &target, camera, &look.settings, &mut Timing::Off).expect("a draw");

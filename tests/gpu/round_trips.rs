@@ -13,7 +13,7 @@ use glam::{Vec2, Vec3, vec3};
 use gpu::Timing;
 use inspect::render::Camera;
 use inspect::settings::{ARENA_BYTES, Settings};
-use lab::compare::{Comparison, Exactness, ForeignMesh, Ours, compare};
+use lab::compare::{Comparison, ForeignMesh, OurTessellation, Tolerances, compare};
 use lab::stability::CASES;
 
 use crate::engine;
@@ -184,10 +184,10 @@ impl Subject {
     fn compared(&self, theirs: &Tessellated) -> Comparison {
         let tessellated = &self.on_cpu();
         let (mesh, topology, inputs) = (&*self.mesh, &*self.topology, &self.inputs);
-        let ours = Ours { mesh, topology, inputs, given: None, matrix: None, tessellated };
+        let ours = OurTessellation { mesh, topology, inputs, given: None, matrix: None, tessellated };
         let positions: Vec<Vec3> = theirs.vertices.iter().map(|vertex| vertex.position.into()).collect();
         let theirs = ForeignMesh::new(&positions, theirs.triangles.iter().copied());
-        let exactness = Exactness { within: 16.0 * ulp(topology), resolution: 0.0 };
+        let exactness = Tolerances { within: 16.0 * ulp(topology), resolution: 0.0 };
         compare(&ours, &theirs, exactness, &Progress::new()).expect("nobody cancels")
     }
 }

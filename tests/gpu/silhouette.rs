@@ -10,7 +10,7 @@ use geometry::view::project;
 use glam::{Vec2, Vec3, vec2, vec3};
 use gpu::Timing;
 use inspect::engine::SilhouetteView;
-use inspect::engine::silhouette::beside;
+use inspect::engine::silhouette::sibling;
 use inspect::measure::{OutlineDistance, OutlineDistances, Silhouette};
 use inspect::render::{Camera, Scene, lay_over, outlines_picture};
 use inspect::settings::{Colors, Overlays, Settings};
@@ -131,7 +131,7 @@ fn comparing_leaves_the_scene_as_it_is_and_a_kept_tessellator_finds_the_same() {
     let first = compared(&mut scene, &tessellation, &camera);
     assert_eq!((scene.tessellator.generation(), scene.tessellator.totals()), before);
     let view = SilhouetteView { size: SIZE, seen, lod: seen };
-    let mut tessellator = beside(&scene)().expect("a small mesh");
+    let mut tessellator = sibling(&scene)().expect("a small mesh");
     for _ in 0..2 {
         let mut drawing =
             engine().start_silhouette(&scene, tessellator, &tessellation, &view).expect("a small picture");

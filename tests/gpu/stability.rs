@@ -292,7 +292,7 @@ impl Trial {
         let out = tessellate(&self.mesh, &topology, &inputs, None);
         let asked =
             AskedFactors::new(settings.tessellation.edges, settings.tessellation.convention, out.edge_factors.clone());
-        Measured::of(&self.mesh, &topology, asked, &out)
+        Measured::new(&self.mesh, &topology, asked, &out)
     }
 }
 

@@ -64,14 +64,14 @@ const TRIANGLES: usize = 57_000;
 #[test]
 fn the_limit_includes_edges() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
-    let grid = Grid::of(TRIANGLES, 0.0);
+    let grid = Grid::new(TRIANGLES, 0.0);
     let plain = Preparation::default();
     assert_bounded("floats.glb", &indexed(grid, false), 0, &plain, 1.1);
     assert_bounded("quantised.glb", &indexed(grid, true), 0, &plain, 1.1);
     assert_bounded("blocks.glb", &blocks(grid), 0, &plain, 1.1);
     assert_bounded("loose.glb", &loose(grid, false), 0, &plain, 1.1);
     assert_bounded("apart.stl", &grid.stl(0.1), 0, &plain, 1.1);
-    assert_bounded("creased.ply", &Grid::of(TRIANGLES, 40.0).ply(false), 0, &plain, 1.1);
+    assert_bounded("creased.ply", &Grid::new(TRIANGLES, 40.0).ply(false), 0, &plain, 1.1);
     assert_bounded("plain.obj", &grid.obj(false), 0, &plain, 1.1);
     assert_bounded("plain.off", &grid.off(), 0, &plain, 1.1);
     assert_bounded("plain.3mf", &grid.threemf(), 0, &plain, 1.1);
@@ -81,11 +81,11 @@ fn the_limit_includes_edges() {
 fn the_limit_includes_welds_and_crease_bands() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let welded = Preparation { weld: 1e-5, ..Preparation::default() };
-    assert_bounded("welded.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &welded, 1.5);
-    assert_bounded("welded.stl", &Grid::of(TRIANGLES, 0.0).stl(0.1), 0, &welded, 1.5);
+    assert_bounded("welded.glb", &indexed(Grid::new(TRIANGLES, 0.0), true), 0, &welded, 1.5);
+    assert_bounded("welded.stl", &Grid::new(TRIANGLES, 0.0).stl(0.1), 0, &welded, 1.5);
     let band = Preparation { crease_band: 1e-4, ..Preparation::default() };
-    assert_bounded("crease-band.ply", &Grid::of(TRIANGLES, 40.0).ply(false), 0, &band, 1.5);
-    assert_bounded("no-creases.glb", &indexed(Grid::of(TRIANGLES, 0.0), true), 0, &band, 1.5);
+    assert_bounded("crease-band.ply", &Grid::new(TRIANGLES, 40.0).ply(false), 0, &band, 1.5);
+    assert_bounded("no-creases.glb", &indexed(Grid::new(TRIANGLES, 0.0), true), 0, &band, 1.5);
 }
 
 #[test]
@@ -96,7 +96,7 @@ fn the_limit_includes_heights() {
     let mut png = std::io::Cursor::new(Vec::new());
     image::RgbImage::new(1500, 900).write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
     let image = temporary("heights.png", png.get_ref());
-    let sheet = indexed(Grid::of(TRIANGLES, 0.0), true);
+    let sheet = indexed(Grid::new(TRIANGLES, 0.0), true);
     assert_bounded("file.glb", &sheet, png.get_ref().len(), &of(HeightSource::File(image.to_path_buf())), 1.1);
 }
 

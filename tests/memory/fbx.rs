@@ -81,20 +81,20 @@ fn parsing_counts_within_the_limit() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let plain = Preparation::default();
     // Half of the memory is for ufbx's work, of which it rarely needs much.
-    assert_bounded("plain.fbx", &fbx(Grid::of(TRIANGLES, 0.0), false), 0, &plain, 2.0);
-    assert_bounded("normals.fbx", &fbx(Grid::of(TRIANGLES, 0.0), true), 0, &plain, 2.0);
+    assert_bounded("plain.fbx", &fbx(Grid::new(TRIANGLES, 0.0), false), 0, &plain, 2.0);
+    assert_bounded("normals.fbx", &fbx(Grid::new(TRIANGLES, 0.0), true), 0, &plain, 2.0);
 }
 
 #[test]
 fn large_files_load_and_what_ufbx_takes_is_bounded() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for normals in [false, true] {
-        let bytes = fbx(Grid::of(1_000_000, 0.0), normals);
+        let bytes = fbx(Grid::new(1_000_000, 0.0), normals);
         let (result, took) = taken("large.fbx", bytes);
         assert!(result.is_ok_and(|loaded| loaded.mesh.triangles.len() > 990_000) && took > 1 << 20);
     }
     // Without memory beyond that for the file nothing is parsed that would take more.
-    let bytes = fbx(Grid::of(TRIANGLES, 0.0), true);
+    let bytes = fbx(Grid::new(TRIANGLES, 0.0), true);
     let (file, size) = (temporary("small.fbx", &bytes), bytes.len());
     let limits = Limits { memory: 0, ..Limits::default() };
     let (_, took) = peak_of(|| load(&file, &limits, &Progress::new()));

@@ -15,7 +15,7 @@ pub(crate) struct Grid {
 
 impl Grid {
     /// Makes a sheet with this number of triangles, or a few less.
-    pub(crate) fn of(triangles: usize, spikes: f32) -> Self {
+    pub(crate) fn new(triangles: usize, spikes: f32) -> Self {
         let side = (triangles / 2).isqrt() + 1;
         Self { side, rows: side, spikes }
     }

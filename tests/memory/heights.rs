@@ -23,7 +23,7 @@ fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
 fn read_within(name: &str, bytes: &[u8], times: usize) -> (Result<Heights, HeightError>, usize) {
     let file = temporary(name, bytes);
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.to_path_buf()));
-    let budget = Budget::of_mesh(&mesh, 0, Limits::default().memory);
+    let budget = Budget::from_mesh(&mesh, 0, Limits::default().memory);
     let (result, took) = peak_of(|| source.load(&mesh, &[], &budget, &Progress::new()));
     let allowed = 4 * bytes.len() + Limits::default().memory as usize;
     println!("{name}: {} of {} MiB, read: {}", took >> 20, allowed >> 20, result.is_ok());

@@ -40,39 +40,39 @@ fn assert_within(name: &str, times: usize, make: impl Fn(usize) -> Vec<u8>) {
 
 #[test]
 fn binary_stl() {
-    assert_within("smooth.stl", 4, |count| Grid::of(count, 0.0).stl(0.0));
-    assert_within("creased.stl", 4, |count| Grid::of(count, 40.0).stl(0.0));
-    assert_within("apart.stl", 4, |count| Grid::of(count, 0.0).stl(0.1));
+    assert_within("smooth.stl", 4, |count| Grid::new(count, 0.0).stl(0.0));
+    assert_within("creased.stl", 4, |count| Grid::new(count, 40.0).stl(0.0));
+    assert_within("apart.stl", 4, |count| Grid::new(count, 0.0).stl(0.1));
 }
 
 #[test]
 fn ply() {
-    assert_within("triangles.ply", 4, |count| Grid::of(count, 0.0).ply(false));
-    assert_within("squares.ply", 4, |count| Grid::of(count, 0.0).ply(true));
+    assert_within("triangles.ply", 4, |count| Grid::new(count, 0.0).ply(false));
+    assert_within("squares.ply", 4, |count| Grid::new(count, 0.0).ply(true));
     // With a corner for each face, the mesh itself is larger than that.
-    assert_within("creased.ply", 9, |count| Grid::of(count, 40.0).ply(false));
+    assert_within("creased.ply", 9, |count| Grid::new(count, 40.0).ply(false));
 }
 
 #[test]
 fn obj() {
-    assert_within("plain.obj", 4, |count| Grid::of(count, 0.0).obj(false));
-    assert_within("attributes.obj", 4, |count| Grid::of(count, 0.0).obj(true));
+    assert_within("plain.obj", 4, |count| Grid::new(count, 0.0).obj(false));
+    assert_within("attributes.obj", 4, |count| Grid::new(count, 0.0).obj(true));
     // For the same reason as above.
-    assert_within("creased.obj", 5, |count| Grid::of(count, 40.0).obj(false));
+    assert_within("creased.obj", 5, |count| Grid::new(count, 40.0).obj(false));
 }
 
 #[test]
 fn off() {
-    assert_within("plain.off", 4, |count| Grid::of(count, 0.0).off());
+    assert_within("plain.off", 4, |count| Grid::new(count, 0.0).off());
 }
 
 #[test]
 fn gltf() {
-    assert_within("floats.glb", 4, |count| indexed(Grid::of(count, 0.0), false));
-    assert_within("quantised.glb", 4, |count| indexed(Grid::of(count, 0.0), true));
-    assert_within("blocks.glb", 4, |count| blocks(Grid::of(count, 0.0)));
-    assert_within("loose.glb", 4, |count| loose(Grid::of(count, 0.0), false));
-    assert_within("loose-quantised.glb", 4, |count| loose(Grid::of(count, 0.0), true));
+    assert_within("floats.glb", 4, |count| indexed(Grid::new(count, 0.0), false));
+    assert_within("quantised.glb", 4, |count| indexed(Grid::new(count, 0.0), true));
+    assert_within("blocks.glb", 4, |count| blocks(Grid::new(count, 0.0)));
+    assert_within("loose.glb", 4, |count| loose(Grid::new(count, 0.0), false));
+    assert_within("loose-quantised.glb", 4, |count| loose(Grid::new(count, 0.0), true));
 }
 
 /// The memory that is taken between a load and the first picture, in bytes per triangle, as docs/results/files.md says.
@@ -80,7 +80,7 @@ fn gltf() {
 fn edges_and_previews_of_welds() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for triangles in sizes() {
-        let (mesh, _) = taken("edges.glb", indexed(Grid::of(triangles, 0.0), false));
+        let (mesh, _) = taken("edges.glb", indexed(Grid::new(triangles, 0.0), false));
         let mesh = mesh.expect("a file without a fault").mesh;
         let count = mesh.triangles.len();
         let (topology, edges) = peak_of(|| Topology::build(&mesh, &Progress::new()));

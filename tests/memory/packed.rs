@@ -133,7 +133,7 @@ fn files_from_an_encoder_fit() {
     let others = |count: usize, width: u8| (0..count).map(|i| (format!("TEXCOORD_{i}"), width)).collect::<Vec<_>>();
     for speed in [0, 5, 10] {
         for (count, width, apart) in [(0, 2, false), (1, 2, false), (2, 2, true), (12, 2, true), (20, 2, false)] {
-            let grid = Grid::of(if count > 10 { 6_000 } else { 20_000 }, 0.0);
+            let grid = Grid::new(if count > 10 { 6_000 } else { 20_000 }, 0.0);
             let bytes = sheet(grid, &others(count, width), apart, speed);
             let size = bytes.len();
             let (mesh, took) = taken(&format!("packed-{count}-{speed}.glb"), bytes);
@@ -152,7 +152,7 @@ fn files_from_an_encoder_fit() {
 fn scans_are_read_within_the_default_limit() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let triangles = std::env::var("PNAEN_TRIANGLES").ok().and_then(|count| count.parse().ok()).unwrap_or(2_000_000);
-    let grid = Grid::of(triangles, 0.0);
+    let grid = Grid::new(triangles, 0.0);
     let bytes = scan(grid, Some(20), 5);
     let file = temporary("packed-scan.glb", &bytes);
     let memory = Limits::default().memory;
@@ -206,12 +206,12 @@ fn what_is_said_to_be_needed_is_taken_at_most() {
     };
     for (speed, others) in [(5, 0), (5, 1), (0, 1), (10, 1)] {
         let others = vec![("TEXCOORD_0".to_owned(), 2); others];
-        let bytes = sheet(Grid::of(200_000, 0.0), &others, false, speed);
+        let bytes = sheet(Grid::new(200_000, 0.0), &others, false, speed);
         check(&format!("a flat sheet at speed {speed}"), &bytes, 2.0);
     }
     for (speed, piece) in [(0, Some(20)), (5, Some(20)), (10, Some(20)), (0, None), (5, None), (7, Some(1)), (10, None)]
     {
-        let bytes = scan(Grid::of(200_000, 0.0), piece, speed);
+        let bytes = scan(Grid::new(200_000, 0.0), piece, speed);
         check(&format!("a scan in pieces of {piece:?} squares at speed {speed}"), &bytes, 1.75);
     }
 }
@@ -222,7 +222,7 @@ fn what_is_said_to_be_needed_is_taken_at_most() {
 fn seams_that_the_accessors_know_nothing_of_are_counted() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     for (speed, piece, vertices) in [(5, Some(1), 10_000), (0, Some(1), 10_000), (5, Some(1), 1), (0, Some(2), 100)] {
-        let bytes = scan_of(Grid::of(200_000, 0.0), piece, speed, Some(vertices));
+        let bytes = scan_of(Grid::new(200_000, 0.0), piece, speed, Some(vertices));
         let (allowed, took, is_read) = least_limit("packed-few.glb", &bytes);
         println!("packed-few, speed {speed}: {} MiB allowed, {} taken", allowed >> 20, took >> 20);
         assert!(!is_read && took <= allowed, "speed {speed}: {took} of {allowed} bytes");

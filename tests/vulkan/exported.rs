@@ -11,8 +11,8 @@ use geometry::tessellate::hull_factors::HullFactors;
 use geometry::tessellate::mesh_displacement::displaced_corners;
 use geometry::tessellate::{Clip, Displacement, Lod, LodView, Surface, Tessellation, unpack_normal};
 use gpu::embed::GpuError;
-use gpu::own_lod::Given;
 use gpu::recorder::Timing;
+use gpu::user_lod::Given;
 use inspect::engine::Engine;
 use inspect::render::camera::Camera;
 use inspect::render::scene::Scene;
@@ -195,7 +195,7 @@ impl<'a> Subject<'a> {
     fn constants(&self, own: &Tessellation) -> [f32; 48] {
         let heights = self.mesh.heights.as_deref().filter(|_| own.displacement != Displacement::Off);
         let reach = heights.map_or(0.0, |heights| heights.reach(own.midlevel));
-        constants(own, &LodView { reach: self.height_scale(own).abs() * reach, ..self.view })
+        constants(own, &self.view.with_reach(self.height_scale(own).abs() * reach))
     }
 
     fn patch_corners(&self) -> Vec<[[f32; 3]; 3]> {
@@ -212,7 +212,7 @@ pub(crate) fn constants(own: &Tessellation, view: &LodView) -> [f32; 48] {
     constants[..16].copy_from_slice(&matrix);
     constants[16..32].copy_from_slice(&matrix);
     constants[32..34].copy_from_slice(&view.half_viewport.to_array());
-    constants[34] = view.reach;
+    constants[34] = view.reach();
     constants[36..39].copy_from_slice(&view.eye.to_array());
     constants[39] = view.radius;
     constants[40..45].copy_from_slice(&[own.factor, own.pixels, own.near, own.far, own.alpha]);

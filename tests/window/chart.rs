@@ -102,7 +102,7 @@ fn the_chart_is_measured_and_a_setting_of_its_front_is_applied() {
     // The setting with the least error is always on the front.
     let best = rows.iter().min_by(|a, b| error(a).total_cmp(&error(b))).expect("ten rows").setting;
     let before = *harness.state().settings();
-    assert_ne!(Setting::of(&before), Some(best));
+    assert_ne!(Setting::new(&before), Some(best));
     harness.get_by_role_and_label(Role::Button, "Triangles").click();
     settle(&mut harness);
     harness.get_by_label_contains(&format!("Apply {} {best}:", best.method.surface.label())).click();
@@ -132,7 +132,7 @@ fn a_click_on_a_point_applies_its_setting() {
     harness.drop_at(middle);
     settle(&mut harness);
     let settings = harness.state().settings();
-    assert_eq!(Setting::of(settings), Some(harness.state().chart_rows()[0].setting));
+    assert_eq!(Setting::new(settings), Some(harness.state().chart_rows()[0].setting));
     assert_eq!(settings.tessellation.clip, Clip::Frustum, "clipping stays");
     assert!(harness.query_by_label("Measure again").is_some(), "the chart isn't out of date");
 }

@@ -11,7 +11,7 @@ use image::RgbaImage;
 use inspect::settings::Lighting;
 use load::Source;
 use pnaen::app::App;
-use pnaen::commands::{Action, Beside, FileAction, Purpose, all};
+use pnaen::commands::{Action, CompanionFile, FileAction, Purpose, all};
 use tempfile::TempDir;
 
 use crate::editing::{assert_draws, copied};
@@ -152,7 +152,7 @@ fn a_typed_path_opens_an_environment_and_repairs_are_listed() {
     let path = write(&folder, "square.hdr", &radiance_file([16, 16], &[[0.5; 3]; 256]));
     let mut harness = torus();
     harness.get_by_label("No warnings");
-    give(&mut harness, FileAction::Ask(Purpose::Beside(Beside::Environment)));
+    give(&mut harness, FileAction::Ask(Purpose::CompanionFile(CompanionFile::Environment)));
     while harness.state().path_asked_for().is_none() {
         harness.step();
     }
@@ -166,7 +166,7 @@ fn a_typed_path_opens_an_environment_and_repairs_are_listed() {
     harness
         .get_by_label_contains("square.hdr: it has 16 x 16 px; a panorama of all directions is twice as wide as high");
     press(&mut harness, egui::Key::Escape);
-    give(&mut harness, FileAction::Close(Beside::Environment));
+    give(&mut harness, FileAction::Close(CompanionFile::Environment));
     assert_eq!(harness.state().environment_file(), None);
     harness.get_by_label("No warnings");
 }

@@ -219,7 +219,7 @@ fn every_switch_does_what_it_says() {
     assert_eq!(harness.state().settings().tessellation.lod, Lod::Distance);
     harness.get_by_role_and_label(Role::SpinButton, "Near");
     harness.get_by_role_and_label(Role::SpinButton, "far");
-    choose(&mut harness, "LOD", "Error");
+    choose(&mut harness, "LOD", "Screen error");
     assert_eq!(harness.state().settings().tessellation.lod, Lod::Error);
     harness.get_by_role_and_label(Role::Slider, "Tolerance");
     choose(&mut harness, "LOD", "Edge length");

@@ -312,7 +312,7 @@ fn a_patch_says_why_it_has_its_factors() {
             decided.push(by.to_owned());
         }
         assert!(numbers(&row(&harness, "inside         "))[1] <= tolerance);
-        let (least, has) = (row(&harness, "own least"), row(&harness, "drawn  "));
+        let (least, has) = (row(&harness, "minimum"), row(&harness, "drawn  "));
         let (least, has) = (numbers(&least)[0], numbers(&has));
         assert!(has[0] >= least && (has[1] - has[0] / least).abs() < 0.01, "{least} {has:?}");
         assert!(row(&harness, "Pattern: ").ends_with(&format!(" {} triangles", has[0])));
@@ -320,9 +320,9 @@ fn a_patch_says_why_it_has_its_factors() {
     assert!(decided.iter().any(|by| by == "curve") || decided.iter().any(|by| by == "own"), "{decided:?}");
     assert!(decided.len() >= 6, "{decided:?}");
     // Under another LOD the same patch is compared with the same tolerance.
-    let least = row(&harness, "own least");
+    let least = row(&harness, "minimum");
     choose(&mut harness, "LOD", "Uniform");
     harness.get_by_label("Against LOD by error");
-    assert_eq!(row(&harness, "own least"), least);
+    assert_eq!(row(&harness, "minimum"), least);
     assert!(numbers(&row(&harness, "drawn  "))[1] > 1.0);
 }

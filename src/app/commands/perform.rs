@@ -127,7 +127,7 @@ impl App {
             FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
             FileAction::OpenVase => self.open(context, Source::Vase),
             FileAction::Reload => self.reload(context),
-            FileAction::Close(beside) => self.close_beside(*beside),
+            FileAction::Close(beside) => self.close_companion(*beside),
             FileAction::SavePicture => self.dialogs.picture.is_open = true,
             FileAction::SaveTurntable => self.dialogs.turntable.is_open = true,
             FileAction::Quit => context.send_viewport_cmd(ViewportCommand::Close),

@@ -91,7 +91,7 @@ impl App {
         }
         ui.label("");
         let back = ui.add_enabled(choices.size.is_some(), egui::Button::new("Size of the view"));
-        let hover = "Goes back to the size of the picture in the window, also if that changes.";
+        let hover = "Use the viewport's size and follow it.";
         if back.on_hover_text(hover).on_disabled_hover_text("It has the size of the view.").clicked() {
             choices.size = None;
         }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::commands::{Beside, Purpose, Written};
+use crate::commands::{CompanionFile, Purpose, Written};
 use load::Source;
 use load::environment_file::ENVIRONMENT_EXTENSIONS;
 use load::format::{EXTENSIONS, known_extensions};
@@ -14,12 +14,12 @@ pub(super) fn title(purpose: Purpose) -> &'static str {
     match purpose {
         Purpose::Open => "Open path",
         Purpose::Heights => "Height image path",
-        Purpose::Beside(Beside::Truth) => "Reference surface path",
-        Purpose::Beside(Beside::Factors) => "Factors path",
-        Purpose::Beside(Beside::LodShader) => "LOD shader path",
-        Purpose::Beside(Beside::SurfaceShader) => "Surface shader path",
-        Purpose::Beside(Beside::Matcap) => "Matcap path",
-        Purpose::Beside(Beside::Environment) => "Environment path",
+        Purpose::CompanionFile(CompanionFile::Truth) => "Reference surface path",
+        Purpose::CompanionFile(CompanionFile::Factors) => "Factors path",
+        Purpose::CompanionFile(CompanionFile::LodShader) => "LOD shader path",
+        Purpose::CompanionFile(CompanionFile::SurfaceShader) => "Surface shader path",
+        Purpose::CompanionFile(CompanionFile::Matcap) => "Matcap path",
+        Purpose::CompanionFile(CompanionFile::Environment) => "Environment path",
         Purpose::Write(Written::Chart) => "Save chart",
         Purpose::Write(Written::Picture) => "Save picture",
         Purpose::Write(Written::Folder | Written::Gif) => "Save turntable",
@@ -51,12 +51,12 @@ pub(super) fn takes(purpose: Purpose) -> String {
                 "A {kinds} file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)"
             );
         }
-        Purpose::Beside(Beside::Truth) => return format!("A {} file, or shape:NAME", known_extensions()),
-        Purpose::Heights | Purpose::Beside(Beside::Matcap) => "A .png, .jpg or .webp image",
-        Purpose::Beside(Beside::Factors) => "A .csv file with the factors of every triangle",
-        Purpose::Beside(Beside::LodShader) => "A .wgsl file with the function edge_factor",
-        Purpose::Beside(Beside::SurfaceShader) => "A .wgsl file with the function edge_points",
-        Purpose::Beside(Beside::Environment) => "A .hdr or .exr panorama",
+        Purpose::CompanionFile(CompanionFile::Truth) => return format!("A {} file, or shape:NAME", known_extensions()),
+        Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => "A .png, .jpg or .webp image",
+        Purpose::CompanionFile(CompanionFile::Factors) => "A .csv file with the factors of every triangle",
+        Purpose::CompanionFile(CompanionFile::LodShader) => "A .wgsl file with the function edge_factor",
+        Purpose::CompanionFile(CompanionFile::SurfaceShader) => "A .wgsl file with the function edge_points",
+        Purpose::CompanionFile(CompanionFile::Environment) => "A .hdr or .exr panorama",
         Purpose::Write(Written::Chart) => "A new .svg, .png or .csv file",
         Purpose::Write(Written::Picture) => "A new .png file",
         Purpose::Write(Written::Folder) => "A new folder",
@@ -73,19 +73,25 @@ pub(super) fn takes(purpose: Purpose) -> String {
 pub(super) fn kinds(purpose: Purpose) -> Vec<Kind> {
     match purpose {
         // A mesh is told by its content, so it may have any name.
-        Purpose::Open | Purpose::Beside(Beside::Truth) => {
+        Purpose::Open | Purpose::CompanionFile(CompanionFile::Truth) => {
             vec![("Meshes", EXTENSIONS.map(|(extension, _)| extension).to_vec()), ("All files", vec!["*"])]
         }
-        Purpose::Heights | Purpose::Beside(Beside::Matcap) => vec![("Images", vec!["png", "jpg", "jpeg", "webp"])],
-        Purpose::Beside(Beside::LodShader | Beside::SurfaceShader) => vec![("WGSL", vec!["wgsl"])],
-        Purpose::Beside(Beside::Environment) => vec![("Panoramas of light", ENVIRONMENT_EXTENSIONS.to_vec())],
+        Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => {
+            vec![("Images", vec!["png", "jpg", "jpeg", "webp"])]
+        }
+        Purpose::CompanionFile(CompanionFile::LodShader | CompanionFile::SurfaceShader) => vec![("WGSL", vec!["wgsl"])],
+        Purpose::CompanionFile(CompanionFile::Environment) => {
+            vec![("Panoramas of light", ENVIRONMENT_EXTENSIONS.to_vec())]
+        }
         Purpose::Write(Written::Chart) => {
             vec![("SVG picture", vec!["svg"]), ("PNG picture", vec!["png"]), ("CSV table", vec!["csv"])]
         }
         Purpose::Write(Written::Picture) => vec![("PNG picture", vec!["png"])],
         Purpose::Write(Written::Folder) => Vec::new(),
         Purpose::Write(Written::Gif) => vec![("Animated GIF", vec!["gif"])],
-        Purpose::Beside(Beside::Factors) | Purpose::Write(Written::Factors) => vec![("CSV table", vec!["csv"])],
+        Purpose::CompanionFile(CompanionFile::Factors) | Purpose::Write(Written::Factors) => {
+            vec![("CSV table", vec!["csv"])]
+        }
         Purpose::Write(Written::Adjacency) => vec![("JSON", vec!["json"]), ("Bare indices", vec!["bin"])],
         Purpose::Write(Written::Stats) => vec![("JSON", vec!["json"])],
         Purpose::Write(Written::Mesh) => vec![("glTF binary", vec!["glb"]), ("Wavefront OBJ", vec!["obj"])],
@@ -115,7 +121,9 @@ pub(super) fn proposed(purpose: Purpose, open: Option<&Source>, folder: Option<&
         return unused(folder.map_or_else(|| absolute(&name), |folder| folder.join(&name).display().to_string()));
     }
     match (purpose, open) {
-        (Purpose::Open | Purpose::Beside(Beside::Truth), Some(Source::File(path))) => path.display().to_string(),
+        (Purpose::Open | Purpose::CompanionFile(CompanionFile::Truth), Some(Source::File(path))) => {
+            path.display().to_string()
+        }
         _ => String::new(),
     }
 }

@@ -56,7 +56,7 @@ fn turn_rows(ui: &mut Ui, own: &mut TurntableWindow) {
         number(ui, "Pictures", &mut own.turn.frames, FRAMES, "The number of pictures in one turn (--frames).");
         ui.label("Written as").on_hover_text("A folder of pictures, or one file.");
         ui.horizontal(|ui| {
-            let hover = "Numbered PNG files in a folder, which is made.";
+            let hover = "Numbered PNG files in a new folder.";
             ui.radio_value(&mut own.is_gif, false, "PNG files").on_hover_text(hover);
             let hover = "One GIF file that repeats, with up to 256 colours a picture.";
             ui.radio_value(&mut own.is_gif, true, "Animated GIF").on_hover_text(hover);

@@ -11,7 +11,7 @@ use super::typed_text::{Completion, completion, path_of};
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::job_list::Work;
-use crate::commands::{Beside, Purpose};
+use crate::commands::{CompanionFile, Purpose};
 use geometry::names::shown_path;
 use load::{FileError, Source};
 
@@ -213,7 +213,7 @@ impl App {
                 Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
             Purpose::Write(_) => Ok(Source::File(path.into())),
-            Purpose::Beside(beside) if beside != Beside::Truth => found(Source::File(path.into())),
+            Purpose::CompanionFile(beside) if beside != CompanionFile::Truth => found(Source::File(path.into())),
             _ => path.parse::<Source>().map_err(|error| error.to_string()).and_then(found),
         };
         match source.and_then(|source| self.take_source(context, purpose, source)) {
@@ -231,7 +231,7 @@ impl App {
     fn take_source(&mut self, context: &egui::Context, purpose: Purpose, source: Source) -> Result<(), String> {
         match (purpose, source) {
             (Purpose::Write(written), Source::File(path)) => return self.write_as(context, written, path),
-            (Purpose::Beside(beside), source) => self.open_beside(context, beside, source),
+            (Purpose::CompanionFile(beside), source) => self.open_companion(context, beside, source),
             (_, Source::File(path)) => self.open_path(context, path),
             (_, source) => self.open(context, source),
         }

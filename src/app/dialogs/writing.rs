@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::notice::Notice;
 use super::turntable_window::TurntableWindow;
 use crate::app::App;
-use crate::app::jobs::beside::file_name;
+use crate::app::jobs::companion_files::file_name;
 use crate::app::jobs::export_job::Export;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::picture_job::PictureChoices;
@@ -84,7 +84,7 @@ impl App {
             let written = progress
                 .check()
                 .map_err(ShotError::from)
-                .and_then(|()| write_adjacency(&loaded, Layout::Nine, &indices, Format::of_name(path), path));
+                .and_then(|()| write_adjacency(&loaded, Layout::Nine, &indices, Format::from_name(path), path));
             written.map_err(|error| error.to_string())
         });
         Ok(())
@@ -167,7 +167,7 @@ impl App {
         let view = self.viewport.camera.lod_view(self.viewport.picture.size(), &document.scene.bounds);
         let inputs = self.settings.inputs(self.viewport.frozen.map_or(view, |frozen| frozen.view));
         let (engine, loaded, moment) = (self.engine.clone(), document.loaded.clone(), document.moment);
-        let make = document.scene.beside(arena_bytes(&engine));
+        let make = document.scene.sibling(arena_bytes(&engine));
         let export = Export { engine, loaded, moment, inputs };
         let write = move |path: &Path, progress: &_| export.run(make, path, progress);
         self.write_with_warnings(context, "Exporting", path, write);

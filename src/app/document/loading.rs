@@ -256,7 +256,7 @@ impl App {
         if let Some(path) = environments.into_iter().next() {
             self.open_environment(context, path);
         }
-        let mesh = others.iter().find(|path| Format::of_name(path).is_some());
+        let mesh = others.iter().find(|path| Format::from_name(path).is_some());
         let Some(path) = mesh.or(others.first()) else { return };
         self.open_path(context, path.clone());
         if let Some(load) = self.jobs.last_load.as_mut().filter(|_| others.len() > 1) {

@@ -78,7 +78,7 @@ impl Measurements {
 impl Document {
     fn new(loaded: Loaded, scene: Scene) -> Self {
         static GENERATION: AtomicU64 = AtomicU64::new(0);
-        let exact = loaded.source.shape().and_then(Truth::of_shape).map(Arc::new);
+        let exact = loaded.source.shape().and_then(Truth::from_shape).map(Arc::new);
         Self {
             edges: loaded.topology.edge_counts(),
             moment: None,

@@ -1,6 +1,6 @@
 //! Measures the distance of what is shown from its reference surface, on a thread of its own, for the deviation overlay.
 
-use super::measure_job::Trouble;
+use super::measure_job::MeasureError;
 use super::walk::{Parts, Walk};
 use geometry::tessellate::{PosedMesh, Surface};
 use gpu::{Gpu, GpuError};
@@ -95,7 +95,7 @@ impl DeviationJob {
         scene: &mut Scene,
         of: DeviationBasis,
         target: impl FnOnce() -> DeviationTarget,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), MeasureError> {
         if self.of != Some(of) {
             self.of = Some(of);
             self.walk = None;
@@ -115,7 +115,7 @@ impl DeviationJob {
             Some(Ok(None)) => self.do_without(gpu, scene),
             Some(Err(stopped)) => {
                 self.do_without(gpu, scene);
-                return Err(Trouble::Deviating(stopped));
+                return Err(MeasureError::Deviating(stopped));
             }
             None => {}
         }

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::beside::{OpenFile, absolute_path, file_name};
+use super::companion_files::{OpenFile, absolute_path, file_name};
 use super::job_list::Work;
 use crate::app::App;
 use geometry::names::shown_path;
@@ -37,12 +37,12 @@ impl App {
                     error => Some(error.to_string()),
                 })?;
             let no_room = |error| Some(format!("{}: {error}", shown_path(&wanted)));
-            let environment = Arc::new(Environment::of_panorama(&gpu, panorama).map_err(no_room)?);
+            let environment = Arc::new(Environment::from_panorama(&gpu, panorama).map_err(no_room)?);
             Ok(Light { warnings, environment })
         };
         self.jobs.light = Some(path.clone());
         let title = format!("Reading the light of {}", file_name(&path));
-        self.read_beside(context, Work::Light, title, shown_path(&path), read, move |app, light| {
+        self.read_companion(context, Work::Light, title, shown_path(&path), read, move |app, light| {
             app.environment = Some(OpenFile::new(path, light));
             if is_chosen {
                 app.settings.lighting = Lighting::Environment;

@@ -1,6 +1,6 @@
 //! What scenes are given of files that are open beside the mesh.
 
-use super::own_shader_job::OpenShader;
+use super::user_shader_job::OpenShader;
 use crate::app::App;
 use crate::app::jobs::job_list::Work;
 use gpu::{Given, GpuError};

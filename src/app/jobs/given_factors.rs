@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::beside::{OpenFile, absolute_path};
+use super::companion_files::{OpenFile, absolute_path};
 use super::job_list::Work;
 use crate::app::App;
 use geometry::mesh::Topology;
@@ -38,7 +38,7 @@ impl GivenFactors {
 
 impl ComparedFactors {
     fn new(topology: &Topology, factors: &[HullFactors], convention: Convention) -> Self {
-        Self { convention, agreement: Agreement::of(topology, factors, convention) }
+        Self { convention, agreement: Agreement::new(topology, factors, convention) }
     }
 }
 
@@ -64,7 +64,7 @@ impl App {
             Ok((Arc::new(factors), compared))
         };
         let what = shown_path(&path);
-        self.read_beside(context, Work::Factors, String::new(), what, read, move |app, (factors, compared)| {
+        self.read_companion(context, Work::Factors, String::new(), what, read, move |app, (factors, compared)| {
             app.forget_shader::<LodShader>();
             // The file's factors take LOD's place: nothing follows the view.
             let lod = std::mem::replace(&mut app.settings.tessellation.lod, Lod::Uniform);
@@ -120,7 +120,7 @@ impl App {
         given.content.compared = None;
         let (factors, topology) = (given.content.factors.clone(), document.loaded.topology.clone());
         let compare = move |_: &_| Ok(ComparedFactors::new(&topology, &factors, own.convention));
-        self.read_beside(context, Work::Factors, String::new(), shown_path(&path), compare, |app, compared| {
+        self.read_companion(context, Work::Factors, String::new(), shown_path(&path), compare, |app, compared| {
             if let Some(given) = &mut app.given {
                 given.content.compared = Some(compared);
             }

@@ -47,7 +47,7 @@ impl Work {
     }
 
     /// Whether it reads a file beside the mesh.
-    fn is_beside(self) -> bool {
+    fn is_companion(self) -> bool {
         use Work::{Factors, Light, LodShader, Matcap, SurfaceShader, Truth};
         matches!(self, Truth | Light | Factors | Matcap | LodShader | SurfaceShader)
     }
@@ -179,8 +179,8 @@ impl Jobs {
     }
 
     /// Whether a file beside the mesh is being read.
-    pub(crate) fn opens_beside(&self) -> bool {
-        self.jobs.iter().any(|job| job.work.is_beside() && !job.has_landed)
+    pub(crate) fn opens_companions(&self) -> bool {
+        self.jobs.iter().any(|job| job.work.is_companion() && !job.has_landed)
     }
 
     /// Waits for a job, whose result isn't wanted.
@@ -224,7 +224,7 @@ impl App {
         while let Some((work, land)) = self.jobs.take(self.viewport.picture.is_free()) {
             let settings = self.settings_without_files();
             land(self, context);
-            if self.takes_back && (work == Work::Mesh || work.is_beside()) {
+            if self.takes_back && (work == Work::Mesh || work.is_companion()) {
                 // If the mesh wasn't read anew, its import is the one that is there.
                 self.put_settings(Settings { import: self.settings.import, ..settings });
             }

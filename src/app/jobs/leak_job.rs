@@ -2,7 +2,7 @@
 //! the pixels.
 
 use super::background_job::BackgroundJob;
-use super::measure_job::Trouble;
+use super::measure_job::MeasureError;
 use crate::app::App;
 use geometry::view::ScreenView;
 use gpu::Readback;
@@ -20,7 +20,7 @@ pub(crate) struct LeakJob {
 
 enum Counting {
     Drawing(LeakCount),
-    Copying(Readback),
+    PendingReadback(Readback),
     Grouping(BackgroundJob<Option<Vec<Leak>>>),
 }
 
@@ -50,7 +50,7 @@ impl LeakJob {
         engine: &Engine,
         scene: &mut Scene,
         view: ScreenView,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), MeasureError> {
         let of = Some((scene.tessellator.generation(), view));
         if self.of != of {
             let size = view.viewport.to_array().map(|side| side as u32);
@@ -61,17 +61,17 @@ impl LeakJob {
         self.counting = match self.counting.take() {
             None => None,
             Some(Counting::Drawing(mut count)) => Some(match count.draw_next(&engine.gpu, scene)? {
-                Some(counts) => Counting::Copying(counts),
+                Some(counts) => Counting::PendingReadback(counts),
                 None => Counting::Drawing(count),
             }),
-            Some(Counting::Copying(mut counts)) => Some(match counts.poll()? {
+            Some(Counting::PendingReadback(mut counts)) => Some(match counts.poll()? {
                 true => grouping(context, counts, view),
-                false => Counting::Copying(counts),
+                false => Counting::PendingReadback(counts),
             }),
             Some(Counting::Grouping(job)) => match job.take() {
                 None => Some(Counting::Grouping(job)),
                 Some(leaks) => {
-                    self.found = leaks.map_err(Trouble::Leaking)?;
+                    self.found = leaks.map_err(MeasureError::Leaking)?;
                     None
                 }
             },
@@ -95,7 +95,11 @@ impl App {
     }
 
     /// Goes on counting leaks once everything else of what is shown was measured.
-    pub(in crate::app) fn count_leaks(&mut self, context: &egui::Context, view: ScreenView) -> Result<(), Trouble> {
+    pub(in crate::app) fn count_leaks(
+        &mut self,
+        context: &egui::Context,
+        view: ScreenView,
+    ) -> Result<(), MeasureError> {
         let Some(document) = &mut self.document else { return Ok(()) };
         let measure = &document.right().measure;
         if measure.is_busy() {

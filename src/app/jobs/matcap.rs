@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::beside::{OpenFile, absolute_path};
+use super::companion_files::{OpenFile, absolute_path};
 use super::job_list::Work;
 use crate::app::App;
 use geometry::names::shown_path;
@@ -16,7 +16,7 @@ impl App {
         let path = absolute_path(path);
         let (wanted, limits, what) = (path.clone(), self.jobs.limits, shown_path(&path));
         let read = move |_: &_| load_matcap(&wanted, &limits).map_err(|error| Some(error.to_string()));
-        self.read_beside(context, Work::Matcap, String::new(), what, read, |app, picture| {
+        self.read_companion(context, Work::Matcap, String::new(), what, read, |app, picture| {
             app.matcap = Some(OpenFile::new(path, Arc::new(picture)));
             app.settings.overlays.colors = Colors::Matcap;
         });

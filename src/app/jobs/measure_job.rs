@@ -14,7 +14,7 @@ use inspect::render::{Camera, Scene};
 
 /// Why a measurement ended without a result.
 #[derive(Debug, Error)]
-pub(crate) enum Trouble {
+pub(crate) enum MeasureError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
     #[error("measuring the picture {0}; any other setting starts a new measurement")]
@@ -92,14 +92,14 @@ struct Surveyed {
 struct ReadFactors {
     /// This many bytes of the patches' factors come first.
     patch_bytes: usize,
-    asked: Asked,
+    asked: RequestedFactors,
     convention: Convention,
     /// Factors that a file gave in place of those of LOD.
     given: Option<AskedFactors>,
 }
 
 /// What gave the factors that were asked for.
-enum Asked {
+enum RequestedFactors {
     /// LOD, for every edge or every side.
     Lod(Edges),
     /// An LOD shader, a [`HullFactors`] for every patch.
@@ -149,7 +149,7 @@ impl MeasureJob {
     ///
     /// # Errors
     /// The device was lost, or the measurement's thread panicked.
-    pub(crate) fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, seen: &Seen) -> Result<(), Trouble> {
+    pub(crate) fn go_on(&mut self, gpu: &Gpu, scene: &mut Scene, seen: &Seen) -> Result<(), MeasureError> {
         let (of, totals) = (scene.tessellator.generation(), scene.tessellator.totals());
         if self.of != Some((of, seen.view)) {
             // Another view of the same triangles changes nothing but their sizes.
@@ -163,7 +163,7 @@ impl MeasureJob {
         let Some(walk) = &mut self.walk else { return Ok(()) };
         let Some(ended) = walk.go_on(gpu, scene)? else { return Ok(()) };
         self.walk = None;
-        let Some(Surveyed { whole, closed, sizes }) = ended.map_err(Trouble::Measuring)? else { return Ok(()) };
+        let Some(Surveyed { whole, closed, sizes }) = ended.map_err(MeasureError::Measuring)? else { return Ok(()) };
         if let Some((found, agreement)) = whole {
             let shading_seams = found.cracks.shading_seams().count() as u64;
             let results =
@@ -203,11 +203,11 @@ fn read_factors(gpu: &Gpu, scene: &Scene) -> (ReadFactors, Readback) {
     let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
     let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes.end).sum();
     let sizes = scene.tessellator.buffers();
-    let (asked, buffer, asked_bytes) = match scene.tessellator.own_factors() {
-        Some(own) => (Asked::Shader, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
+    let (asked, buffer, asked_bytes) = match scene.tessellator.user_factors() {
+        Some(own) => (RequestedFactors::Shader, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
         None => {
             let (of_lod, edges) = scene.tessellator.edge_factors();
-            (Asked::Lod(edges), of_lod, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
+            (RequestedFactors::Lod(edges), of_lod, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
         }
     };
     let readback = Readback::start(gpu, buffers.chain([(buffer, 0..asked_bytes)]));
@@ -226,15 +226,15 @@ fn survey(parts: &Parts, posed: &PosedMesh, factors: ReadFactors, view: ScreenVi
     let bytes = parts.first()?;
     let (factors, read) = bytes.split_at(patch_bytes);
     let own: Vec<HullFactors> = match asked {
-        Asked::Shader => bytemuck::pod_collect_to_vec(read),
-        Asked::Lod(_) => Vec::new(),
+        RequestedFactors::Shader => bytemuck::pod_collect_to_vec(read),
+        RequestedFactors::Lod(_) => Vec::new(),
     };
     let asked = given.unwrap_or_else(|| match asked {
-        Asked::Shader => AskedFactors::given(convention, &own),
-        Asked::Lod(edges) => AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
+        RequestedFactors::Shader => AskedFactors::given(convention, &own),
+        RequestedFactors::Lod(edges) => AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
     });
     // Where the sides of edges got different factors from a shader is told as it is of a file.
-    let agreement = (!own.is_empty()).then(|| Agreement::of(&topology, &own, convention));
+    let agreement = (!own.is_empty()).then(|| Agreement::new(&topology, &own, convention));
     let mut sizes = Sizes::new(view);
     let mut survey = Survey::new(&mesh, &topology, bytemuck::pod_collect_to_vec(factors), asked);
     parts.visit(&mut [&mut survey, &mut sizes])?;

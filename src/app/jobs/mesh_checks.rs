@@ -39,7 +39,7 @@ impl App {
         let (read, mesh, topology) = (loaded.read.clone(), loaded.mesh.clone(), loaded.topology.clone());
         let (weld, found, repainted) = (loaded.preparation.weld, document.checks.clone(), context.clone());
         let check = move |wanted: &Progress| {
-            let _ = found.normal_faults.set(NormalFaults::of(&mesh, &topology));
+            let _ = found.normal_faults.set(NormalFaults::new(&mesh, &topology));
             if let Ok(all) = t_junctions(&topology, wanted) {
                 let _ = found.t_junctions.set(all);
             }

@@ -1,8 +1,8 @@
 //! What runs on threads of their own while the window goes on: loading, checking, measuring and writing files.
 
 pub(super) mod background_job;
-pub(super) mod beside;
 pub(super) mod chart_job;
+pub(super) mod companion_files;
 pub(super) mod deviation_job;
 pub(super) mod environment_job;
 pub(super) mod explain_job;
@@ -14,10 +14,10 @@ pub(super) mod leak_job;
 pub(super) mod matcap;
 pub(super) mod measure_job;
 pub(super) mod mesh_checks;
-pub(super) mod own_shader_job;
 pub(super) mod picture_job;
 pub(super) mod scenes;
 pub(super) mod silhouette_job;
 pub(super) mod stand_in;
 pub(super) mod truth;
+pub(super) mod user_shader_job;
 pub(super) mod walk;

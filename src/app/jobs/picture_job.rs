@@ -92,7 +92,7 @@ impl ShotParts {
         let own = engine.clone();
         let attempted = engine.gpu.attempt(move || {
             let mut scene = make()?;
-            subject.dress(&own, &mut scene)?;
+            subject.apply_to_scene(&own, &mut scene)?;
             let inputs = subject.settings.inputs(view.lod_view(&scene));
             write_factors(&own, &mut scene, &inputs, path, progress)
         });
@@ -109,7 +109,7 @@ impl ShotParts {
         // What the device refuses, such as a picture that is too large for its memory, is this file's error.
         let attempted = engine.gpu.attempt(move || {
             let mut scene = make()?;
-            subject.dress(&own, &mut scene)?;
+            subject.apply_to_scene(&own, &mut scene)?;
             draw(&mut Shot::new(own, scene, subject, view)?)
         });
         said(attempted)
@@ -162,7 +162,7 @@ impl App {
             transparent: choices.transparent,
             legend: choices.legend,
         };
-        let make = Box::new(document.scene.beside(subject.arena_bytes));
+        let make = Box::new(document.scene.sibling(subject.arena_bytes));
         Some(ShotParts { engine: self.engine.clone(), make, subject, view })
     }
 

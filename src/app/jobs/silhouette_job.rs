@@ -5,12 +5,12 @@ use egui::TextureHandle;
 use image::RgbaImage;
 
 use super::background_job::BackgroundJob;
-use super::measure_job::Trouble;
+use super::measure_job::MeasureError;
 use crate::app::App;
 use geometry::tessellate::Tessellation;
 use geometry::view::ScreenView;
 use gpu::{GpuError, Readback, Tessellator};
-use inspect::engine::silhouette::beside;
+use inspect::engine::silhouette::sibling;
 use inspect::engine::{Engine, SilhouetteDrawing, SilhouetteView};
 use inspect::measure::{SampleGrid, Silhouette};
 use inspect::render::{Scene, lay_over, outlines_picture};
@@ -21,20 +21,20 @@ use inspect::settings::ColorSource;
 pub(crate) struct SilhouetteJob {
     /// The tessellation and the view that outlines are compared for.
     of: Option<(u64, ScreenView)>,
-    under_way: Option<Comparing>,
-    found: Option<Found>,
+    under_way: Option<OutlineComparison>,
+    found: Option<MeasuredOutlines>,
     /// A tessellator that is kept for the next comparison.
     kept: Option<Tessellator>,
 }
 
-enum Comparing {
+enum OutlineComparison {
     Making(BackgroundJob<Result<Tessellator, GpuError>>),
     Drawing(Box<SilhouetteDrawing>),
-    Copying(Readback, SampleGrid),
+    PendingReadback(Readback, SampleGrid),
     Finding(BackgroundJob<Option<(Silhouette, RgbaImage)>>),
 }
 
-struct Found {
+struct MeasuredOutlines {
     silhouette: Silhouette,
     picture: RgbaImage,
     texture: TextureHandle,
@@ -50,7 +50,7 @@ impl SilhouetteJob {
         self.under_way = None;
     }
 
-    fn found(&self, of: (u64, ScreenView)) -> Option<&Found> {
+    fn found(&self, of: (u64, ScreenView)) -> Option<&MeasuredOutlines> {
         self.found.as_ref().filter(|_| self.of == Some(of))
     }
 
@@ -66,48 +66,48 @@ impl SilhouetteJob {
         tessellation: &Tessellation,
         view: &SilhouetteView,
         screen: ScreenView,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), MeasureError> {
         let of = Some((scene.tessellator.generation(), screen));
         if self.of != of {
-            if let Some(Comparing::Drawing(drawing)) = self.under_way.take() {
+            if let Some(OutlineComparison::Drawing(drawing)) = self.under_way.take() {
                 self.kept = Some(drawing.tessellator);
             }
             (self.of, self.found) = (of, None);
             self.under_way = Some(match self.kept.take() {
                 Some(tessellator) => draw(engine, scene, tessellator, tessellation, view)?,
                 None => {
-                    let (gpu, make) = (engine.gpu.clone(), beside(scene));
-                    Comparing::Making(BackgroundJob::start(context, move || gpu.attempt(make)?))
+                    let (gpu, make) = (engine.gpu.clone(), sibling(scene));
+                    OutlineComparison::Making(BackgroundJob::start(context, move || gpu.attempt(make)?))
                 }
             });
             return Ok(());
         }
         self.under_way = match self.under_way.take() {
             None => None,
-            Some(Comparing::Making(job)) => Some(match job.take() {
-                None => Comparing::Making(job),
-                Some(made) => draw(engine, scene, made.map_err(Trouble::Comparing)??, tessellation, view)?,
+            Some(OutlineComparison::Making(job)) => Some(match job.take() {
+                None => OutlineComparison::Making(job),
+                Some(made) => draw(engine, scene, made.map_err(MeasureError::Comparing)??, tessellation, view)?,
             }),
-            Some(Comparing::Drawing(mut drawing)) => Some(match drawing.step(&engine.gpu)? {
-                None => Comparing::Drawing(drawing),
+            Some(OutlineComparison::Drawing(mut drawing)) => Some(match drawing.step(&engine.gpu)? {
+                None => OutlineComparison::Drawing(drawing),
                 Some(texels) => {
                     self.kept = Some(drawing.tessellator);
-                    Comparing::Copying(texels, drawing.grid)
+                    OutlineComparison::PendingReadback(texels, drawing.grid)
                 }
             }),
-            Some(Comparing::Copying(mut texels, grid)) => Some(match texels.poll()? {
-                false => Comparing::Copying(texels, grid),
-                true => Comparing::Finding(BackgroundJob::start(context, move || {
+            Some(OutlineComparison::PendingReadback(mut texels, grid)) => Some(match texels.poll()? {
+                false => OutlineComparison::PendingReadback(texels, grid),
+                true => OutlineComparison::Finding(BackgroundJob::start(context, move || {
                     // No bytes come from a lost device, which is reported elsewhere.
                     let silhouette = Silhouette::find(grid, &texels.bytes().ok()?);
                     let picture = outlines_picture(&silhouette);
                     Some((silhouette, picture))
                 })),
             }),
-            Some(Comparing::Finding(job)) => match job.take() {
-                None => Some(Comparing::Finding(job)),
+            Some(OutlineComparison::Finding(job)) => match job.take() {
+                None => Some(OutlineComparison::Finding(job)),
                 Some(found) => {
-                    self.found = found.map_err(Trouble::Comparing)?.map(|found| uploaded(context, found));
+                    self.found = found.map_err(MeasureError::Comparing)?.map(|found| uploaded(context, found));
                     None
                 }
             },
@@ -122,15 +122,15 @@ fn draw(
     tessellator: Tessellator,
     tessellation: &Tessellation,
     view: &SilhouetteView,
-) -> Result<Comparing, GpuError> {
-    Ok(Comparing::Drawing(Box::new(engine.start_silhouette(scene, tessellator, tessellation, view)?)))
+) -> Result<OutlineComparison, GpuError> {
+    Ok(OutlineComparison::Drawing(Box::new(engine.start_silhouette(scene, tessellator, tessellation, view)?)))
 }
 
-fn uploaded(context: &egui::Context, (silhouette, picture): (Silhouette, RgbaImage)) -> Found {
+fn uploaded(context: &egui::Context, (silhouette, picture): (Silhouette, RgbaImage)) -> MeasuredOutlines {
     let size = [picture.width(), picture.height()].map(|side| side as usize);
     let image = egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
     let texture = context.load_texture("outlines", image, egui::TextureOptions::NEAREST);
-    Found { silhouette, picture, texture }
+    MeasuredOutlines { silhouette, picture, texture }
 }
 
 impl App {
@@ -145,7 +145,7 @@ impl App {
         tessellation: &Tessellation,
         view: &SilhouetteView,
         screen: ScreenView,
-    ) -> Result<(), Trouble> {
+    ) -> Result<(), MeasureError> {
         let shows = self.shows_silhouette();
         let Some(document) = &mut self.document else { return Ok(()) };
         if !shows {
@@ -158,7 +158,7 @@ impl App {
         document.silhouette.go_on(context, &self.engine, &document.scene, tessellation, view, screen)
     }
 
-    fn found_outlines(&self) -> Option<&Found> {
+    fn found_outlines(&self) -> Option<&MeasuredOutlines> {
         let document = self.document.as_ref().filter(|_| self.shows_silhouette())?;
         let view = self.viewport.picture.seen_from()?;
         document.silhouette.found((document.scene.tessellator.generation(), view))

@@ -41,7 +41,7 @@ impl StandIn {
             let (engine, mesh, topology) = (engine.clone(), loaded.mesh.clone(), loaded.topology.clone());
             let make = move |_: &_| {
                 let mesh = Arc::new(simplified(&mesh, &topology, triangles));
-                let topology = Arc::new(Topology::of(&mesh));
+                let topology = Arc::new(Topology::new(&mesh));
                 engine.gpu.attempt(|| engine.scene_of(mesh, topology, BYTES_A_TRIANGLE * 2 * triangles as u64))?
             };
             jobs.start(context, Work::StandIn, String::new(), make, |app, _, made| {
@@ -142,7 +142,7 @@ mod tests {
         let second = mesh.triangles.iter().map(|triangle| triangle.map(|corner| corner + corners));
         mesh.triangles = Arc::new(mesh.triangles.iter().copied().chain(second).collect());
         mesh.materials.push(Material { triangles: triangles..2 * triangles, ..mesh.materials[0].clone() });
-        let few = simplified(&mesh, &Topology::of(&mesh), 3_000);
+        let few = simplified(&mesh, &Topology::new(&mesh), 3_000);
         let counts: Vec<_> = few.materials.iter().map(|material| material.triangles.len()).collect();
         assert!(counts.iter().all(|count| (250..=1_600).contains(count)), "{counts:?}");
     }
@@ -152,7 +152,7 @@ mod tests {
         let mut mesh = large();
         let detail = |corner: &Corner| CornerDetail { color: corner.position.extend(1.0), ..CornerDetail::default() };
         mesh.details = Some(Arc::new(mesh.corners.iter().map(detail).collect()));
-        let few = simplified(&mesh, &Topology::of(&mesh), 3_000);
+        let few = simplified(&mesh, &Topology::new(&mesh), 3_000);
         assert_eq!(few.details, Some(Arc::new(few.corners.iter().map(detail).collect())));
         assert!(mesh.triangles.len() > 50_000, "the mesh is large: {}", mesh.triangles.len());
         assert!((500..=3_000).contains(&few.triangles.len()), "{} triangles", few.triangles.len());

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::beside::new_generation;
+use super::companion_files::new_generation;
 use super::job_list::Work;
 use crate::app::App;
 use geometry::progress::Progress;
@@ -29,7 +29,7 @@ impl App {
             Err(error) => Err(Some(error.to_string())),
         };
         let title = format!("Loading the reference surface {}", source.title());
-        self.read_beside(context, Work::Truth, title, source.title(), load, |app, truth| {
+        self.read_companion(context, Work::Truth, title, source.title(), load, |app, truth| {
             app.truth = Some(ChosenTruth { source, truth, generation: new_generation() });
             app.settings.overlays.colors = Colors::Deviation;
         });

@@ -17,7 +17,7 @@ const WAITING: usize = 1;
 pub(crate) struct Walk<T> {
     ended: Receiver<Result<T, Stopped>>,
     /// None once everything is copied.
-    copying: Option<Copying>,
+    copying: Option<PendingReadback>,
     chunks: usize,
     wanted: Progress,
 }
@@ -26,7 +26,7 @@ pub(crate) struct Walk<T> {
 type Ended<T> = Result<Option<T>, Stopped>;
 
 /// A readback under way. It goes to the thread in its turn.
-struct Copying {
+struct PendingReadback {
     part: Part,
     next_chunk: usize,
     parts: SyncSender<Part>,
@@ -67,7 +67,7 @@ impl<T: Send + 'static> Walk<T> {
         let (parts, received) = sync_channel(WAITING);
         let wanted = Progress::default();
         let copying = match first {
-            Some(readback) => Some(Copying { part: Part::First(readback), next_chunk: 0, parts }),
+            Some(readback) => Some(PendingReadback { part: Part::First(readback), next_chunk: 0, parts }),
             None => copy_chunk(gpu, scene, 0, parts)?,
         };
         let (chunks, still_wanted) = (scene.tessellator.chunk_count(), wanted.clone());
@@ -110,7 +110,7 @@ impl<T> Walk<T> {
     }
 }
 
-impl Copying {
+impl PendingReadback {
     /// Sends the part to the thread once it has been copied, and starts to copy the next chunk.
     fn go_on(mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Self>, GpuError> {
         let (Part::First(readback) | Part::Chunk(CopiedChunk { readback, .. })) = &mut self.part;
@@ -132,12 +132,12 @@ fn copy_chunk(
     scene: &mut Scene,
     index: usize,
     parts: SyncSender<Part>,
-) -> Result<Option<Copying>, GpuError> {
+) -> Result<Option<PendingReadback>, GpuError> {
     if index >= scene.tessellator.chunk_count() {
         return Ok(None);
     }
     let part = Part::Chunk(CopiedChunk::start(gpu, scene, index)?);
-    Ok(Some(Copying { part, next_chunk: index + 1, parts }))
+    Ok(Some(PendingReadback { part, next_chunk: index + 1, parts }))
 }
 
 impl Parts<'_> {

@@ -89,7 +89,7 @@ impl App {
         }
         let mut settings = if starts_over { all } else { missing };
         // The window's own setting comes first.
-        let own = Setting::of(&self.settings);
+        let own = Setting::new(&self.settings);
         settings.sort_by_key(|setting| Some(*setting) != own);
         let is_listed = settings.first().is_some_and(|first| Some(*first) == own);
         let current = self.unknown_current().filter(|_| !is_listed);
@@ -117,7 +117,7 @@ impl App {
             return None;
         }
         let (charted, current) = (self.panels.chart.charted()?, whole(&self.settings));
-        let listed = Setting::of(&current).is_some_and(|own| charted.has(&own));
+        let listed = Setting::new(&current).is_some_and(|own| charted.has(&own));
         let known = charted.current.is_some_and(|(known, _)| known == current);
         (!listed && !known).then_some(current)
     }

@@ -117,7 +117,7 @@ impl<'a> Diagram<'a> {
                 Spot::Row(_) => {}
                 Spot::Current => {
                     let Some((settings, _)) = &self.charted.current else { continue };
-                    marker(&canvas.painter, place, &MethodStyle::of_surface(settings.tessellation.surface), &inks);
+                    marker(&canvas.painter, place, &MethodStyle::from_surface(settings.tessellation.surface), &inks);
                     self.ring(ui, canvas, place);
                 }
             }

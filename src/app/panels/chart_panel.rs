@@ -49,7 +49,7 @@ impl App {
             let mut applied = None;
             if let Some(charted) = self.panels.chart.charted().filter(|charted| !charted.subject.rows.is_empty()) {
                 let is_stale = self.chart_outdated().is_some();
-                let own = Setting::of(&self.settings).filter(|_| !self.uses_surface_shader());
+                let own = Setting::new(&self.settings).filter(|_| !self.uses_surface_shader());
                 let diagram = Diagram { charted, cost: self.panels.chart.cost, is_stale, own };
                 // While it is measured, the legend has what is still to come, so that it doesn't grow.
                 let plan = self.charting().map(|_| &self.panels.chart.plan);
@@ -248,7 +248,7 @@ fn legend(ui: &mut egui::Ui, charted: &Charted, plan: Option<&Plan>, is_stale: b
     ui.horizontal_wrapped(|ui| {
         for surface in Surface::ALL.into_iter().filter(|surface| has_surface(*surface)) {
             let place = legend_entry(ui, 10.0, surface.label(), surface.text());
-            marker(ui.painter(), place.center(), &MethodStyle::of_surface(surface), &inks);
+            marker(ui.painter(), place.center(), &MethodStyle::from_surface(surface), &inks);
         }
         let sample = |ui: &egui::Ui, place: egui::Rect, stroke: egui::Stroke, dash: Option<[f64; 2]>| {
             line(ui.painter(), &[place.left_center(), place.right_center()], stroke, dash);

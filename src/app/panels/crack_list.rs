@@ -2,7 +2,6 @@
 
 use egui::RichText;
 
-use super::statistics::EDGE_KINDS;
 use crate::app::App;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{FoundRow, columns, fact, found_list, list, list_title, number, swatch};
@@ -14,6 +13,7 @@ use inspect::gates::{EdgeSpot, Spot};
 use inspect::measure::{CrackedEdge, EdgeSide, Measured};
 use inspect::render::LineSegment;
 use inspect::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
+use inspect::settings::Choice;
 use inspect::settings::SplitSide;
 
 /// Half the widths of the selected edge's outline, of its first side, and of the others, in px.
@@ -241,7 +241,7 @@ fn side_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
 }
 
 pub(in crate::app) fn kind_name(kind: EdgeKind) -> &'static str {
-    EDGE_KINDS.iter().find(|(known, ..)| *known == kind).map_or("", |(_, name, _)| name)
+    kind.label()
 }
 
 /// A row for each point of an edge with the distance between its sides. The hover text has the positions.

@@ -4,7 +4,7 @@ use egui::RichText;
 
 use crate::app::App;
 use crate::app::jobs::deviation_job::{DeviationBasis, DeviationJob, DeviationResult};
-use crate::app::jobs::measure_job::Trouble;
+use crate::app::jobs::measure_job::MeasureError;
 use crate::app::panels::option_rows::option_row;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
@@ -60,7 +60,7 @@ impl App {
     /// Goes on measuring if the overlay is on, no clip plays and no picture is under way. Without a reference surface both
     /// halves are compared with the limit surface of the right one, which has these inputs. The limit surface of a flat left
     /// half would be that half itself.
-    pub(in crate::app) fn deviate(&mut self, inputs: &Inputs) -> Result<(), Trouble> {
+    pub(in crate::app) fn deviate(&mut self, inputs: &Inputs) -> Result<(), MeasureError> {
         if !self.shows_deviation() || self.viewport.playback.is_playing() {
             let halves = self.document.iter_mut().flat_map(|document| &mut document.halves);
             halves.for_each(|half| half.deviation.stop());

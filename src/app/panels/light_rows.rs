@@ -2,7 +2,7 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
-use crate::commands::{Beside, ENVIRONMENT, Purpose};
+use crate::commands::{CompanionFile, ENVIRONMENT, Purpose};
 use inspect::settings::{Lighting, options};
 
 impl App {
@@ -39,7 +39,7 @@ impl App {
         let is_new = self.settings.lighting == Lighting::Environment && before != Lighting::Environment;
         if is_new && self.environment.is_none() {
             self.settings.lighting = before;
-            self.ask_for(ui.ctx(), Purpose::Beside(Beside::Environment));
+            self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::Environment));
         }
     }
 
@@ -48,7 +48,7 @@ impl App {
         let Some(open) = &self.environment else {
             ui.label("");
             if ui.button("Open environment…").on_hover_text(ENVIRONMENT).clicked() {
-                self.ask_for(ui.ctx(), Purpose::Beside(Beside::Environment));
+                self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::Environment));
             }
             ui.end_row();
             return;
@@ -57,7 +57,7 @@ impl App {
         ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
         ui.end_row();
         ui.label("");
-        let hover = "Closes the panorama of light. The studio shines again.";
+        let hover = "Close the environment map; studio light is used again.";
         if ui.button("Close environment").on_hover_text(hover).clicked() {
             self.close_environment();
         }

@@ -2,8 +2,8 @@
 
 use super::option_rows::with_note;
 use crate::app::App;
-use crate::app::jobs::beside::OpenFile;
-use crate::commands::{Beside, MATCAP_IMAGE, Purpose};
+use crate::app::jobs::companion_files::OpenFile;
+use crate::commands::{CompanionFile, MATCAP_IMAGE, Purpose};
 use inspect::settings::{Choice, Matcap, options};
 
 impl App {
@@ -26,7 +26,7 @@ impl App {
                 }
             }
             if ui.selectable_label(image.is_some(), "Image file…").on_hover_text(MATCAP_IMAGE).clicked() {
-                self.ask_for(ui.ctx(), Purpose::Beside(Beside::Matcap));
+                self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::Matcap));
             }
         });
         combo.response.labelled_by(label.id).on_hover_text(with_note(options::MATCAP.text, "--matcap, --matcap-image"));

@@ -15,7 +15,6 @@ mod leak_list;
 mod light_rows;
 mod matcap;
 mod option_rows;
-mod own_shaders;
 mod parts;
 mod patch_explanation;
 mod patch_panel;
@@ -25,6 +24,7 @@ mod sides;
 mod statistics;
 mod status_line;
 mod toolbar;
+mod user_shaders;
 mod verdict;
 
 use geometry::tessellate::Displacement;

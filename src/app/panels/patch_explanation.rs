@@ -142,11 +142,11 @@ impl ShownExplanation<'_> {
 
     fn least_rows(&self, ui: &mut Ui) {
         let Some((explained, factors)) = self.explained.zip(self.factors) else {
-            ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "own least")));
+            ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "minimum")));
             ui.label(dense(format!("{:<12}{UNKNOWN:>6}", "drawn")));
             return;
         };
-        let least = explained.own_least;
+        let least = explained.minimum;
         let [a, b, c] = least.sides.map(factor_text);
         let mut hover = format!(
             "The fewest triangles with which this patch alone would keep the tolerance, if it chose all its factors itself: {a}, \
@@ -156,10 +156,10 @@ impl ShownExplanation<'_> {
         if !is_enough(least.inside) {
             hover += " The most segments that there are aren't enough for it, and these are as many.";
         }
-        ui.label(dense(format!("{:<12}{:>6} triangles", "own least", least.triangles))).on_hover_text(hover);
+        ui.label(dense(format!("{:<12}{:>6} triangles", "minimum", least.triangles))).on_hover_text(hover);
         let has = triangle_count(factors);
         let times = f64::from(has) / f64::from(least.triangles.max(1));
-        let hover = "The triangles that are drawn, and how many times as many as the own least they are. The overlay of excess \
+        let hover = "The triangles that are drawn, and and how many times the minimum that is. The overlay of excess \
                      triangles shows this number for all patches.";
         ui.label(dense(format!("{:<12}{has:>6} triangles{times:>5.2}x", "drawn"))).on_hover_text(hover);
     }

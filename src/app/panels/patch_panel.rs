@@ -5,7 +5,6 @@ use egui::{RichText, Ui};
 use super::crack_list::kind_name;
 use super::patch_explanation::ShownExplanation;
 use super::patch_pattern::{pattern_plot, weights_text};
-use super::statistics::EDGE_KINDS;
 use crate::app::jobs::explain_job::EmittedPatch;
 use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
 use crate::app::text::{factor, short};
@@ -21,6 +20,7 @@ use geometry::tessellate::{
 use inspect::measure::EdgeSide;
 use inspect::render::PickedTriangle;
 use inspect::render::layout::FACTOR_COLORS;
+use inspect::settings::Choice;
 
 enum Wish {
     Select(Option<u32>),
@@ -256,7 +256,7 @@ impl SelectedPatch<'_> {
                 if response.on_hover_text(format!("Selects the edge, number {}.", side.edge)).clicked() {
                     *wish = Some(Wish::Edge(side.edge));
                 }
-                let hover = EDGE_KINDS.iter().find(|(kind, ..)| *kind == edge.kind).map_or("", |(.., hover)| hover);
+                let hover = edge.kind.text();
                 ui.label(kind_name(edge.kind)).on_hover_text(hover);
                 let others = self.topology.edge_sides(edge).iter().map(|side| side.patch());
                 let others: Vec<_> = others.filter(|&patch| patch != self.patch).collect();

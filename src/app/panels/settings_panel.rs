@@ -145,7 +145,7 @@ impl App {
             .into_iter()
             .chain(names.map(|name| (Some(name), name, "Primitives have the materials of this variant.")))
             .collect();
-        let hover = "Which of the file's variants the materials are those of (--variant).";
+        let hover = "Material variant to show (--variant).";
         chooser(ui, "Variant", hover, &mut chosen, &choices);
         if chosen != own {
             let chosen = chosen.map(str::to_owned);

@@ -8,19 +8,7 @@ use geometry::mesh::EdgeKind;
 use geometry::view::ulp;
 use inspect::measure::{Cracks, Culled, SeamTurns};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
-
-/// Name and explanation of each kind of edge.
-pub(in crate::app) const EDGE_KINDS: [(EdgeKind, &str, &str); 5] = [
-    (EdgeKind::Smooth, "smooth", "Edges of two triangles that share normals and uvs."),
-    (
-        EdgeKind::Split,
-        "split normal",
-        "Edges of two triangles whose normals differ at an end. PN triangles crack here.",
-    ),
-    (EdgeKind::Seam, "uv seam", "Edges of two triangles that share normals but not uvs."),
-    (EdgeKind::Boundary, "boundary", "Edges of only one triangle: a hole or a border."),
-    (EdgeKind::NonManifold, "non-manifold", "Edges of three or more triangles."),
-];
+use inspect::settings::Choice;
 
 impl App {
     pub(in crate::app) fn facts_panel(&mut self, ui: &mut egui::Ui) {
@@ -68,9 +56,9 @@ impl App {
         let edges = &document.edges;
         let counts = [edges.smooth, edges.split, edges.seam, edges.boundary, edges.non_manifold];
         egui::Grid::new("edges").num_columns(3).min_col_width(14.0).show(ui, |ui| {
-            for ((kind, name, hover), count) in EDGE_KINDS.into_iter().zip(counts) {
+            for (kind, count) in EdgeKind::ALL.into_iter().zip(counts) {
                 swatch(ui, edge_color(kind));
-                ui.label(name).on_hover_text(hover);
+                ui.label(kind.label()).on_hover_text(kind.text());
                 number(ui, &grouped(count as u64));
                 ui.end_row();
             }

@@ -170,7 +170,7 @@ fn absolute(value: &Value) -> Option<String> {
 fn read_unit(value: &Value) -> Option<FileUnit> {
     match value {
         Value::String(name) => LengthUnit::named(name).map(FileUnit::Named),
-        _ => FileUnit::of_metres(value.as_f64()? as f32),
+        _ => FileUnit::from_metres(value.as_f64()? as f32),
     }
 }
 

@@ -60,7 +60,7 @@ impl App {
         let Some(document) = &self.document else { return };
         let moment = document.moment;
         if let Some(camera) = document.loaded.mesh.cameras_at(moment).get(index) {
-            let camera = Camera::of_file(camera, &document.scene.bounds);
+            let camera = Camera::from_file(camera, &document.scene.bounds);
             self.viewport.camera = camera;
             self.viewport.through = Some(FollowedCamera { index, moment, camera });
         }

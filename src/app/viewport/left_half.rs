@@ -5,9 +5,9 @@ use std::time::Duration;
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::job_list::Work;
-use crate::app::jobs::measure_job::{Results, Seen, Trouble};
-use crate::app::jobs::own_shader_job::OpenShader;
+use crate::app::jobs::measure_job::{MeasureError, Results, Seen};
 use crate::app::jobs::scenes::arena_bytes;
+use crate::app::jobs::user_shader_job::OpenShader;
 use gpu::GpuError;
 use inspect::measure::Measured;
 use inspect::render::Scene;
@@ -36,7 +36,7 @@ impl App {
         if !is_wanted {
             return document.scene.set_left(None);
         }
-        let (gpu, make) = (self.engine.gpu.clone(), document.scene.beside(arena_bytes(&self.engine)));
+        let (gpu, make) = (self.engine.gpu.clone(), document.scene.sibling(arena_bytes(&self.engine)));
         let make = move |_: &_| gpu.attempt(make)?;
         self.jobs.start(context, Work::LeftHalf, String::new(), make, |app, _, made| app.take_left(made));
         Ok(())
@@ -62,7 +62,7 @@ impl App {
     }
 
     /// Measures the left half's cracks and the points of its edges while they are shown.
-    pub(in crate::app) fn measure_left(&mut self, seen: &Seen) -> Result<(), Trouble> {
+    pub(in crate::app) fn measure_left(&mut self, seen: &Seen) -> Result<(), MeasureError> {
         let is_selected = self.selected_edge().is_some() || self.selected_triangle().is_some();
         let is_wanted = self.settings.half(SplitSide::Left).is_some() && (self.settings.overlays.cracks || is_selected);
         let Some(document) = self.document.as_mut() else { return Ok(()) };

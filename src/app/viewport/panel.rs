@@ -6,9 +6,9 @@ use egui::{PointerButton, Sense};
 use glam::{Vec2, vec2};
 
 use super::axis_gizmo::axes_place;
-use super::picture::Wanted;
+use super::picture::PictureRequest;
 use crate::app::jobs::job_list::Work;
-use crate::app::jobs::measure_job::{Seen, Trouble};
+use crate::app::jobs::measure_job::{MeasureError, Seen};
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
 use crate::app::{App, Document};
@@ -99,7 +99,7 @@ impl App {
     }
 
     /// Goes on with drawing and all measurements.
-    fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), Trouble> {
+    fn advance(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<(), MeasureError> {
         // Callbacks of readbacks run here; a lost device reports through its own callback.
         self.engine.gpu.poll(wgpu::PollType::Poll);
         self.viewport.picture.fit(&self.painting, &self.engine, size)?;
@@ -142,7 +142,11 @@ impl App {
     }
 
     /// Returns what the picture is to show, and whether all that it needs is there; none without a mesh.
-    fn wanted(&mut self, context: &egui::Context, size: [u32; 2]) -> Result<Option<(Wanted, bool)>, Trouble> {
+    fn wanted(
+        &mut self,
+        context: &egui::Context,
+        size: [u32; 2],
+    ) -> Result<Option<(PictureRequest, bool)>, MeasureError> {
         let (deviation, moment) = (self.deviation_shown(), self.moment());
         self.give_from_files()?;
         let from_files = self.wanted_from_files();
@@ -152,7 +156,7 @@ impl App {
         let camera = self.viewport.camera;
         let seen = camera.lod_view(viewport, &document.scene.bounds);
         let view = self.viewport.frozen.map_or(seen, |frozen| frozen.view);
-        let wanted = Wanted {
+        let wanted = PictureRequest {
             document: document.generation,
             moment: document.moment,
             lines: document.highlight.map_or(0, |marked| marked.generation),
@@ -168,7 +172,12 @@ impl App {
     }
 
     /// Measures what is shown, if it is at rest.
-    fn measure_shown(&mut self, context: &egui::Context, wanted: &Wanted, size: [u32; 2]) -> Result<(), Trouble> {
+    fn measure_shown(
+        &mut self,
+        context: &egui::Context,
+        wanted: &PictureRequest,
+        size: [u32; 2],
+    ) -> Result<(), MeasureError> {
         let Some(document) = &mut self.document else { return Ok(()) };
         let is_busy = self.viewport.playback.is_playing() || self.viewport.picture.in_flight.is_some();
         if is_busy || !document.scene.tessellator.is_counted() {
@@ -193,7 +202,7 @@ impl App {
     }
 
     /// Asks for the next frame, if anything is under way.
-    fn ask_for_next_frame(&mut self, context: &egui::Context) -> Result<(), Trouble> {
+    fn ask_for_next_frame(&mut self, context: &egui::Context) -> Result<(), MeasureError> {
         let mut halves = self.document.iter().flat_map(|document| &document.halves);
         let measures = halves.clone().any(|half| half.deviation.is_busy()) || self.jobs.has(Work::LeftHalf);
         let copies = halves.any(|half| half.measure.is_busy());
@@ -323,8 +332,8 @@ impl App {
         let widest = notes.iter().map(|(galley, _)| galley.size().x).fold(0.0, f32::max);
         // In a narrow picture they are above the progress.
         let progress = progress_place(rect);
-        let is_beside = !self.shows_progress() || rect.left() + 10.0 + widest + 12.0 < progress.left();
-        let bottom = if is_beside { rect.bottom() } else { progress.top() };
+        let is_companion = !self.shows_progress() || rect.left() + 10.0 + widest + 12.0 < progress.left();
+        let bottom = if is_companion { rect.bottom() } else { progress.top() };
         let mut position = egui::pos2(rect.left() + 10.0, bottom - 10.0);
         for (galley, text) in notes {
             let place = egui::Align2::LEFT_BOTTOM.anchor_size(position, galley.size());
@@ -371,7 +380,7 @@ impl App {
             }
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         } else if self.viewport.picture.cancelled.is_some() {
-            let hover = "Draws the picture with these settings after all. Any change of settings draws it too.";
+            let hover = "Draw anyway. Changing any setting also redraws.";
             if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, "Draw", hover) {
                 self.viewport.picture.cancelled = None;
                 ui.ctx().request_repaint();

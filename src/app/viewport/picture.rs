@@ -19,7 +19,7 @@ use inspect::settings::{ColorSource, Settings, SplitSide};
 
 /// Everything that the picture depends on.
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Wanted {
+pub(crate) struct PictureRequest {
     pub document: u64,
     pub moment: Option<Moment>,
     pub lines: u64,
@@ -34,7 +34,7 @@ pub(crate) struct Wanted {
     pub viewport: Vec2,
 }
 
-impl Wanted {
+impl PictureRequest {
     /// The inputs of a half's tessellation, if there is such a half.
     pub(super) fn inputs_of(&self, half: SplitSide) -> Option<Inputs> {
         Some(Inputs {
@@ -49,7 +49,7 @@ impl Wanted {
 
 /// A picture that is being drawn. Each step is a submission of its own, so that the window can be drawn in between.
 pub(crate) struct Drawing {
-    wanted: Wanted,
+    wanted: PictureRequest,
     start: Instant,
     /// How many of the `steps` have been submitted.
     pub given: usize,
@@ -78,14 +78,14 @@ pub(crate) struct Picture {
     pub target: Option<(Target, ShownPicture)>,
     /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
     before: Option<ShownPicture>,
-    pub drawn: Option<Wanted>,
+    pub drawn: Option<PictureRequest>,
     /// The document of the last picture that was drawn, in whatever size.
     shows: Option<u64>,
     /// The picture that the device is counting for. It is drawn before any newer one, so that a long drag shows pictures.
-    counting: Option<Wanted>,
+    counting: Option<PictureRequest>,
     /// The picture that is being drawn, step by step.
     pub drawing: Option<Drawing>,
-    pub cancelled: Option<Wanted>,
+    pub cancelled: Option<PictureRequest>,
     /// Whether the picture shown is not the one wanted.
     pub outdated: bool,
     timing: Timing,
@@ -168,7 +168,7 @@ impl Picture {
     /// A pixel of the last picture, counted from the left and the top, and the half whose scene is there. Where the left
     /// half shows the untessellated mesh, that is the right half's scene.
     pub(crate) fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
-        let Wanted { clip_from_object, settings, .. } = self.drawn?;
+        let PictureRequest { clip_from_object, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
         let pixel = Pixel { clip_from_object, size, at, split: settings.split };
         if settings.half(SplitSide::Left).is_none() {
@@ -179,7 +179,7 @@ impl Picture {
     }
 
     pub(crate) fn seen_from(&self) -> Option<ScreenView> {
-        let Wanted { clip_from_object, viewport, .. } = self.drawn?;
+        let PictureRequest { clip_from_object, viewport, .. } = self.drawn?;
         Some(ScreenView { clip_from_object, viewport })
     }
 
@@ -245,7 +245,7 @@ impl Picture {
         &mut self,
         engine: &Engine,
         document: &mut Document,
-        wanted: &Wanted,
+        wanted: &PictureRequest,
         ms: f64,
     ) -> Result<(), GpuError> {
         self.counting = self.counting.filter(|counting| counting.document == document.generation);
@@ -254,8 +254,9 @@ impl Picture {
         };
         self.drawing = self.drawing.take_if(&mut keeps_on);
         // Selecting something doesn't draw a picture whose drawing was cancelled.
-        let same =
-            |cancelled: &Wanted| Wanted { lines: wanted.lines, deviation: wanted.deviation, ..*cancelled } == *wanted;
+        let same = |cancelled: &PictureRequest| {
+            PictureRequest { lines: wanted.lines, deviation: wanted.deviation, ..*cancelled } == *wanted
+        };
         self.cancelled = self.cancelled.filter(same);
         let under_way = self.drawing.as_ref().map(|drawing| drawing.wanted).or(self.counting);
         let wanted = under_way.unwrap_or(*wanted);
@@ -297,7 +298,13 @@ impl Picture {
 
     /// Lets the device count what each half will emit, with the wanted inputs if `anew` is set. Returns true once the counts
     /// are known, and false while the left half is still being made.
-    fn count(&mut self, engine: &Engine, scene: &mut Scene, wanted: &Wanted, anew: bool) -> Result<bool, GpuError> {
+    fn count(
+        &mut self,
+        engine: &Engine,
+        scene: &mut Scene,
+        wanted: &PictureRequest,
+        anew: bool,
+    ) -> Result<bool, GpuError> {
         let mut is_counted = true;
         for half in SplitSide::BOTH {
             let Some(inputs) = wanted.inputs_of(half) else { continue };
@@ -320,8 +327,8 @@ impl Picture {
 
     /// Whether the last picture stays until the new one's deviation is known. It does so for an unchanged camera, where
     /// a picture without deviation would only flicker.
-    fn holds(&self, scene: &Scene, wanted: &Wanted) -> bool {
-        let from_here = |drawn: &Wanted| {
+    fn holds(&self, scene: &Scene, wanted: &PictureRequest) -> bool {
+        let from_here = |drawn: &PictureRequest| {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
         // Nothing may be measured of a surface shader.
@@ -344,7 +351,7 @@ impl Picture {
     }
 
     /// Handles a picture that the device refused: it isn't drawn again by itself, nor shown, as it may be half drawn.
-    pub(crate) fn refuse(&mut self, scene: &mut Scene, wanted: &Wanted) {
+    pub(crate) fn refuse(&mut self, scene: &mut Scene, wanted: &PictureRequest) {
         (self.drawn, self.drawing, self.counting) = (None, None, None);
         self.cancelled = Some(*wanted);
         for half in SplitSide::BOTH {

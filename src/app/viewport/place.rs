@@ -3,7 +3,7 @@
 use glam::vec2;
 
 use crate::app::App;
-use crate::app::jobs::measure_job::Trouble;
+use crate::app::jobs::measure_job::MeasureError;
 use crate::app::jobs::walk::{Parts, Walk};
 use geometry::tessellate::factors::patch_is_culled;
 use inspect::gates::{Spot, Standpoints};
@@ -26,7 +26,7 @@ impl App {
     pub(in crate::app) fn show_place(&mut self, half: SplitSide, spot: &Spot, patch: Option<u32>) {
         let Some(document) = &self.document else { return };
         let (camera, size) = (&self.viewport.camera, self.viewport.picture.size());
-        let standpoints = Standpoints::of(spot, camera, size, &document.scene.bounds);
+        let standpoints = Standpoints::new(spot, camera, size, &document.scene.bounds);
         let factors = |patch| self.results().map(|results| results.found.outlines.factors(patch));
         // A patch that emitted nothing would still emit nothing.
         if !patch.and_then(factors).is_some_and(patch_is_culled) {
@@ -41,7 +41,7 @@ impl App {
     ///
     /// # Errors
     /// The device was lost, or the thread that follows the lines of sight panicked.
-    pub(in crate::app) fn go_on_showing(&mut self, is_drawn: bool) -> Result<(), Trouble> {
+    pub(in crate::app) fn go_on_showing(&mut self, is_drawn: bool) -> Result<(), MeasureError> {
         let Some(document) = &mut self.document else { return Ok(()) };
         let Some(showing) = &mut document.showing else { return Ok(()) };
         let scene = document.scene.half_mut(showing.half);
@@ -71,7 +71,7 @@ impl App {
             Some(Ok(sight)) => self.look(sight.as_ref().map(Sight::clear).unwrap_or_default()),
             Some(Err(stopped)) => {
                 self.look(&[]);
-                return Err(Trouble::Looking(stopped));
+                return Err(MeasureError::Looking(stopped));
             }
         }
         Ok(())

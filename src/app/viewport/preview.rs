@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::picture::{Picture, Wanted};
+use super::picture::{Picture, PictureRequest};
 use super::preview_pace::PreviewPace;
 use crate::app::jobs::job_list::Jobs;
 use crate::app::painting::{Painting, ShownPicture};
@@ -59,7 +59,7 @@ pub(crate) struct Preview {
     finest: u32,
     pace: PreviewPace,
     /// The preview that was drawn last, until the full picture follows.
-    drawn: Option<(Wanted, Shape)>,
+    drawn: Option<(PictureRequest, Shape)>,
     /// The vertices and triangles of the full picture, while previews use its tessellator.
     totals: Option<(u64, u64)>,
     drawings: u64,
@@ -110,7 +110,7 @@ impl Preview {
     }
 
     /// What the preview was drawn for and its shape, if it is shown: the full picture is of an earlier camera.
-    pub(crate) fn shown(&self, picture: &Picture) -> Option<(&Wanted, Shape)> {
+    pub(crate) fn shown(&self, picture: &Picture) -> Option<(&PictureRequest, Shape)> {
         let full = picture.drawn.as_ref().map(|drawn| drawn.camera);
         self.drawn.as_ref().filter(|(drawn, _)| Some(drawn.camera) != full).map(|(drawn, shape)| (drawn, *shape))
     }
@@ -176,7 +176,13 @@ impl Preview {
 
     /// Draws what is wanted into the preview's target, unless it shows that already or the device has enough to do. The
     /// counts come back first.
-    fn draw(&mut self, engine: &Engine, scene: &mut Scene, wanted: &Wanted, shape: Shape) -> Result<(), GpuError> {
+    fn draw(
+        &mut self,
+        engine: &Engine,
+        scene: &mut Scene,
+        wanted: &PictureRequest,
+        shape: Shape,
+    ) -> Result<(), GpuError> {
         if !count(engine, scene, wanted)? || !self.pace.is_free() {
             return Ok(());
         }
@@ -198,7 +204,7 @@ impl Preview {
 }
 
 /// Lets the device count what each half emits. Returns true once that is known.
-pub(super) fn count(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Result<bool, GpuError> {
+pub(super) fn count(engine: &Engine, scene: &mut Scene, wanted: &PictureRequest) -> Result<bool, GpuError> {
     let mut is_counted = true;
     for half in SplitSide::BOTH {
         let Some(inputs) = wanted.inputs_of(half) else { continue };
@@ -223,7 +229,7 @@ fn shape_of(
     context: &egui::Context,
     engine: &Engine,
     document: &Document,
-    wanted: &Wanted,
+    wanted: &PictureRequest,
     is_frozen: bool,
 ) -> Shape {
     let is_software = engine.gpu.is_software();
@@ -273,10 +279,10 @@ impl App {
     ///
     /// # Errors
     /// The device was lost, or has no room for the preview.
-    pub(super) fn preview(&mut self, context: &egui::Context, full: &Wanted) -> Result<bool, GpuError> {
+    pub(super) fn preview(&mut self, context: &egui::Context, full: &PictureRequest) -> Result<bool, GpuError> {
         let left = self.viewport.preview.follow(self.viewport.camera);
         // While a clip plays, the picture that is shown is always of an earlier moment.
-        let is_seen = |drawn: &Wanted| drawn == full || (self.is_playing() && drawn.camera == full.camera);
+        let is_seen = |drawn: &PictureRequest| drawn == full || (self.is_playing() && drawn.camera == full.camera);
         if self.viewport.picture.drawn.as_ref().is_some_and(is_seen) {
             self.viewport.preview.end();
         }
@@ -316,19 +322,23 @@ impl App {
     }
 
     /// What a preview of the wanted picture draws; none before a mesh is open.
-    pub(super) fn cheaper_picture(&mut self, context: &egui::Context, full: &Wanted) -> Option<(Wanted, Shape)> {
+    pub(super) fn cheaper_picture(
+        &mut self,
+        context: &egui::Context,
+        full: &PictureRequest,
+    ) -> Option<(PictureRequest, Shape)> {
         let document = self.document.as_ref()?;
         let shape = shape_of(&mut self.jobs, context, &self.engine, document, full, self.viewport.frozen.is_some());
         let settings = settings_of(shape, &full.settings);
         let inputs = Inputs::new(&settings.tessellation, full.inputs.view);
-        Some((Wanted { settings, inputs, ..*full }, shape))
+        Some((PictureRequest { settings, inputs, ..*full }, shape))
     }
 
     /// The view of what is shown: of a preview, or of the full picture.
     pub(in crate::app) fn shown_view(&self) -> Option<ScreenView> {
         let picture = &self.viewport.picture;
         match self.viewport.preview.shown(picture) {
-            Some((Wanted { clip_from_object, viewport, .. }, _)) => {
+            Some((PictureRequest { clip_from_object, viewport, .. }, _)) => {
                 Some(ScreenView { clip_from_object: *clip_from_object, viewport: *viewport })
             }
             None => picture.seen_from(),

@@ -170,7 +170,7 @@ impl App {
         let at = corners.into_iter().sum::<Vec3>() / 3.0 + edges.iter().map(bulge).sum::<Vec3>() / 3.0;
         let outlines = self.results().map(|results| &results.found.outlines);
         let facing = patch_facing(topology, patch, outlines).normalize_or_zero().as_vec3();
-        let spot = PatchSpot { facing, ..PatchSpot::of(corners, at) };
+        let spot = PatchSpot { facing, ..PatchSpot::new(corners, at) };
         self.show_place(SplitSide::Right, &Spot::Patch(spot), Some(patch));
     }
 

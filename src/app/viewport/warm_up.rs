@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::picture::Wanted;
+use super::picture::PictureRequest;
 use super::preview::{Shape, count};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
@@ -36,8 +36,8 @@ pub(crate) struct WarmUp {
 
 enum Step {
     /// A scene of its own is made, since that of the window keeps the triangles of its picture.
-    Making(BackgroundJob<Result<Scene, GpuError>>, Wanted),
-    Counting(Box<Scene>, Wanted),
+    Making(BackgroundJob<Result<Scene, GpuError>>, PictureRequest),
+    Counting(Box<Scene>, PictureRequest),
     /// Set once the device has finished the picture.
     Drawing(Arc<AtomicBool>),
 }
@@ -96,7 +96,7 @@ impl WarmUp {
 }
 
 /// Draws a draft of what is wanted. What is returned is set once the device has finished it.
-fn draw(engine: &Engine, scene: &mut Scene, wanted: &Wanted) -> Result<Arc<AtomicBool>, GpuError> {
+fn draw(engine: &Engine, scene: &mut Scene, wanted: &PictureRequest) -> Result<Arc<AtomicBool>, GpuError> {
     let target = Target::draft(&engine.gpu, [SIDE; 2])?;
     let mut timing = Timing::Off;
     let mut recorder = Recorder::new(&engine.gpu, &mut timing);
@@ -119,7 +119,7 @@ fn of_one_scene(mut settings: Settings) -> Settings {
 impl App {
     /// Draws the preview that a drag would begin with, once for each mesh and pipelines, if the window shows the full picture and has
     /// nothing else to do. Drivers of graphics cards compile when a pipeline is made, and fast, so that nothing is done for these.
-    pub(super) fn warm_up(&mut self, context: &egui::Context, full: &Wanted) {
+    pub(super) fn warm_up(&mut self, context: &egui::Context, full: &PictureRequest) {
         if !self.engine.gpu.is_software() {
             return;
         }
@@ -154,11 +154,11 @@ impl App {
             return;
         }
         warm_up.done.1.push(pipelines.clone());
-        let (engine, make) = (self.engine.clone(), scene.beside(arena_bytes(&self.engine)));
+        let (engine, make) = (self.engine.clone(), scene.sibling(arena_bytes(&self.engine)));
         let make = move || -> Result<Scene, GpuError> {
             engine.renderer.prepare_draft(&pipelines)?;
             engine.gpu.attempt(make)?
         };
-        warm_up.step = Some(Step::Making(BackgroundJob::start(context, make), Wanted { settings, ..wanted }));
+        warm_up.step = Some(Step::Making(BackgroundJob::start(context, make), PictureRequest { settings, ..wanted }));
     }
 }

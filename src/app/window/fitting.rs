@@ -22,7 +22,7 @@ impl Fitting {
             return;
         }
         let start = *self.start.get_or_insert_with(Instant::now);
-        let frame = context.input(|input| Frame::of(input.viewport()));
+        let frame = context.input(|input| Frame::from_viewport(input.viewport()));
         self.is_done = frame.is_some() || start.elapsed() > TOLD_WITHIN;
         if let Some(size) = frame.and_then(|frame| frame.fitting()) {
             context.send_viewport_cmd(ViewportCommand::InnerSize(size));
@@ -40,7 +40,7 @@ struct Frame {
 
 impl Frame {
     /// None while the window has no frame or isn't free to have another size.
-    fn of(window: &ViewportInfo) -> Option<Self> {
+    fn from_viewport(window: &ViewportInfo) -> Option<Self> {
         let fills = [window.maximized, window.fullscreen].contains(&Some(true));
         let (inner, outer) = (window.inner_rect?.size(), window.outer_rect?.size());
         (outer != inner && !fills).then_some(Self { inner, outer, screen: window.monitor_size? })
@@ -71,7 +71,7 @@ mod tests {
 
     #[test]
     fn a_window_and_its_frame_fit_the_screen() {
-        let fitting = |window: &ViewportInfo| Frame::of(window).and_then(Frame::fitting);
+        let fitting = |window: &ViewportInfo| Frame::from_viewport(window).and_then(Frame::fitting);
         assert_eq!(fitting(&window(vec2(1280.0, 720.0))), Some(vec2(1280.0, 696.0)));
         assert_eq!(fitting(&window(vec2(1400.0, 700.0))), Some(vec2(1280.0, 696.0)));
         assert_eq!(fitting(&window(vec2(1280.0, 696.0))), None);
@@ -79,6 +79,6 @@ mod tests {
         assert_eq!(fitting(&maximized), None);
         let frameless =
             ViewportInfo { outer_rect: window(vec2(1280.0, 720.0)).inner_rect, ..window(vec2(1280.0, 720.0)) };
-        assert!(Frame::of(&frameless).is_none(), "the frame may come later");
+        assert!(Frame::from_viewport(&frameless).is_none(), "the frame may come later");
     }
 }

@@ -17,7 +17,7 @@ use inspect::settings::{Colors, Overlays, Settings};
 use inspect::shot::legend::{Named, draw_key};
 use inspect::shot::{ReferenceSurface, Shot, ShotView, Subject, write_picture};
 use inspect::truth::Truth;
-use lab::compare::{Comparison, ForeignMesh, Ours, SideDifference, patch_starts};
+use lab::compare::{Comparison, ForeignMesh, OurTessellation, SideDifference, patch_starts};
 
 /// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
 /// off the surface.
@@ -40,13 +40,13 @@ pub(super) fn draw(
     path: &Path,
     loaded: &Loaded,
     camera: &Camera,
-    ours: &Ours,
+    ours: &OurTessellation,
     theirs: &ForeignMesh,
     comparison: &Comparison,
 ) -> Result<(), CliError> {
     let engine = Engine::chosen(&args.adapter.choice())?;
     let Some(mesh) = their_mesh(theirs, comparison) else { return Err(CliError::NothingToDraw) };
-    let topology = Topology::of(&mesh);
+    let topology = Topology::new(&mesh);
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
     let shown = Loaded { read: mesh.clone(), mesh, topology, ..loaded.clone() };
     let there = differences(ours, comparison).into_iter().filter(|(_, lines)| !lines.is_empty());
@@ -86,15 +86,15 @@ fn their_mesh(theirs: &ForeignMesh, comparison: &Comparison) -> Option<Mesh> {
 }
 
 /// What we emit, as the surface that theirs is compared with.
-fn our_mesh(ours: &Ours) -> Option<Truth> {
+fn our_mesh(ours: &OurTessellation) -> Option<Truth> {
     let out = ours.tessellated;
     let positions: Vec<[f32; 3]> = out.vertices.iter().map(|vertex| vertex.position).collect();
     let slices = MeshSlices { positions: &positions, indices: out.triangles.as_flattened(), ..MeshSlices::default() };
-    Truth::of_mesh(&Mesh::from_slices(&slices).ok()?)
+    Truth::from_mesh(&Mesh::from_slices(&slices).ok()?)
 }
 
 /// What differs, as lines and dots: each kind with its colour and its name.
-fn differences(ours: &Ours, comparison: &Comparison) -> [(Named, Vec<LineSegment>); 4] {
+fn differences(ours: &OurTessellation, comparison: &Comparison) -> [(Named, Vec<LineSegment>); 4] {
     let outlines = Outlines::new(ours);
     let half_width = |count: usize| if count > FEW { NARROW } else { WIDE };
     let of_patches = |patches: &[u32], color| {
@@ -122,13 +122,13 @@ fn differences(ours: &Ours, comparison: &Comparison) -> [(Named, Vec<LineSegment
 
 /// Our vertices on the outlines of patches.
 struct Outlines<'a> {
-    ours: &'a Ours<'a>,
+    ours: &'a OurTessellation<'a>,
     /// The first vertex of each patch, and the end.
     starts: Vec<u32>,
 }
 
 impl<'a> Outlines<'a> {
-    fn new(ours: &'a Ours<'a>) -> Self {
+    fn new(ours: &'a OurTessellation<'a>) -> Self {
         let patches = ours.tessellated.vertices.iter().map(Vertex::patch);
         let starts = patch_starts(patches, ours.topology.patches.len());
         Self { ours, starts }

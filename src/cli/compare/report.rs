@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use geometry::names::shown;
 use geometry::numbers::{grouped, short};
-use lab::compare::{Comparison, Exactness, Farthest, Finding, Ours, SideDifference, plural, point};
+use lab::compare::{Comparison, Farthest, Finding, OurTessellation, SideDifference, Tolerances, plural, point};
 
 /// How many sides are printed, and how many JSON has.
 const SAID: usize = 10;
@@ -17,9 +17,9 @@ const LISTED: usize = 10_000;
 pub(super) struct Report<'a> {
     pub theirs: &'a str,
     pub mesh: &'a str,
-    pub ours: &'a Ours<'a>,
+    pub ours: &'a OurTessellation<'a>,
     pub comparison: &'a Comparison,
-    pub exactness: Exactness,
+    pub exactness: Tolerances,
 }
 
 impl Report<'_> {

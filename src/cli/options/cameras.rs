@@ -100,7 +100,7 @@ fn read(path: &Path) -> Result<Vec<NamedView>, CliError> {
     let text = read_text(path)?;
     let fail = |reason: String| CliError::from(file_error(path, "read", &reason));
     let is_json = text.trim_start().starts_with(['[', '{']);
-    let views = if is_json { of_json(&text) } else { of_lines(&text) }.map_err(fail)?;
+    let views = if is_json { parse_json(&text) } else { parse_lines(&text) }.map_err(fail)?;
     if views.is_empty() || views.len() > MOST {
         return Err(fail(format!("it has {} cameras; a command takes 1 to {MOST}", views.len())));
     }
@@ -114,7 +114,7 @@ fn read(path: &Path) -> Result<Vec<NamedView>, CliError> {
 }
 
 /// Reads a camera from its words: its name and then its options.
-fn of_words(words: Vec<String>) -> Result<NamedView, String> {
+fn parse_words(words: Vec<String>) -> Result<NamedView, String> {
     // A parser's first line says what is wrong, and the others how the command line is used.
     let said = |error: clap::Error| {
         let text = error.to_string();
@@ -130,11 +130,11 @@ fn of_words(words: Vec<String>) -> Result<NamedView, String> {
 }
 
 /// Reads one camera a line: its name and then its options, as on the command line. Lines that begin with # say nothing.
-fn of_lines(text: &str) -> Result<Vec<NamedView>, String> {
+fn parse_lines(text: &str) -> Result<Vec<NamedView>, String> {
     let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
     let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     lines
-        .map(|(number, line)| words(line).and_then(of_words).map_err(|reason| format!("line {number}: {reason}")))
+        .map(|(number, line)| words(line).and_then(parse_words).map_err(|reason| format!("line {number}: {reason}")))
         .collect()
 }
 
@@ -157,15 +157,15 @@ fn words(line: &str) -> Result<Vec<String>, String> {
 }
 
 /// Reads an array of objects, whose fields are `name` and camera options with underscores in place of hyphens.
-fn of_json(text: &str) -> Result<Vec<NamedView>, String> {
+fn parse_json(text: &str) -> Result<Vec<NamedView>, String> {
     let value: Value = serde_json::from_str(text).map_err(|error| format!("it is no JSON: {error}"))?;
     let Value::Array(cameras) = value else { return Err("its JSON is no array of cameras".to_owned()) };
     let read =
-        |(index, camera): (usize, &Value)| of_object(camera).map_err(|reason| format!("camera {index}: {reason}"));
+        |(index, camera): (usize, &Value)| parse_object(camera).map_err(|reason| format!("camera {index}: {reason}"));
     cameras.iter().enumerate().map(read).collect()
 }
 
-fn of_object(camera: &Value) -> Result<NamedView, String> {
+fn parse_object(camera: &Value) -> Result<NamedView, String> {
     let Value::Object(fields) = camera else { return Err("it is no object".to_owned()) };
     let Some(Value::String(name)) = fields.get("name") else { return Err("it has no name, a string".to_owned()) };
     let mut words = Vec::new();
@@ -181,7 +181,7 @@ fn of_object(camera: &Value) -> Result<NamedView, String> {
             _ => return Err(format!("{field} is no text, number, list of numbers, true or false")),
         }
     }
-    of_words([words, vec!["--".to_owned(), name.clone()]].concat())
+    parse_words([words, vec!["--".to_owned(), name.clone()]].concat())
 }
 
 /// A value as it stands on the command line.
@@ -226,10 +226,10 @@ mod tests {
 
     #[test]
     fn lines_and_json_give_the_same_cameras() {
-        let lines = of_lines(
+        let lines = parse_lines(
             "# a comment\nfront --camera 0,0\n\n'from above' --camera=10,80,3 --orthographic --target 0,1,0\nwide --field-of-view 90\n",
         );
-        let json = of_json(
+        let json = parse_json(
             r#"[{"name": "front", "camera": [0, 0]},
                 {"name": "from above", "camera": "10,80,3", "orthographic": true, "target": [0, 1, 0]},
                 {"field_of_view": 90, "name": "wide", "orthographic": false}]"#,
@@ -244,7 +244,7 @@ mod tests {
     #[test]
     fn what_is_no_camera_is_refused_with_its_place() {
         let refused = |text: &str| {
-            let read = if text.starts_with('[') { of_json(text) } else { of_lines(text) };
+            let read = if text.starts_with('[') { parse_json(text) } else { parse_lines(text) };
             read.expect_err("no cameras")
         };
         for (text, words) in [

@@ -22,7 +22,7 @@ fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
         return Err("pictures aren't written to standard output: name a .png file".to_owned());
     }
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let is_mesh = Format::of_name(&path).is_some();
+    let is_mesh = Format::from_name(&path).is_some();
     let is_image = ["jpg", "jpeg", "webp", "bmp", "gif", "tif", "tiff", "svg", "hdr", "exr"].contains(&&*ending);
     let is_text = ["csv", "tsv", "json", "toml", "txt", "md", "html", "xml", "wgsl"].contains(&&*ending);
     if is_mesh || is_image || is_text {

@@ -128,11 +128,11 @@ impl ViewOptions {
         bounds: &Bounds,
     ) -> Result<Camera, CliError> {
         if let Some(matrix) = self.matrix() {
-            return Ok(Camera::of_matrix(&matrix, bounds)?);
+            return Ok(Camera::from_matrix(&matrix, bounds)?);
         }
         if let Some(wanted) = &self.file_camera {
             let cameras = mesh.cameras_at(moment);
-            return file_camera(&mesh.name, &cameras, wanted).map(|camera| Camera::of_file(camera, bounds));
+            return file_camera(&mesh.name, &cameras, wanted).map(|camera| Camera::from_file(camera, bounds));
         }
         let mut camera = Camera { field_of_view: self.field_of_view, roll: self.roll, ..Camera::default() };
         camera.frame(&bounds.grown(surface.settings().reach(mesh)), surface.viewport());

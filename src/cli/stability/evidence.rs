@@ -21,7 +21,7 @@ const ENLARGED: u32 = 3;
 pub(super) fn write(folder: &Path, engine: &Engine, all: &[Loaded], failed: &[Failure]) -> Result<(), CliError> {
     for failure in failed {
         let Some(own) = all.iter().find(|own| own.subject.name == failure.case) else { continue };
-        let tried = failure.tried.unwrap_or_else(|| Tried::of_mesh(&own.subject));
+        let tried = failure.tried.unwrap_or_else(|| Tried::from_mesh(&own.subject));
         let mut shot = shot(engine, own, tried)?;
         // The sentence has the numbers of the run; here only the place counts, which is the worst for any limit.
         let gate = Gate { kind: failure.kind, limit: 0 };
@@ -38,11 +38,11 @@ fn shot(engine: &Engine, Loaded { subject, warnings }: &Loaded, tried: Tried) ->
     let Subject { mesh, weld, .. } = subject;
     let mesh = Arc::new(mesh.clone());
     let topology = Arc::new(Topology::build_within(&mesh, *weld, &Progress::new())?);
-    let loaded = LoadedMesh { warnings: warnings.clone(), ..LoadedMesh::of_mesh(mesh, topology) };
+    let loaded = LoadedMesh { warnings: warnings.clone(), ..LoadedMesh::from_mesh(mesh, topology) };
     let Tried { settings, camera, moment } = tried;
     let shown = ShotSubject { moment, ..ShotSubject::new(loaded, settings) };
     let mut scene = engine.scene(&shown.loaded, ARENA_BYTES)?;
-    shown.dress(engine, &mut scene)?;
+    shown.apply_to_scene(engine, &mut scene)?;
     let size = viewport().to_array().map(|side| side as u32 * ENLARGED);
     let lod_camera = Some((camera, viewport()));
     let view = ShotView { camera, lod_camera, size, transparent: false, legend: false };

@@ -25,7 +25,7 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the bounds of some positions, or all zeros if there are none.
-    pub fn of(positions: impl Iterator<Item = Vec3> + Clone) -> Self {
+    pub fn new(positions: impl Iterator<Item = Vec3> + Clone) -> Self {
         Self::around(box_of(positions.clone()), |center| farthest_square(positions, center))
     }
 
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn an_octahedron_fills_less_than_its_box() {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z];
-        let bounds = Bounds::of(axes.iter().flat_map(|&a| [a + Vec3::ONE, Vec3::ONE - a]));
+        let bounds = Bounds::new(axes.iter().flat_map(|&a| [a + Vec3::ONE, Vec3::ONE - a]));
         assert_eq!(bounds.center(), Vec3::ONE);
         assert_eq!(bounds.radius(), 1.0);
         assert_eq!(bounds.diagonal(), 12_f32.sqrt());
@@ -120,14 +120,14 @@ mod tests {
     #[test]
     fn tiny_and_huge_meshes_have_a_size() {
         for scale in [1e-25, 1e20] {
-            let bounds = Bounds::of([Vec3::ZERO, Vec3::X * scale].into_iter());
+            let bounds = Bounds::new([Vec3::ZERO, Vec3::X * scale].into_iter());
             assert!((bounds.diagonal() / scale - 1.0).abs() < 1e-6 && (bounds.radius() / scale - 0.5).abs() < 1e-6);
         }
     }
 
     #[test]
     fn a_part_of_the_largest_diagonal_is_finite() {
-        let part = Bounds::of([Vec3::MAX, Vec3::MIN].into_iter()).part(1e-5);
+        let part = Bounds::new([Vec3::MAX, Vec3::MIN].into_iter()).part(1e-5);
         assert!((part / (2e-5 * 3_f64.sqrt() * f64::from(f32::MAX)) - 1.0).abs() < 1e-12);
     }
 
@@ -142,7 +142,7 @@ mod tests {
             };
             let mesh = Mesh { corners: (0..4 * LEAST).map(corner).collect(), ..Mesh::default() };
             let bits = |bounds: Bounds| [bounds.min, bounds.max].map(|v| v.to_array().map(f32::to_bits));
-            let alone = Bounds::of(mesh.corners.iter().map(|corner| corner.position));
+            let alone = Bounds::new(mesh.corners.iter().map(|corner| corner.position));
             for cores in [1, 2, 3] {
                 let bounds = on_threads(cores, || mesh.bounds()).expect("threads");
                 assert!(bounds == alone && bits(bounds) == bits(alone), "{bounds:?} on {cores} cores, {alone:?}");
@@ -152,7 +152,7 @@ mod tests {
 
     #[test]
     fn bounds_grow_on_every_side() {
-        let bounds = Bounds::of([Vec3::ZERO, Vec3::X * 2.0].into_iter()).grown(0.5);
+        let bounds = Bounds::new([Vec3::ZERO, Vec3::X * 2.0].into_iter()).grown(0.5);
         assert_eq!((bounds.min, bounds.max), (Vec3::splat(-0.5), Vec3::new(2.5, 0.5, 0.5)));
         assert_eq!(bounds.radius(), 1.5);
     }

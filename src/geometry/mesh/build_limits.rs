@@ -71,7 +71,7 @@ impl Budget {
     }
 
     /// A budget for what is computed from a mesh, which is held. `files` is the size of all files that it was read from.
-    pub fn of_mesh(mesh: &Mesh, files: u64, free: u64) -> Self {
+    pub fn from_mesh(mesh: &Mesh, files: u64, free: u64) -> Self {
         Self { free, files: Cell::new(files), held: Cell::new(mesh.bytes()), borrowed: Cell::new(0) }
     }
 

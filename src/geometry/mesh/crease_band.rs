@@ -76,10 +76,10 @@ pub fn with_crease_band(
 ) -> Result<(Mesh, Topology, CreaseBand), BuildError> {
     let take = |bytes: usize| budget.hold(bytes as u64);
     take(PER_PATCH * topology.patches.len() + size_of::<EdgeCuts>() * topology.edges.len())?;
-    let fans = Fans::of(mesh, topology);
+    let fans = Fans::new(mesh, topology);
     progress.check()?;
     let units = width_in_units(mesh, topology, width);
-    let cuts = Cuts::of(mesh, topology, &fans, units);
+    let cuts = Cuts::new(mesh, topology, &fans, units);
     progress.check()?;
     let mut cutter = Cutter::new(mesh, topology, &fans, &cuts, units);
     let cut = rebuilt(mesh, topology, budget, progress, |patch, add| cutter.pieces(patch, add))?;
@@ -93,7 +93,7 @@ pub fn with_crease_band(
 fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topology), BuildError> {
     let topology = Topology::build_afforded(&cut, 0.0, budget, progress)?;
     budget.hold((PER_PATCH * topology.patches.len()) as u64)?;
-    let fans = Fans::of(&cut, &topology);
+    let fans = Fans::new(&cut, &topology);
     if !fans.any_split() {
         return Ok((cut, topology));
     }

@@ -284,7 +284,7 @@ mod tests {
         let mut fan = Shape::CubeSplit.build();
         fan.triangles = [[0, 1, 2], [1, 0, 3], [0, 1, 8], [8, 9, 10]].to_vec().into();
         for mesh in Shape::ALL.iter().map(|shape| shape.build()).chain([fan]) {
-            let topology = Topology::of(&mesh);
+            let topology = Topology::new(&mesh);
             let lists = Curves::build(&mesh, &topology, Sharing::AllSides);
             let [own, listed] = [None, Some(&lists)].map(|lists| CurveItems { topology: &topology, lists });
             let counts = |items: &CurveItems| (items.curve_count(), items.side_count(), items.factor_count());

@@ -46,7 +46,7 @@ pub(crate) fn generate_normals(
     progress: &Progress,
 ) -> Result<(), BuildError> {
     let _scope = Borrowed::from(budget);
-    let points = CornerPoints::of(mesh, budget)?;
+    let points = CornerPoints::new(mesh, budget)?;
     let done = borrowing(budget, || give_normals(mesh, &points, crease_angle, budget, progress))?;
     if done.is_empty() || done.contains(&false) {
         budget.borrow(done.len() as u64)?;
@@ -325,7 +325,7 @@ mod tests {
     fn both(mesh: impl Fn() -> UnfinishedMesh, crease_angle: f32) -> [UnfinishedMesh; 2] {
         let (mut fast, mut slow) = (mesh(), mesh());
         generate_normals(&mut fast, crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
-        let points = CornerPoints::of(&slow, &Budget::unlimited()).unwrap();
+        let points = CornerPoints::new(&slow, &Budget::unlimited()).unwrap();
         with_fans(&mut slow, &points, &[], crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
         [fast, slow]
     }
@@ -362,7 +362,7 @@ mod tests {
             let whole =
                 || without_normals(made.corners.iter().map(|c| Corner { uv: Vec2::ZERO, ..*c }), &made.triangles);
             let mut mesh = whole();
-            let points = CornerPoints::of(&mesh, &Budget::unlimited()).unwrap();
+            let points = CornerPoints::new(&mesh, &Budget::unlimited()).unwrap();
             let done = give_normals(&mut mesh, &points, 60.0, &Budget::unlimited(), &Progress::new()).unwrap();
             assert_eq!(done.iter().all(|done| *done), is_smooth, "{shape:?}");
             let [fast, slow] = both(whole, 60.0);

@@ -86,7 +86,7 @@ impl Group {
 const LEAST: usize = 1 << 16;
 
 /// How many corners are looked up one right after the other.
-const TOGETHER: usize = 32;
+const BATCH: usize = 32;
 
 /// How many corners at once are worth several cores.
 const MANY: usize = 1 << 11;
@@ -225,9 +225,9 @@ impl MeshBuilder {
 
     /// Equal corners are looked up one right after the other: the processor then waits for memory once for several of them.
     fn few_corners(&mut self, corners: &[(InputCorner, u32)], stored: &mut Vec<StoredCorner>) {
-        for some in corners.chunks(TOGETHER) {
+        for some in corners.chunks(BATCH) {
             let none = Corner { position: Vec3::ZERO, normal: Vec3::ZERO, uv: Vec2::ZERO };
-            let mut own = [(none, CornerRepairs::default(), 0, 0); TOGETHER];
+            let mut own = [(none, CornerRepairs::default(), 0, 0); BATCH];
             for (own, &(corner, binding)) in own.iter_mut().zip(some) {
                 let (corner, repairs) = repaired(corner);
                 *own = (corner, repairs, binding, self.distinct.hash(&corner, binding));

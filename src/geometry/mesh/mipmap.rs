@@ -31,12 +31,12 @@ impl MipFilter {
     pub const ALL: [Self; 4] = every![MipFilter: Colors, AlphaWeighted, Numbers, Normals];
 
     /// That of the base colour's image of a material whose alpha does this.
-    pub fn of_base_color(alpha: Alpha) -> Self {
+    pub fn from_base_color(alpha: Alpha) -> Self {
         if alpha == Alpha::Opaque { Self::Colors } else { Self::AlphaWeighted }
     }
 
     /// That of a map.
-    pub fn of_map(slot: Slot) -> Self {
+    pub fn from_map(slot: Slot) -> Self {
         match slot {
             Slot::Emissive | Slot::SheenColor | Slot::SpecularColor => Self::Colors,
             Slot::Normal | Slot::ClearcoatNormal => Self::Normals,
@@ -75,7 +75,7 @@ struct Taps {
 
 impl Taps {
     /// Of texel `target` of the level after one with `source` texels along this side.
-    fn of(target: u32, source: u32) -> Self {
+    fn new(target: u32, source: u32) -> Self {
         let half = source / 2;
         let weights = match source {
             1 => [1, 0, 0],
@@ -148,7 +148,7 @@ fn averaged_row(rows: [&[u8]; 3], down: [f32; 3], width: u32, filter: MipFilter)
     let targets = level_size([width; 2], 1)[0];
     let mut made = Vec::with_capacity(4 * targets as usize);
     for target in 0..targets {
-        let across = Taps::of(target, width);
+        let across = Taps::new(target, width);
         let mut sum = MipSum::default();
         for (row, down) in rows.iter().zip(down).filter(|(_, weight)| *weight > 0.0) {
             let texels = row.as_chunks::<4>().0.iter().skip(across.first as usize);
@@ -182,7 +182,7 @@ impl RowHalver {
     /// Takes the next row, of 4 bytes a px. Returns a row of the smaller image if one is complete.
     pub fn push(&mut self, row: Vec<u8>) -> Option<Vec<u8>> {
         self.kept.push_back(row);
-        let Taps { first, weights } = Taps::of(self.next, self.size[1]);
+        let Taps { first, weights } = Taps::new(self.next, self.size[1]);
         while self.first < first && self.kept.pop_front().is_some() {
             self.first += 1;
         }
@@ -202,7 +202,7 @@ pub fn halved(texture: &Texture, filter: MipFilter) -> Texture {
     let [width, height] = texture.size;
     let size = level_size(texture.size, 1);
     let row = |y: u32| {
-        let Taps { first, weights } = Taps::of(y, height);
+        let Taps { first, weights } = Taps::new(y, height);
         let stride = 4 * width as usize;
         let source = |k: u32| {
             let start = (first + k) as usize * stride;

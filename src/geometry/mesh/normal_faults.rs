@@ -37,7 +37,7 @@ pub struct NormalFaults {
 impl NormalFaults {
     /// Counts the suspicious normals, in f64, after welding. Takes linear time: of an edge with more than 256 sides,
     /// the first 256 are compared.
-    pub fn of(mesh: &Mesh, topology: &Topology) -> Self {
+    pub fn new(mesh: &Mesh, topology: &Topology) -> Self {
         let of_patches = in_ranges(topology.patches.len(), LEAST, |range| {
             let mut faults = Self::default();
             topology.patches[range].iter().for_each(|patch| faults.add(mesh, topology, patch));
@@ -104,7 +104,7 @@ mod tests {
     use crate::progress::Progress;
 
     fn faults(mesh: &Mesh) -> NormalFaults {
-        NormalFaults::of(mesh, &Topology::build(mesh, &Progress::new()).unwrap())
+        NormalFaults::new(mesh, &Topology::build(mesh, &Progress::new()).unwrap())
     }
 
     /// Triangles over the edge from 0 to X, one for each pair of normals at its ends. Their third corners have the

@@ -319,7 +319,7 @@ impl Rig {
 }
 
 impl Reach {
-    pub fn of(bindings: &[Binding], deltas: &[Delta]) -> Self {
+    pub fn new(bindings: &[Binding], deltas: &[Delta]) -> Self {
         let largest = |sum: f64, vector: &[f32; 3]| vector.iter().map(|x| f64::from(x.abs())).fold(sum, f64::max);
         Self {
             position: bindings.iter().map(|binding| &binding.position).fold(0.0, largest),

@@ -98,7 +98,7 @@ fn list(topology: &Topology, edge: u32, of: &Edge, points: &mut Vec<u32>, all: &
     if points.is_empty() {
         return;
     }
-    let line = LineSegment::of(topology, of);
+    let line = LineSegment::from_edge(topology, of);
     points.sort_unstable();
     points.dedup();
     let places = points.drain(..).map(|point| (line.project(topology.points[point as usize].as_dvec3()), point));

@@ -2,7 +2,7 @@
 
 mod connecting;
 
-use crate::names::every;
+use crate::choice::choices;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -103,25 +103,18 @@ impl Side {
     }
 }
 
-/// What the sides of an edge have in common.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Zeroable)]
-#[repr(u8)]
-#[serde(rename_all = "snake_case")]
-pub enum EdgeKind {
-    /// Two sides with the same normals and uvs.
-    Smooth = 0,
-    /// Two sides whose normals differ at one end or both.
-    Split = 1,
-    /// Two sides with the same normals, whose texture coordinates differ at one end or both.
-    Seam = 2,
-    /// One side.
-    Boundary = 3,
-    /// Three sides or more.
-    NonManifold = 4,
-}
-
-impl EdgeKind {
-    pub const ALL: [Self; 5] = every![EdgeKind: Smooth, Split, Seam, Boundary, NonManifold];
+choices! {
+    /// What meets at an edge.
+    #[derive(Hash, Serialize, Zeroable)]
+    #[repr(u8)]
+    #[serde(rename_all = "snake_case")]
+    pub enum EdgeKind {
+        Smooth => "smooth", "smooth", "Edges of two triangles that share normals and uvs.";
+        Split => "split", "split normal", "Edges of two triangles whose normals differ at an end. PN triangles crack here.";
+        Seam => "seam", "uv seam", "Edges of two triangles that share normals but not uvs.";
+        Boundary => "boundary", "boundary", "Edges of only one triangle: a hole or a border.";
+        NonManifold => "non-manifold", "non-manifold", "Edges of three or more triangles.";
+    }
 }
 
 /// The number of edges of each kind.
@@ -157,7 +150,7 @@ impl Topology {
     }
 
     /// Builds a topology in which only corners at exactly equal positions share a point.
-    pub fn of(mesh: &Mesh) -> Self {
+    pub fn new(mesh: &Mesh) -> Self {
         // Nothing else holds this progress, so nothing cancels it.
         Self::build(mesh, &Progress::new()).unwrap_or_default()
     }

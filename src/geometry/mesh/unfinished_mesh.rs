@@ -29,7 +29,7 @@ pub(super) enum CornerPoints {
 }
 
 impl CornerPoints {
-    pub(super) fn of(mesh: &UnfinishedMesh, budget: &Budget) -> Result<Self, BuildError> {
+    pub(super) fn new(mesh: &UnfinishedMesh, budget: &Budget) -> Result<Self, BuildError> {
         // Corners that are nothing but positions differ in their positions.
         let plain = |corner: &Corner| corner.normal.x.is_nan() && corner.uv == glam::Vec2::ZERO;
         if mesh.bindings.is_empty() && mesh.corners.iter().all(plain) {

@@ -65,8 +65,8 @@ pub fn weld_previews(
     let bounds = mesh.bounds();
     let distances = TOLERANCES.map(|tolerance| bounds.part(tolerance.into()));
     let exact = match exact {
-        Some(exact) => Exact::of(mesh, Cow::Borrowed(exact)),
-        None => Exact::of(mesh, Cow::Owned(Topology::build(mesh, progress)?)),
+        Some(exact) => Exact::from_topology(mesh, Cow::Borrowed(exact)),
+        None => Exact::from_topology(mesh, Cow::Owned(Topology::build(mesh, progress)?)),
     };
     // All positions may be the same.
     if distances[0] > 0.0 {
@@ -103,7 +103,7 @@ struct Exact<'a> {
 
 impl<'a> Exact<'a> {
     #[expect(clippy::cast_possible_truncation, reason = "a side is one of three")]
-    fn of(mesh: &Mesh, mut topology: Cow<'a, Topology>) -> Self {
+    fn from_topology(mesh: &Mesh, mut topology: Cow<'a, Topology>) -> Self {
         let open = topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary);
         let open = open.map(|edge| {
             let side = topology.sides[edge.first_side as usize];

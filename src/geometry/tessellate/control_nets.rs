@@ -24,11 +24,11 @@ pub(super) struct ControlNets<'a> {
 impl<'a> ControlNets<'a> {
     /// Computes the control points of all curves.
     pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        Self::of_edges(mesh, topology, inputs, 0..topology.edges.len() as u32)
+        Self::from_edges(mesh, topology, inputs, 0..topology.edges.len() as u32)
     }
 
     /// Computes the control points of the curves of some edges alone, in ascending order.
-    pub(super) fn of_edges(
+    pub(super) fn from_edges(
         mesh: &'a Mesh,
         topology: &'a Topology,
         inputs: &Inputs,

@@ -266,7 +266,7 @@ mod tests {
         // No two rows are perpendicular to w, as they would be before a camera that looks straight ahead.
         let rows = [[3.0, 0.0, 0.0, 0.0], [0.0, 4.0, 0.0, 0.0], [0.0, 0.0, 2.0, 0.0], [1.0, 2.0, 5.0, 1.0]];
         let clip_from_object = Mat4::from_cols_array_2d(&rows).transpose();
-        let view = LodView { reach: 0.5, ..LodView::new(clip_from_object, Vec2::ONE) };
+        let view = LodView::new(clip_from_object, Vec2::ONE).with_reach(0.5);
         // The squared lengths of x + w, x - w, y + w, y - w, z and z - w.
         let expected = [45.0, 33.0, 62.0, 30.0, 4.0, 14.0].map(|square: f32| 0.5 * square.sqrt());
         for (own, expected) in reach_margins(&view).into_iter().zip(expected) {

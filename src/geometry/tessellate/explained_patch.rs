@@ -6,7 +6,7 @@ use super::factors::{
     ROW_BASE_STEP, inside_segments, patch_has_rows, patch_is_culled, patch_is_minimal, patch_is_subtriangulated,
     row_width, segments,
 };
-use super::least_factors::{BEYOND_LAST, Chosen, Wanted};
+use super::least_factors::{BEYOND_LAST, ChosenFactors, SearchGoal};
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::MeshLod;
 use super::mesh_tessellation::seen_with_reach;
@@ -32,7 +32,7 @@ pub struct ExplainedPatch {
     /// How far the triangles are from the surface at the factors that are used; `None` if nothing is emitted.
     pub errors: Option<PatternErrors>,
     /// The fewest triangles that are known to keep the tolerance, if nothing is asked of the patch by others.
-    pub own_least: OwnLeast,
+    pub minimum: Minimum,
 }
 
 /// What was asked of an edge.
@@ -105,7 +105,7 @@ impl PatternErrors {
 
 /// The factors with which a patch alone would keep the tolerance with the fewest triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OwnLeast {
+pub struct Minimum {
     /// The factors of sides 0, 1 and 2.
     pub sides: [f32; 3],
     /// Of rows their width.
@@ -113,10 +113,10 @@ pub struct OwnLeast {
     pub triangles: u32,
 }
 
-/// Returns the inputs under which a patch's own least is searched for: LOD by error with the settings' tolerance. All else
+/// Returns the inputs under which a patch's minimum triangle count is searched for: LOD by error with the settings' tolerance. All else
 /// that it doesn't depend on has its default, so that it isn't searched for again when that changes. Subtriangulation has
 /// one number of segments everywhere, so that whole numbers stand in for it.
-pub fn own_least_inputs(inputs: &Inputs) -> Inputs {
+pub fn minimum_inputs(inputs: &Inputs) -> Inputs {
     let own = inputs.tessellation;
     let tessellation = Tessellation {
         normals: Normals::Linear,
@@ -128,10 +128,10 @@ pub fn own_least_inputs(inputs: &Inputs) -> Inputs {
     Inputs { tessellation, ..*inputs }
 }
 
-/// Returns an own least with its number of triangles.
-fn own_least(partitioning: Partitioning, Chosen { edges: [u, v, w], inside, .. }: Chosen) -> OwnLeast {
+/// Returns a minimum with its number of triangles.
+fn minimum(partitioning: Partitioning, ChosenFactors { edges: [u, v, w], inside, .. }: ChosenFactors) -> Minimum {
     let triangles = triangle_count(process(partitioning, [u, v, w], inside));
-    OwnLeast { sides: [w, u, v], inside: inside % ROW_BASE_STEP as f32, triangles }
+    Minimum { sides: [w, u, v], inside: inside % ROW_BASE_STEP as f32, triangles }
 }
 
 /// Explains a patch (an index into [`Topology::patches`]) that is emitted with these factors. Without displacement it looks
@@ -144,17 +144,17 @@ pub fn explain_patch(
     used: PatchFactors,
 ) -> ExplainedPatch {
     let inputs = &seen_with_reach(mesh, inputs);
-    let searched = &own_least_inputs(inputs);
+    let searched = &minimum_inputs(inputs);
     let is_displaced = displacing_heights(mesh, inputs).is_some();
     let nets = if is_displaced {
         ControlNets::new(mesh, topology, searched)
     } else {
-        ControlNets::of_edges(mesh, topology, searched, edges_around(topology, patch).into_iter())
+        ControlNets::from_edges(mesh, topology, searched, edges_around(topology, patch).into_iter())
     };
     let displacement = MeshDisplacement::new(&nets, searched);
     let lod = MeshLod { nets: &nets, inputs: searched, displacement: displacement.as_ref() };
     let seen = lod.seen_patch(patch);
-    let own = lod.own_least_factors(patch, &seen);
+    let own = lod.minimum_factors(patch, &seen);
     let by_error = inputs.tessellation.lod.is_by_error();
     let is_flat = by_error && may_slide(&seen, searched.tessellation.tolerance);
     let mut measured = seen;
@@ -163,14 +163,14 @@ pub fn explain_patch(
     }
     let tolerance = lod.surface_tolerance();
     let errors = pattern_errors(&measured, inputs.tessellation.convention, used);
-    let mut own_least = own_least(searched.tessellation.partitioning, own);
+    let mut minimum = minimum(searched.tessellation.partitioning, own);
     // The search doesn't try all factors. What is drawn may have fewer triangles than it found, because neighbours asked for more
     // along the edges. Other LODs don't see to it that heights have enough.
     let drawn = triangle_count(used);
     let is_within = errors.is_some_and(|errors| errors.largest() <= tolerance) && (by_error || !is_displaced);
-    if is_within && drawn < own_least.triangles {
+    if is_within && drawn < minimum.triangles {
         let sides = [0, 1, 2].map(|k| used_factor(inputs.tessellation.convention, used, k));
-        own_least = OwnLeast { sides, inside: inside_cut(used) as f32, triangles: drawn };
+        minimum = Minimum { sides, inside: inside_cut(used) as f32, triangles: drawn };
     }
     ExplainedPatch {
         tolerance,
@@ -179,19 +179,19 @@ pub fn explain_patch(
         }),
         is_flat,
         errors,
-        own_least,
+        minimum,
     }
 }
 
-/// Returns the own least of every patch.
-pub fn own_least_triangles(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<u32> {
-    let searched = &own_least_inputs(&seen_with_reach(mesh, inputs));
+/// Returns the minimum triangle count of every patch.
+pub fn minimum_triangles(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<u32> {
+    let searched = &minimum_inputs(&seen_with_reach(mesh, inputs));
     let nets = ControlNets::new(mesh, topology, searched);
     let displacement = MeshDisplacement::new(&nets, searched);
     let lod = MeshLod { nets: &nets, inputs: searched, displacement: displacement.as_ref() };
-    let own = |patch| lod.own_least_factors(patch, &lod.seen_patch(patch));
+    let own = |patch| lod.minimum_factors(patch, &lod.seen_patch(patch));
     let patches = 0..topology.patches.len() as u32;
-    patches.map(|patch| own_least(searched.tessellation.partitioning, own(patch)).triangles).collect()
+    patches.map(|patch| minimum(searched.tessellation.partitioning, own(patch)).triangles).collect()
 }
 
 /// Returns the edges of a patch and of all patches that share an edge with it, in ascending order.
@@ -214,7 +214,7 @@ impl MeshLod<'_> {
         let asked = |patch: u32, side: usize| {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| self.least_edge_factor(factor));
-            self.fewest(patch, &seen, least, 0.0, Wanted::Asked).edges[(side + 2) % 3]
+            self.fewest(patch, &seen, least, 0.0, SearchGoal::Asked).edges[(side + 2) % 3]
         };
         let own_side = topology.sides[topology.patches[patch as usize].sides[side] as usize];
         let sides = topology.edge_sides(&topology.edges[own_side.edge as usize]).iter();

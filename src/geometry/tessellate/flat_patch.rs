@@ -109,7 +109,7 @@ pub(super) fn line_error(view: &LodView, net: &ControlNet) -> f32 {
 mod tests {
     use super::*;
     use crate::tessellate::factors::{Partitioning, process};
-    use crate::tessellate::least_factors::{Chosen, Sought, Wanted, fewest_triangles};
+    use crate::tessellate::least_factors::{ChosenFactors, FactorSearch, SearchGoal, fewest_triangles};
     use crate::tessellate::piece_error::{SeenPatch, piece_error, seen_patch};
     use crate::tessellate::{FIXED_ONE, domain_plan, domain_point, domain_triangle, triangle_count};
     use glam::{Mat4, vec3};
@@ -242,13 +242,13 @@ mod tests {
             net.center += vec3(moves[12], moves[13], 0.0);
             let patch = seen(&VIEW, &net);
             let found = |patch: &SeenPatch, least, wanted| {
-                let sought = Sought { least, inside: 1.0, inner: 0.0, wanted };
+                let sought = FactorSearch { least, inside: 1.0, inner: 0.0, wanted };
                 fewest_triangles(patch, tolerance, Partitioning::Integer, &sought)
             };
-            let Chosen { edges, .. } = found(&patch, [1.0; 3], Wanted::Asked);
-            let inside = found(&patch, edges, Wanted::Given).inside;
+            let ChosenFactors { edges, .. } = found(&patch, [1.0; 3], SearchGoal::Asked);
+            let inside = found(&patch, edges, SearchGoal::Given).inside;
             prop_assert!(inside <= 64.0);
-            let same_place = found(&seen_patch(&VIEW, &net), [1.0; 3], Wanted::Asked).edges;
+            let same_place = found(&seen_patch(&VIEW, &net), [1.0; 3], SearchGoal::Asked).edges;
             prop_assert!(edges.iter().sum::<f32>() <= same_place.iter().sum::<f32>() + 2.0);
             let factors = process(Partitioning::Integer, edges, inside);
             let (plan, outline) = (domain_plan(factors), outline(&net));

@@ -18,7 +18,7 @@ pub struct HullFactors {
 
 impl HullFactors {
     /// Orders the factors of sides 0, 1 and 2 as a convention writes them.
-    pub fn of_sides(convention: Convention, sides: [f32; 3], inside: f32) -> Self {
+    pub fn from_sides(convention: Convention, sides: [f32; 3], inside: f32) -> Self {
         Self { edges: [0, 1, 2].map(|i| sides[factor_side(convention, i) as usize]), inside }
     }
 
@@ -83,7 +83,7 @@ pub struct RowChoice {
 
 impl RowChoice {
     /// Returns what an inside factor says.
-    pub fn of(inside: f32) -> Self {
+    pub fn new(inside: f32) -> Self {
         let step = (inside / ROW_BASE_STEP as f32) as u32;
         match step {
             1..=6 => {
@@ -106,7 +106,7 @@ impl RowChoice {
 /// Returns an inside factor under rows whose base is an edge in the order of a convention, for one whose base is the edge
 /// U == 0, V == 0 or W == 0 as LOD takes them: each is the edge opposite corner 0, 1 or 2.
 pub(crate) fn inside_of_base(convention: Convention, inside: f32) -> f32 {
-    let choice = RowChoice::of(inside);
+    let choice = RowChoice::new(inside);
     let Some((base, flips)) = choice.base else { return inside };
     let written = (0..3).find(|&i| factor_side(convention, i) == (base + 1) % 3);
     RowChoice { base: written.map(|written| (written, flips)), ..choice }.inside()
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn factors_of_sides_are_written_in_the_order_of_the_convention() {
-        let edges = |convention| HullFactors::of_sides(convention, [10.0, 11.0, 12.0], 0.0).edges;
+        let edges = |convention| HullFactors::from_sides(convention, [10.0, 11.0, 12.0], 0.0).edges;
         assert_eq!(edges(Convention::D3d11), [11.0, 12.0, 10.0]);
         assert_eq!(edges(Convention::AmdPn), [12.0, 10.0, 11.0]);
         assert_eq!(edges(Convention::EdgeOrder), [10.0, 11.0, 12.0]);
@@ -140,9 +140,9 @@ mod tests {
             (-3.0, None, -3.0),
         ] {
             let choice = RowChoice { base, width };
-            assert_eq!((RowChoice::of(inside), choice.inside()), (choice, inside));
+            assert_eq!((RowChoice::new(inside), choice.inside()), (choice, inside));
         }
-        assert!(RowChoice::of(f32::NAN).inside().is_nan());
+        assert!(RowChoice::new(f32::NAN).inside().is_nan());
         // D3d11 writes side 1 as factor 0; edge order writes it as factor 1.
         assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 259.0)), [259.0, 515.0]);
         assert_eq!([Convention::D3d11, Convention::EdgeOrder].map(|own| inside_of_base(own, 1027.0)), [1027.0, 1283.0]);

@@ -129,7 +129,7 @@ impl Inputs {
 }
 
 /// Which sides of an edge share its curve where a function of the user's own gives control points: none.
-pub fn own_sharing(edges: Edges) -> Sharing {
+pub fn user_sharing(edges: Edges) -> Sharing {
     match edges {
         Edges::PerEdge => Sharing::EachSide,
         Edges::AsPublished => Sharing::NoneAveraged,

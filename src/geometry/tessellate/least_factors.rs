@@ -200,7 +200,7 @@ fn pattern_cost(edges: [f32; 3], inside: f32, segment: f32) -> f32 {
 
 /// The factors that a patch has chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Chosen {
+pub(super) struct ChosenFactors {
     /// Of the edges U == 0, V == 0 and W == 0.
     pub edges: [f32; 3],
     pub inside: f32,
@@ -210,7 +210,7 @@ pub(super) struct Chosen {
 
 /// What the factors of a patch's edges are that are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Wanted {
+pub(super) enum SearchGoal {
     /// What the patch asks its edges for. Every segment of an edge is a triangle's side in this patch and in its neighbour.
     Asked,
     /// What it would have if no neighbour asked for anything.
@@ -221,14 +221,14 @@ pub(super) enum Wanted {
 
 /// What a patch looks for.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sought {
+pub(super) struct FactorSearch {
     /// The least factors that the edges U == 0, V == 0 and W == 0 may get, or those that they have.
     pub least: [f32; 3],
     /// The least inside factor; of rows the least number of rows and of segments of a row.
     pub inside: f32,
     /// As in [`Chosen`].
     pub inner: f32,
-    pub wanted: Wanted,
+    pub wanted: SearchGoal,
 }
 
 /// Returns the inside factor that a patch gets without a search, if there is one: if one triangle is within the tolerance, or if
@@ -237,9 +237,9 @@ pub(super) fn without_search(
     patch: &SeenPatch,
     within: f32,
     partitioning: Partitioning,
-    sought: &Sought,
+    sought: &FactorSearch,
 ) -> Option<f32> {
-    let Sought { least, inside, .. } = *sought;
+    let FactorSearch { least, inside, .. } = *sought;
     if single_suffices(patch, within, partitioning, least, inside) {
         return Some(if partitioning.has_rows() { (ROW_BASE_STEP + 1) as f32 } else { 1.0 });
     }
@@ -286,16 +286,16 @@ pub(super) fn fewest_triangles(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
-    sought: &Sought,
-) -> Chosen {
+    sought: &FactorSearch,
+) -> ChosenFactors {
     let within = BOUND_SHARE * tolerance;
-    let Sought { least, inside: least_inside, inner, wanted } = *sought;
+    let FactorSearch { least, inside: least_inside, inner, wanted } = *sought;
     if let Some(inside) = without_search(patch, within, partitioning, sought) {
-        return Chosen { edges: least, inside, inner };
+        return ChosenFactors { edges: least, inside, inner };
     }
     let slides = may_slide(patch, within);
-    let segment = if wanted == Wanted::Asked { 2.0 } else { 1.0 };
-    let mut best = Chosen { edges: least, inside: BEYOND_LAST, inner };
+    let segment = if wanted == SearchGoal::Asked { 2.0 } else { 1.0 };
+    let mut best = ChosenFactors { edges: least, inside: BEYOND_LAST, inner };
     let mut fewest = 3.4e38;
     let mut step = first_step(partitioning, least_inside, inner);
     let (mut edges, mut rows) = (least, [true; 3]);
@@ -307,7 +307,7 @@ pub(super) fn fewest_triangles(
         for k in (0..3).filter(|&k| fails[k]) {
             let [factor, error] = [edges[k], errors[k]];
             edges[k] = match wanted {
-                Wanted::Given => BEYOND_LAST,
+                SearchGoal::Given => BEYOND_LAST,
                 _ => next_row_factor(partitioning, slides, [least[k], inside], factor, error, within),
             };
         }
@@ -318,7 +318,7 @@ pub(super) fn fewest_triangles(
             best.inner = if is_inner && best.inner == 0.0 { inside } else { best.inner };
             if is_last && !is_over {
                 fewest = cost;
-                best = Chosen { edges, inside, ..best };
+                best = ChosenFactors { edges, inside, ..best };
             }
             is_over = is_over || is_last;
             rows = [true; 3];

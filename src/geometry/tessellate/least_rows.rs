@@ -13,7 +13,9 @@
 use glam::Vec2;
 
 use super::factors::{MOST_ROWS, Partitioning, PatchFactors, ROW_BASE_STEP, outer_count, point_count, process};
-use super::least_factors::{BEYOND_LAST, BOUND_SHARE, Chosen, Sought, Wanted, part_errors, without_search};
+use super::least_factors::{
+    BEYOND_LAST, BOUND_SHARE, ChosenFactors, FactorSearch, SearchGoal, part_errors, without_search,
+};
 use super::piece_error::{SecondForms, SeenPatch, may_slide, second_forms, triangle_error};
 
 /// What second derivatives say of rows beside a base.
@@ -59,7 +61,7 @@ fn expected_rows(patch: &SeenPatch, base: usize, tolerance: f32) -> Expected {
 
 /// Rows that are tried: their base, number and width, and the base's number of segments.
 #[derive(Clone, Copy, Debug)]
-struct Tried {
+struct TriedRows {
     base: usize,
     flips: bool,
     rows: f32,
@@ -76,23 +78,23 @@ struct Tried {
 pub const ASKED_SEGMENT: f32 = 1.75;
 
 /// Returns as how many triangles a segment of an edge counts.
-fn segment_cost(sought: &Sought) -> f32 {
-    if sought.wanted == Wanted::Asked { ASKED_SEGMENT } else { 1.0 }
+fn segment_cost(sought: &FactorSearch) -> f32 {
+    if sought.wanted == SearchGoal::Asked { ASKED_SEGMENT } else { 1.0 }
 }
 
 /// Returns whether the edges have their factors, so that only base and width are chosen.
-fn is_given(sought: &Sought) -> bool {
-    sought.wanted == Wanted::Given
+fn is_given(sought: &FactorSearch) -> bool {
+    sought.wanted == SearchGoal::Given
 }
 
 /// Returns the least number of rows beside a base.
-fn least_rows(sought: &Sought, base: usize) -> f32 {
+fn least_rows(sought: &FactorSearch, base: usize) -> f32 {
     let beside = sought.least[(base + 1) % 3].max(sought.least[(base + 2) % 3]);
     if is_given(sought) { beside } else { beside.max(sought.inside) }
 }
 
 /// Returns the least number of a base's segments with rows of some width.
-fn least_segments(sought: &Sought, base: usize, width: f32) -> f32 {
+fn least_segments(sought: &FactorSearch, base: usize, width: f32) -> f32 {
     if is_given(sought) { sought.least[base] } else { sought.least[base].max(width) }
 }
 
@@ -102,12 +104,12 @@ fn expected_at_least(number: f32, least: f32) -> f32 {
 }
 
 /// Returns the rows with which the search beside a base starts.
-fn first_rows(sought: &Sought, base: usize, expected: &Expected, share: f32) -> Tried {
+fn first_rows(sought: &FactorSearch, base: usize, expected: &Expected, share: f32) -> TriedRows {
     let least = least_rows(sought, base);
     let rows = if is_given(sought) { least } else { expected_at_least(share * expected.rows, least) };
     let width = expected_at_least(share * expected.width, sought.inside);
     let segments = least_segments(sought, base, width);
-    Tried { base, flips: expected.flips, rows, width, segments, fewer: [0.0; 2], lessened: 0 }
+    TriedRows { base, flips: expected.flips, rows, width, segments, fewer: [0.0; 2], lessened: 0 }
 }
 
 /// Returns the share of the expected rows with which a search starts: with the first base, and with the others. Second derivatives
@@ -117,7 +119,7 @@ fn first_shares(slides: bool) -> [f32; 2] {
 }
 
 /// Returns about how many triangles rows beside a base will have.
-fn expected_cost(sought: &Sought, base: usize, expected: &Expected) -> f32 {
+fn expected_cost(sought: &FactorSearch, base: usize, expected: &Expected) -> f32 {
     let rows = expected.rows.max(least_rows(sought, base));
     let width = expected.width.max(sought.inside);
     let cost = rows * width + segment_cost(sought) * (rows + 0.5 * least_segments(sought, base, width));
@@ -126,7 +128,7 @@ fn expected_cost(sought: &Sought, base: usize, expected: &Expected) -> f32 {
 }
 
 /// Returns the factors of the edges.
-fn edges_of_rows(sought: &Sought, tried: &Tried) -> [f32; 3] {
+fn edges_of_rows(sought: &FactorSearch, tried: &TriedRows) -> [f32; 3] {
     if is_given(sought) {
         return sought.least;
     }
@@ -137,7 +139,7 @@ fn edges_of_rows(sought: &Sought, tried: &Tried) -> [f32; 3] {
 }
 
 /// Returns the inside factor that says which rows.
-fn inside_of_rows(tried: &Tried) -> f32 {
+fn inside_of_rows(tried: &TriedRows) -> f32 {
     let step = tried.base as u32 + if tried.flips { 4 } else { 1 };
     (ROW_BASE_STEP * step) as f32 + tried.width
 }
@@ -150,7 +152,7 @@ fn next_number(number: f32, part: f32, estimate: f32) -> f32 {
 }
 
 /// Returns rows that may be enough, after some that have this error; more than [`MOST_ROWS`], if none will be.
-fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, tolerance: f32) -> Tried {
+fn grown_rows(sought: &FactorSearch, tried: TriedRows, expected: &Expected, error: f32, tolerance: f32) -> TriedRows {
     let ratio = (error / tolerance).sqrt();
     let ratio = if ratio < 100.0 { ratio } else { 100.0 };
     let across = expected.across / (tried.rows * tried.rows);
@@ -175,7 +177,7 @@ fn grown_rows(sought: &Sought, tried: Tried, expected: &Expected, error: f32, to
     } else {
         width = next_number(width, part, 0.0);
     }
-    Tried { rows, width, segments: least_segments(sought, tried.base, width), ..tried }
+    TriedRows { rows, width, segments: least_segments(sought, tried.base, width), ..tried }
 }
 
 /// How many kinds of lessening there are.
@@ -183,12 +185,12 @@ pub const LESSENINGS: u32 = 8;
 
 /// Returns rows with less than others: 1 row less; rows narrower by 1 segment (2) or by 2 (4), and the base with them if it has as
 /// many; the same without the base (3 and 5); or 1 segment less of the base (6), of the first edge (7) or of the second one (8).
-fn with_less(sought: &Sought, enough: &Tried, kind: u32) -> Tried {
+fn with_less(sought: &FactorSearch, enough: &TriedRows, kind: u32) -> TriedRows {
     let one = |of: &[u32]| if of.contains(&kind) { 1.0 } else { 0.0 };
     let width = enough.width - one(&[2, 3]) - 2.0 * one(&[4, 5]);
     let follows = [2, 4].contains(&kind) && enough.segments == enough.width;
     let [first, second] = enough.fewer;
-    Tried {
+    TriedRows {
         rows: enough.rows - one(&[1]),
         width,
         segments: if follows { least_segments(sought, enough.base, width) } else { enough.segments - one(&[6]) },
@@ -199,7 +201,7 @@ fn with_less(sought: &Sought, enough: &Tried, kind: u32) -> Tried {
 }
 
 /// Returns whether there are such rows, and whether they differ from others that are tried.
-fn is_possible(sought: &Sought, enough: &Tried, less: &Tried) -> bool {
+fn is_possible(sought: &FactorSearch, enough: &TriedRows, less: &TriedRows) -> bool {
     let kind = less.lessened;
     if is_given(sought) {
         // The edges have their factors.
@@ -219,7 +221,7 @@ fn is_possible(sought: &Sought, enough: &Tried, less: &Tried) -> bool {
 
 /// Returns rows with less than some that are enough, by the first kind of lessening after `lessened` that there is; with a
 /// `lessened` above [`LESSENINGS`], if there is none.
-fn lesser_rows(sought: &Sought, enough: Tried, lessened: u32) -> Tried {
+fn lesser_rows(sought: &FactorSearch, enough: TriedRows, lessened: u32) -> TriedRows {
     // Beside given edges there are no others after the fourth.
     let last = if is_given(sought) { 4 } else { LESSENINGS };
     for kind in lessened + 1..=last {
@@ -228,7 +230,7 @@ fn lesser_rows(sought: &Sought, enough: Tried, lessened: u32) -> Tried {
             return less;
         }
     }
-    Tried { lessened: LESSENINGS + 1, ..enough }
+    TriedRows { lessened: LESSENINGS + 1, ..enough }
 }
 
 /// Returns the kind of lessening after which the next one is looked for, once one has given rows that are enough: the same again, or
@@ -259,11 +261,11 @@ fn bases_by_cost([u, v, w]: [f32; 3]) -> [usize; 3] {
 
 /// Returns the rows with which a patch is within the tolerance, and has the fewest triangles of those that are tried. If no rows
 /// are enough, it returns the least factors and [`BEYOND_LAST`].
-pub(super) fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) -> Chosen {
+pub(super) fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &FactorSearch) -> ChosenFactors {
     let within = BOUND_SHARE * tolerance;
-    let mut best = Chosen { edges: sought.least, inside: BEYOND_LAST, inner: 0.0 };
+    let mut best = ChosenFactors { edges: sought.least, inside: BEYOND_LAST, inner: 0.0 };
     if let Some(inside) = without_search(patch, within, Partitioning::Rows, sought) {
-        return Chosen { inside, ..best };
+        return ChosenFactors { inside, ..best };
     }
     let shares = first_shares(may_slide(patch, within));
     let all = [0, 1, 2].map(|base| expected_rows(patch, base, within));
@@ -284,7 +286,7 @@ pub(super) fn fewest_rows(patch: &SeenPatch, tolerance: f32, sought: &Sought) ->
         let lessened = tried.lessened;
         if is_worth && error <= within {
             (fewest, enough) = (cost, tried);
-            best = Chosen { edges, inside: inside_of_rows(&tried), inner: 0.0 };
+            best = ChosenFactors { edges, inside: inside_of_rows(&tried), inner: 0.0 };
             tried = lesser_rows(sought, enough, lessened_before(lessened));
         } else if lessened > 0 {
             tried = lesser_rows(sought, enough, lessened);
@@ -311,7 +313,7 @@ fn points_inside(edges: [f32; 3], inside: f32) -> f32 {
 
 /// Returns whether a patch asks its edges again: beside what other patches asked for, it has many more points inside than with
 /// what it has chosen.
-pub(super) fn rows_ask_again(chosen: &Chosen, edges: [f32; 3], inside: f32) -> bool {
+pub(super) fn rows_ask_again(chosen: &ChosenFactors, edges: [f32; 3], inside: f32) -> bool {
     inside == BEYOND_LAST || points_inside(edges, inside) > 1.1 * points_inside(chosen.edges, chosen.inside) + 2.0
 }
 

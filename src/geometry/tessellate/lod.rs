@@ -1,10 +1,11 @@
 //! Level of detail: the tessellation factor of an edge, by its length on screen or its distance from the eye. Twin:
 //! `shaders/lod.wgsl`. LOD by error is in `least_factors.rs`.
 
-use glam::{Mat4, Vec2, Vec3, Vec4};
+use glam::{Mat4, Vec2, Vec3, Vec4, vec4};
 
 use super::factors::Partitioning;
 use crate::choice::choices;
+use crate::view::DepthRange;
 
 choices! {
     /// Where edge factors come from.
@@ -12,7 +13,7 @@ choices! {
     #[repr(u32)]
     pub enum Lod {
         Uniform => "uniform", "Uniform", "All edges have the same factor.";
-        Error => "error", "Error",
+        Error => "error", "Screen error",
             "About the fewest triangles that stay within a tolerance, in px, of the surface (bounds on second \
              derivatives: Filip et al. 1986). Flat places stay untessellated.";
         EdgeLength => "edge-length", "Edge length",
@@ -75,14 +76,15 @@ impl Lod {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LodView {
     /// The matrix from object units to clip space, with reversed depth: 1 at the near plane. The far plane may be anywhere.
+    /// [`Self::from_camera`] takes matrices with another range of depth.
     pub clip_from_object: Mat4,
     /// Half the viewport's width and height, in px.
     pub half_viewport: Vec2,
-    /// The largest distance in object units by which displacement moves a point. Tessellation replaces it; leave it 0.
-    pub reach: f32,
-    /// The position of the eye in object units.
+    /// The largest distance in object units by which displacement moves a point: tessellation finds it.
+    pub(super) reach: f32,
+    /// The position of the eye in object units. Only LOD by distance reads it.
     pub eye: Vec3,
-    /// The mesh's bounding radius in object units, in which LOD distances are counted.
+    /// The mesh's bounding radius in object units, in which LOD by distance counts.
     pub radius: f32,
 }
 
@@ -97,6 +99,56 @@ impl LodView {
     /// Builds the view of a mesh of bounding radius 1 without displacement. The eye is at the origin.
     pub const fn new(clip_from_object: Mat4, half_viewport: Vec2) -> Self {
         Self { clip_from_object, half_viewport, reach: 0.0, eye: Vec3::ZERO, radius: 1.0 }
+    }
+
+    /// Builds the view of a camera from the matrices that a program draws with: from object units to clip space (it multiplies
+    /// column vectors), its range of depth, the viewport's width and height in px, and the mesh's bounding radius in object units.
+    ///
+    /// The eye is where the rows x, y and w of the matrix are 0. An orthographic view has none; there it is so far away that LOD by
+    /// distance gives a factor of 1.
+    pub fn from_camera(clip_from_object: Mat4, depth: DepthRange, viewport: Vec2, radius: f32) -> Self {
+        let matrix = clip_from_object.as_dmat4();
+        let [x, y, z, w] = [0, 1, 2, 3].map(|row| matrix.row(row));
+        let reversed = (w - depth.near_plane(z, w)).as_vec4();
+        let [x_axis, y_axis, w_axis] = [x, y, w].map(|row| row.truncate());
+        let towards = y_axis.cross(w_axis) * x.w + w_axis.cross(x_axis) * y.w + x_axis.cross(y_axis) * w.w;
+        let volume = x_axis.dot(y_axis.cross(w_axis));
+        let eye = (towards / -volume).as_vec3();
+        let far = Vec3::splat(f32::MAX.sqrt() * 1e-3);
+        let columns = [0, 1, 2, 3].map(|column| {
+            let own = clip_from_object.col(column);
+            vec4(own.x, own.y, reversed[column], own.w)
+        });
+        Self {
+            clip_from_object: Mat4::from_cols(columns[0], columns[1], columns[2], columns[3]),
+            half_viewport: viewport * 0.5,
+            reach: 0.0,
+            eye: if eye.is_finite() { eye } else { far },
+            radius,
+        }
+    }
+
+    /// The same eye's view with another matrix, with reversed depth, and another half of a viewport in px.
+    #[must_use]
+    pub fn seen_through(self, clip_from_object: Mat4, half_viewport: Vec2) -> Self {
+        Self { clip_from_object, half_viewport, ..self }
+    }
+
+    /// The view from another eye, of a mesh with another bounding radius, both in object units.
+    #[must_use]
+    pub fn seen_from(self, eye: Vec3, radius: f32) -> Self {
+        Self { eye, radius, ..self }
+    }
+
+    /// The largest distance in object units by which displacement moves a point.
+    pub fn reach(&self) -> f32 {
+        self.reach
+    }
+
+    /// The view of a surface that displacement moves by at most `reach` object units.
+    #[must_use]
+    pub fn with_reach(self, reach: f32) -> Self {
+        Self { reach, ..self }
     }
 }
 
@@ -209,6 +261,35 @@ mod tests {
     }
 
     /// Looks along -Z from the origin. Half the viewport is 1 unit at depth 1, and the near plane is at depth 0.1.
+    #[test]
+    fn a_camera_is_the_same_in_every_range_of_depth() {
+        use glam::camera::rh::proj::{directx, opengl};
+        let (eye, viewport) = (Vec3::new(1.0, 2.0, 4.0), Vec2::new(640.0, 480.0));
+        let looks = glam::camera::rh::view::look_at_mat4(eye, Vec3::ZERO, Vec3::Y);
+        let seen = |projection: Mat4, depth| LodView::from_camera(projection * looks, depth, viewport, 1.5);
+        let views = [
+            seen(directx::perspective(0.7, 4.0 / 3.0, 0.1, 100.0), DepthRange::ZeroToOne),
+            seen(directx::perspective_infinite_reverse(0.7, 4.0 / 3.0, 0.1), DepthRange::Reversed),
+            seen(opengl::perspective(0.7, 4.0 / 3.0, 0.1, 100.0), DepthRange::MinusOneToOne),
+        ];
+        let near = looks.inverse().transform_point3(Vec3::new(0.01, 0.02, -0.1));
+        for view in views {
+            assert!(
+                view.eye.distance(eye) < 1e-4 && view.half_viewport == viewport * 0.5 && view.radius == 1.5,
+                "{view:?}"
+            );
+            let clip = view.clip_from_object * near.extend(1.0);
+            assert!((clip.z - clip.w).abs() < 1e-5 * clip.w.max(1.0), "the near plane: {clip}");
+            assert!(beyond_near(view.clip_from_object * Vec4::W), "the origin is in view");
+            let at = project_and_scale(&view, 1.0, Vec3::X);
+            let expected = project_and_scale(&views[0], 1.0, Vec3::X);
+            assert!(at.distance(expected) < 1e-2, "{at} and {expected}");
+        }
+        let flat = seen(directx::orthographic(-2.0, 2.0, -1.5, 1.5, 0.1, 9.0), DepthRange::ZeroToOne);
+        assert!(flat.eye.is_finite());
+        assert_eq!(distance_factor(&flat, 8.0, 2.0, 10.0, [Vec3::ZERO; 4]), 1.0, "an eye that is far away");
+    }
+
     fn perspective() -> LodView {
         let clip_from_object = Mat4::from_cols_array_2d(&[
             [1.0, 0.0, 0.0, 0.0],

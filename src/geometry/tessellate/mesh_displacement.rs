@@ -425,7 +425,7 @@ mod tests {
         for triangle in Arc::make_mut(&mut split.triangles).iter_mut().step_by(2) {
             *triangle = triangle.map(|corner| corner + count);
         }
-        let [own, other] = [&whole, &split].map(|mesh| frames(mesh, &Topology::of(mesh)));
+        let [own, other] = [&whole, &split].map(|mesh| frames(mesh, &Topology::new(mesh)));
         for (corners, copies) in whole.triangles.iter().zip(split.triangles.iter()) {
             for (&corner, &copy) in corners.iter().zip(copies) {
                 assert_eq!(own[corner as usize], other[copy as usize]);
@@ -436,7 +436,7 @@ mod tests {
     #[test]
     fn every_corner_has_its_direction_its_gradients_and_its_shortest_edge() {
         let mesh = square();
-        let corners = displaced_corners(&mesh, &Topology::of(&mesh)).expect("one image everywhere");
+        let corners = displaced_corners(&mesh, &Topology::new(&mesh)).expect("one image everywhere");
         // Texture coordinates rise by 1/4 for each unit to the right, and fall by 1/4 for each unit up. A side is 32 px long.
         let expected = [0.0, 0.0, 1.0, 0.25, 0.0, 0.0, 0.0, -0.25, 0.0, 32.0];
         for own in corners {
@@ -444,11 +444,11 @@ mod tests {
         }
         let mut plain = mesh.clone();
         plain.heights = None;
-        assert_eq!(displaced_corners(&plain, &Topology::of(&plain)), None);
+        assert_eq!(displaced_corners(&plain, &Topology::new(&plain)), None);
         let mut partly = mesh;
         let heights = Heights { of_material: vec![None], ..partly.heights.as_deref().expect("heights").clone() };
         partly.heights = Some(Arc::new(heights));
-        assert_eq!(displaced_corners(&partly, &Topology::of(&partly)), None);
+        assert_eq!(displaced_corners(&partly, &Topology::new(&partly)), None);
     }
 
     #[test]

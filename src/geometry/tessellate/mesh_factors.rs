@@ -8,8 +8,8 @@ use super::factors::base_factor;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::hull_factors::inside_of_base;
 use super::least_factors::{
-    BEYOND_LAST, Chosen, Sought, Wanted, asks_again, fewest_triangles, least_edge_factor, uniform_suffices,
-    whole_segments,
+    BEYOND_LAST, ChosenFactors, FactorSearch, SearchGoal, asks_again, fewest_triangles, least_edge_factor,
+    uniform_suffices, whole_segments,
 };
 use super::least_rows::{fewest_rows, rows_ask_again};
 use super::mesh_displacement::MeshDisplacement;
@@ -95,7 +95,7 @@ impl MeshLod<'_> {
         for patch in 0..self.nets.topology.patches.len() as u32 {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| least[factor as usize]);
-            let own = self.fewest(patch, &seen, least, 0.0, Wanted::Asked);
+            let own = self.fewest(patch, &seen, least, 0.0, SearchGoal::Asked);
             ask(patch, own.edges, &mut asked);
             chosen.push(own);
         }
@@ -116,7 +116,7 @@ impl MeshLod<'_> {
                 *chosen = beside;
                 if asks {
                     let seen = self.seen_patch(patch);
-                    let own = self.fewest(patch, &seen, edges, chosen.inner, Wanted::Asked);
+                    let own = self.fewest(patch, &seen, edges, chosen.inner, SearchGoal::Asked);
                     ask(patch, own.edges, &mut asked);
                     if own.inside != BEYOND_LAST {
                         *chosen = own;
@@ -130,7 +130,7 @@ impl MeshLod<'_> {
         let insides: Vec<f32> = chosen.iter().map(|chosen| chosen.inside).collect();
         let factors = MeshFactors { edges: asked, insides };
         let Some(factor) = self.uniform_factor(&factors) else { return factors };
-        let beside = |(patch, chosen): (u32, Chosen)| self.beside(patch, [factor; 3], chosen.inner).inside;
+        let beside = |(patch, chosen): (u32, ChosenFactors)| self.beside(patch, [factor; 3], chosen.inner).inside;
         MeshFactors { edges: vec![factor; least.len()], insides: (0..).zip(chosen).map(beside).collect() }
     }
 
@@ -189,13 +189,20 @@ impl MeshLod<'_> {
 
     /// Returns the factors with which a patch keeps LOD by error's tolerance with the fewest triangles. `least` are the least that
     /// the edges U == 0, V == 0 and W == 0 may get, or those that they have, and `inner` is as in [`Chosen`].
-    pub(super) fn fewest(&self, patch: u32, seen: &SeenPatch, least: [f32; 3], inner: f32, wanted: Wanted) -> Chosen {
+    pub(super) fn fewest(
+        &self,
+        patch: u32,
+        seen: &SeenPatch,
+        least: [f32; 3],
+        inner: f32,
+        wanted: SearchGoal,
+    ) -> ChosenFactors {
         let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
         let inside = self.heights_inside(patch);
         if surface.is_flat() {
-            return Chosen { edges: least, inside: whole_segments(partitioning, inside), inner };
+            return ChosenFactors { edges: least, inside: whole_segments(partitioning, inside), inner };
         }
-        let (tolerance, sought) = (self.surface_tolerance(), Sought { least, inside, inner, wanted });
+        let (tolerance, sought) = (self.surface_tolerance(), FactorSearch { least, inside, inner, wanted });
         match partitioning.has_rows() {
             true => fewest_rows(seen, tolerance, &sought),
             false => fewest_triangles(seen, tolerance, partitioning, &sought),
@@ -203,14 +210,14 @@ impl MeshLod<'_> {
     }
 
     /// Returns the same beside the factors that the edges have.
-    fn beside(&self, patch: u32, edges: [f32; 3], inner: f32) -> Chosen {
-        self.fewest(patch, &self.seen_patch(patch), edges, inner, Wanted::Given)
+    fn beside(&self, patch: u32, edges: [f32; 3], inner: f32) -> ChosenFactors {
+        self.fewest(patch, &self.seen_patch(patch), edges, inner, SearchGoal::Given)
     }
 
-    /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its *own least*.
-    pub(super) fn own_least_factors(&self, patch: u32, seen: &SeenPatch) -> Chosen {
+    /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its minimum.
+    pub(super) fn minimum_factors(&self, patch: u32, seen: &SeenPatch) -> ChosenFactors {
         let least = self.first_least(patch, seen, |factor| self.least_edge_factor(factor));
-        self.fewest(patch, seen, least, 0.0, Wanted::Own)
+        self.fewest(patch, seen, least, 0.0, SearchGoal::Own)
     }
 
     /// Returns whether nothing on a patch depends on where its points slide.
@@ -268,7 +275,7 @@ impl ControlNets<'_> {
     pub(super) fn hull_factors(&self, inputs: &Inputs, factors: &MeshFactors, patch: u32) -> HullFactors {
         let sides = [0, 1, 2].map(|side| factors.edges[self.patch_factor(patch, side) as usize]);
         let Tessellation { convention, partitioning, .. } = inputs.tessellation;
-        let written = HullFactors::of_sides(convention, sides, sides[0].max(sides[1]).max(sides[2]));
+        let written = HullFactors::from_sides(convention, sides, sides[0].max(sides[1]).max(sides[2]));
         let found = factors.insides.get(patch as usize).copied();
         let inside = match (partitioning.has_rows(), found) {
             (true, Some(inside)) => inside_of_base(convention, inside),
@@ -308,7 +315,7 @@ mod tests {
     #[test]
     fn all_edges_get_the_least_factor_that_suffices_if_patches_have_more_triangles() {
         let mesh = Shape::Icosahedron.build();
-        let topology = Topology::of(&mesh);
+        let topology = Topology::new(&mesh);
         let seen = Mat4::from_scale(Vec3::splat(0.5)) * Mat4::from_rotation_y(0.7);
         let own = Tessellation {
             lod: Lod::Error,

@@ -8,9 +8,9 @@ use super::mesh_displacement::{MeshDisplacement, displacement_reach};
 use super::mesh_factors::MeshLod;
 use super::vertex::{Vertex, pack_key};
 use super::{
-    Clip, ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, LodView, NOT_CULLED, Normals, PatchFactors, Solid,
-    Tessellation, corner_weights, cull_reason, domain_plan, domain_point, domain_triangle, edge_normal, edge_position,
-    edge_uv, linear_normal, linear_uv, outline_place, pack_normal, patch_position, point_count, quadratic_edge_normal,
+    Clip, ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, NOT_CULLED, Normals, PatchFactors, Solid, Tessellation,
+    corner_weights, cull_reason, domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv,
+    linear_normal, linear_uv, outline_place, pack_normal, patch_position, point_count, quadratic_edge_normal,
     quadratic_normal, surface_normal, triangle_count,
 };
 use crate::mesh::{Mesh, Topology};
@@ -58,7 +58,7 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
 
 /// Returns the inputs with the view's `reach` set to how far the mesh is displaced.
 pub(super) fn seen_with_reach(mesh: &Mesh, inputs: &Inputs) -> Inputs {
-    Inputs { view: LodView { reach: displacement_reach(mesh, inputs), ..inputs.view }, ..*inputs }
+    Inputs { view: inputs.view.with_reach(displacement_reach(mesh, inputs)), ..*inputs }
 }
 
 /// Returns whether patches that show only their backs are left out.
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
     use crate::mesh::{HeightMap, Heights, Shape};
     use crate::progress::Progress;
-    use crate::tessellate::{Convention, Displacement, Lod, Partitioning, Tessellation};
+    use crate::tessellate::{Convention, Displacement, Lod, LodView, Partitioning, Tessellation};
     use glam::{Mat4, Vec2};
 
     /// Returns a torus with a relief, and inputs under which its edges have different factors.

@@ -45,6 +45,7 @@ mod texel_lengths;
 mod triangle_budget;
 mod vertex;
 
+pub use crate::view::DepthRange;
 pub use convention::Convention;
 pub use cull::Clip;
 pub use displace::Displacement;
@@ -67,9 +68,9 @@ pub use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside
 pub use curvature::{mean_curvature, patch_second_derivatives};
 pub use displacement_factor::SURFACE_SHARE;
 pub use domain::{domain_plan, domain_point, domain_triangle};
-pub use explained_patch::own_least_triangles;
+pub use explained_patch::minimum_triangles;
 pub use explained_patch::{
-    DecidedBy, ExplainedEdge, ExplainedPatch, explain_patch, inside_cut, is_enough, own_least_inputs,
+    DecidedBy, ExplainedEdge, ExplainedPatch, explain_patch, inside_cut, is_enough, minimum_inputs,
 };
 pub use factors::FACTOR_ODD;
 pub use factors::{
@@ -77,7 +78,7 @@ pub use factors::{
     point_count, process, round_pow2, segments, triangle_count,
 };
 pub use hull_factors::{HullFactors, RowChoice, largest_patch};
-pub use inputs::{own_sharing, sharing};
+pub use inputs::{sharing, user_sharing};
 pub use limit_surface::LimitSurface;
 pub use lod::beyond_near;
 pub(crate) use lod::{distance_factor, edge_length_factor, paper_edge_factor};

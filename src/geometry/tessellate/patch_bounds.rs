@@ -15,12 +15,12 @@ pub struct PatchBounds {
 
 impl PatchBounds {
     /// Returns the bounds of patches with these corners, or `None` if there are no patches.
-    pub fn of(patches: impl Iterator<Item = [Vec3; 3]> + Clone) -> Option<Self> {
+    pub fn new(patches: impl Iterator<Item = [Vec3; 3]> + Clone) -> Option<Self> {
         patches.clone().next()?;
         let longest = |[a, b, c]: [Vec3; 3]| a.distance(b).max(b.distance(c)).max(c.distance(a));
         let is_finite = patches.clone().flatten().all(Vec3::is_finite);
         let longest_side = if is_finite { patches.clone().map(longest).fold(0.0, f32::max) } else { f32::INFINITY };
-        Some(Self { corners: Bounds::of(patches.flatten()), longest_side })
+        Some(Self { corners: Bounds::new(patches.flatten()), longest_side })
     }
 
     /// Returns the bounds of the patches under a surface without displacement, or `None` if it has no limits: so

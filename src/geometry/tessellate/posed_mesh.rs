@@ -71,7 +71,7 @@ impl PosedMesh {
             Some((rig, pose)) => posed_position(rig, pose, self.topology.point_corners[point as usize]),
         };
         let points = |corner: u32| self.topology.corner_points[corner as usize];
-        PatchBounds::of(patches.map(|patch| self.topology.patch_corners(patch).map(points).map(position)))
+        PatchBounds::new(patches.map(|patch| self.topology.patch_corners(patch).map(points).map(position)))
     }
 
     /// Returns the bounds of each material that shows what is behind it, or `None` if finding them takes long in this pose. They
@@ -123,7 +123,7 @@ pub fn bounds_through(mesh: &Mesh, clip: Option<usize>) -> Bounds {
         let corners = (0..mesh.corners.len() as u32).step_by(stride);
         positions.extend(corners.map(|corner| posed_position(rig, &pose, corner)));
     }
-    Bounds::of(positions.into_iter())
+    Bounds::new(positions.into_iter())
 }
 
 /// Applies morph targets and then joints to a corner's position (glTF 2.0, section 3.7.2.2).

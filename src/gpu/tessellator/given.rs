@@ -2,7 +2,7 @@
 
 use super::Tessellator;
 use crate::buffer::{empty, filled};
-use crate::{Given, GpuError, OwnReport};
+use crate::{Given, GpuError, UserReport};
 use geometry::tessellate::HullFactors;
 
 impl Tessellator {
@@ -17,12 +17,12 @@ impl Tessellator {
             Some(Given::Factors(factors)) => filled(&self.gpu, "given factors", factors)?,
             None => filled::<HullFactors>(&self.gpu, "given factors", &[])?,
         };
-        self.own_report = match &given {
-            Some(Given::Shader(_)) => Some(empty::<OwnReport>(&self.gpu, "LOD report", 1)?),
+        self.user_report = match &given {
+            Some(Given::Shader(_)) => Some(empty::<UserReport>(&self.gpu, "LOD report", 1)?),
             _ => None,
         };
         // Counts that are on their way belong to what was given before.
-        (self.own_lod_report, self.pending) = (None, None);
+        (self.user_lod_report, self.pending) = (None, None);
         self.given = given;
         self.unbind();
         self.forget();
@@ -35,12 +35,12 @@ impl Tessellator {
     }
 
     /// The factors that functions of the user's own have written, a [`HullFactors`] for each patch, if they give factors.
-    pub fn own_factors(&self) -> Option<&wgpu::Buffer> {
-        self.own_report.as_ref().map(|_| &self.given_buffer)
+    pub fn user_factors(&self) -> Option<&wgpu::Buffer> {
+        self.user_report.as_ref().map(|_| &self.given_buffer)
     }
 
     /// What functions of the user's own reported when the counts were last known, if they give factors.
-    pub fn own_lod_report(&self) -> Option<OwnReport> {
-        self.own_lod_report.filter(|_| self.counts_done)
+    pub fn user_lod_report(&self) -> Option<UserReport> {
+        self.user_lod_report.filter(|_| self.counts_done)
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Tessellator;
 use crate::layout::{Chunk, DrawArgs};
-use crate::{OwnReport, VERTEX_HALF};
+use crate::{UserReport, VERTEX_HALF};
 
 /// What a chunk left in the arena, for whoever draws or reads it.
 pub struct ChunkBuffers<'a> {
@@ -34,17 +34,17 @@ impl ChunkBuffers<'_> {
 impl Tessellator {
     /// Takes the chunk tables of all slabs, as the device wrote them, and what it reports of functions of the user's own.
     pub(super) fn take_chunks(&mut self, tables: &[u8]) {
-        let (mut tables, has_lod) = (tables, self.own_report.is_some());
-        let mut report = |is_there: bool| -> Option<OwnReport> {
-            let (rest, report) = tables.split_at(tables.len() - if is_there { size_of::<OwnReport>() } else { 0 });
+        let (mut tables, has_lod) = (tables, self.user_report.is_some());
+        let mut report = |is_there: bool| -> Option<UserReport> {
+            let (rest, report) = tables.split_at(tables.len() - if is_there { size_of::<UserReport>() } else { 0 });
             tables = rest;
             is_there.then(|| bytemuck::pod_read_unaligned(report))
         };
         // The last one is taken first.
-        if let Some(own) = &mut self.own_surface {
+        if let Some(own) = &mut self.user_surface {
             own.last = report(true);
         }
-        self.own_lod_report = report(has_lod);
+        self.user_lod_report = report(has_lod);
         let table: Vec<Chunk> = bytemuck::pod_collect_to_vec(tables);
         self.counts_done = true;
         self.chunks.clear();

@@ -6,7 +6,7 @@ use super::Tessellator;
 use crate::bound_pass::{BoundPass, Step, Workgroups};
 use crate::compute_pipeline::Pass;
 use crate::layout::{EmitArgs, Params};
-use crate::own_least::{self, OwnLeast};
+use crate::minimum::{self, Minimum};
 use crate::params::params_of;
 use crate::pass_inputs::PassInputs;
 use crate::pipelines::{
@@ -17,9 +17,9 @@ use crate::readback::Readback;
 use crate::recorder::{RecordPasses, Recorder};
 use crate::search_passes::search_passes;
 use crate::slab::SCAN_BLOCK;
-use crate::{Given, GpuError, OwnPipelines};
+use crate::{Given, GpuError, UserPipelines};
 use geometry::cores::each;
-use geometry::tessellate::{Displacement, Lod, Normals, Partitioning, Tessellation, own_least_inputs};
+use geometry::tessellate::{Displacement, Lod, Normals, Partitioning, Tessellation, minimum_inputs};
 
 /// What settings say about which passes run, and with which constants.
 #[derive(Clone, Copy)]
@@ -32,7 +32,7 @@ struct Choices {
 }
 
 impl Choices {
-    fn of(tessellation: &Tessellation) -> Self {
+    fn new(tessellation: &Tessellation) -> Self {
         Self {
             by_error: tessellation.used_lod().is_by_error(),
             has_rows: tessellation.partitioning.has_rows(),
@@ -41,7 +41,7 @@ impl Choices {
         }
     }
 
-    fn of_params(params: &Params) -> Self {
+    fn from_params(params: &Params) -> Self {
         Self {
             by_error: params.lod == Lod::Error as u32,
             has_rows: params.partitioning == Partitioning::Rows as u32,
@@ -67,9 +67,9 @@ impl Tessellator {
     pub fn count(&mut self, recorder: &mut Recorder) -> Result<(), GpuError> {
         self.record_chunks(recorder)?;
         let tables = self.slabs.iter().map(|slab| (&slab.chunks, 0..slab.chunks.size()));
-        let reports = self.own_report.iter().chain(self.own_surface.as_ref().map(|own| &own.report));
+        let reports = self.user_report.iter().chain(self.user_surface.as_ref().map(|own| &own.report));
         let tables = tables.chain(reports.map(|report| (report, 0..report.size())));
-        self.pending = Some(Readback::of_buffers(&self.gpu, recorder.encoder(), tables));
+        self.pending = Some(Readback::from_buffers(&self.gpu, recorder.encoder(), tables));
         Ok(())
     }
 
@@ -97,7 +97,7 @@ impl Tessellator {
             record(recorder, "directions", &self.directions()?);
             self.nets_done = Some(shape);
         }
-        let choices = Choices::of_params(&self.params);
+        let choices = Choices::from_params(&self.params);
         record(recorder, "factors", &self.factors(choices)?);
         record(recorder, "levels", &self.levels(choices)?);
         for slab in 0..self.slabs.len() {
@@ -112,7 +112,7 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
-        let choices = Choices::of(tessellation);
+        let choices = Choices::new(tessellation);
         // What takes longest comes first, each pass once.
         let on = self.inputs_of_passes();
         let searches =
@@ -131,20 +131,20 @@ impl Tessellator {
         each(&works, |work| work())
     }
 
-    /// Records the passes that compute the own least of every patch ([`Self::own_least`]), unless that is known for the
+    /// Records the passes that compute the minimum triangle count of every patch ([`Self::minimum`]), unless that is known for the
     /// inputs that were last set. The nets must be recorded.
     ///
     /// # Errors
     /// More patches than the adapter binds memory for, or a pipeline can't be made.
-    pub fn record_own_least(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
+    pub fn record_minimum(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
         let Some(inputs) = &self.inputs else { return Ok(()) };
-        let params = params_of(&own_least_inputs(inputs), &self.mesh, &self.buffers, None, false);
-        let mut own_least = match self.own_least.take() {
-            Some(own_least) => own_least,
-            None => OwnLeast::new(&self.gpu, &self.buffers)?,
+        let params = params_of(&minimum_inputs(inputs), &self.mesh, &self.buffers, None, false);
+        let mut minimum = match self.minimum.take() {
+            Some(minimum) => minimum,
+            None => Minimum::new(&self.gpu, &self.buffers)?,
         };
-        let recorded = own_least.record(&self.inputs_of_passes(), &params, recorder);
-        self.own_least = Some(own_least);
+        let recorded = minimum.record(&self.inputs_of_passes(), &params, recorder);
+        self.minimum = Some(minimum);
         recorded
     }
 
@@ -152,8 +152,8 @@ impl Tessellator {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub fn prepare_own_least(&self, partitioning: Partitioning) -> Result<(), GpuError> {
-        own_least::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows())
+    pub fn prepare_minimum(&self, partitioning: Partitioning) -> Result<(), GpuError> {
+        minimum::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows())
     }
 
     /// What passes over the mesh are bound to.
@@ -180,9 +180,9 @@ impl Tessellator {
     /// The control points of every curve, and at the centre of every patch.
     fn nets(&self) -> Result<Vec<Step>, GpuError> {
         let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
-        let mut steps = match &self.own_surface {
+        let mut steps = match &self.user_surface {
             Some(own) => {
-                let pipelines = self.pipelines.own_surface(&own.shader);
+                let pipelines = self.pipelines.user_surface(&own.shader);
                 own_steps(&on, &pipelines, &own.report, &[1, 3 * mesh.patch_count, mesh.curve_count])?
             }
             None => vec![on.over(CURVE_NETS, mesh.curve_count)?],
@@ -201,9 +201,9 @@ impl Tessellator {
     /// Factors of LOD, or of functions of the user's own.
     fn factors(&self, choices: Choices) -> Result<Vec<Step>, GpuError> {
         let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
-        match (&self.given, &self.own_report) {
+        match (&self.given, &self.user_report) {
             (Some(Given::Shader(shader)), Some(report)) => {
-                let (pipelines, patches) = (self.pipelines.own_lod(shader), mesh.patch_count);
+                let (pipelines, patches) = (self.pipelines.user_lod(shader), mesh.patch_count);
                 return own_steps(&on, &pipelines, report, &[1, 3 * patches, patches, patches]);
             }
             (Some(_), _) => return Ok(Vec::new()),
@@ -270,7 +270,7 @@ impl Tessellator {
         slab_index: usize,
         chunk_index: u32,
     ) -> Result<(), GpuError> {
-        let (vertices, triangles, displace) = self.emission(slab_index, Choices::of_params(&self.params))?;
+        let (vertices, triangles, displace) = self.emission(slab_index, Choices::from_params(&self.params))?;
         let slab = &self.slabs[slab_index];
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
         let run = |pass: &mut wgpu::ComputePass, bound: &BoundPass, field: usize| {
@@ -293,7 +293,7 @@ impl Tessellator {
 /// The passes of functions of the user's own, each with an invocation for each of so many items.
 fn own_steps(
     on: &PassInputs,
-    pipelines: &OwnPipelines,
+    pipelines: &UserPipelines,
     report: &wgpu::Buffer,
     items: &[u32],
 ) -> Result<Vec<Step>, GpuError> {

@@ -41,7 +41,7 @@ pub struct Loaded {
 
 impl Loaded {
     /// A mesh that no file has.
-    pub fn of_mesh(mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
+    pub fn from_mesh(mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
         Self {
             source: Source::default(),
             preparation: Preparation::default(),
@@ -106,7 +106,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes } =
         source.load_selected(selected, &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
-    let budget = Budget::of_mesh(&read, file_bytes, preparation.limits.memory);
+    let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
     let too_large = |what| move |error| unfinished(source, what, error);
     let mut topology =
         Topology::build_afforded(&read, preparation.weld, &budget, progress).map_err(too_large("its edges"))?;

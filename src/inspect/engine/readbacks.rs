@@ -118,7 +118,7 @@ impl Engine {
         let convention = scene.tessellator.convention();
         match scene.tessellator.given() {
             Some(Given::Factors(given)) => return Ok(AskedFactors::given(convention, given)),
-            Some(Given::Shader(_)) => return Ok(AskedFactors::given(convention, &self.own_factors(scene)?)),
+            Some(Given::Shader(_)) => return Ok(AskedFactors::given(convention, &self.user_factors(scene)?)),
             None => {}
         }
         let (buffer, edges) = scene.tessellator.edge_factors();
@@ -130,8 +130,8 @@ impl Engine {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn own_factors(&self, scene: &Scene) -> Result<Vec<HullFactors>, GpuError> {
-        let Some(buffer) = scene.tessellator.own_factors() else { return Ok(Vec::new()) };
+    pub fn user_factors(&self, scene: &Scene) -> Result<Vec<HullFactors>, GpuError> {
+        let Some(buffer) = scene.tessellator.user_factors() else { return Ok(Vec::new()) };
         let patches = scene.tessellator.topology().patches.len();
         let bytes = read_buffer(&self.gpu, buffer, 0, (patches * size_of::<HullFactors>()) as u64)?;
         Ok(cast(&bytes))
@@ -142,7 +142,7 @@ impl Engine {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn own_points_agreement(&self, scene: &Scene) -> Result<Option<PointsAgreement>, GpuError> {
+    pub fn user_points_agreement(&self, scene: &Scene) -> Result<Option<PointsAgreement>, GpuError> {
         let (tessellator, topology) = (&scene.tessellator, scene.tessellator.topology());
         if tessellator.surface_shader().is_none() {
             return Ok(None);
@@ -152,7 +152,7 @@ impl Engine {
         let nets: Vec<CurveNet> = cast(&read_buffer(&self.gpu, &buffers.curve_nets, 0, bytes)?);
         let nets: Vec<_> = nets.iter().map(|net| [net.ab, net.ba].map(Vec3::from)).collect();
         let curves = Curves::build(tessellator.mesh(), topology, buffers.sharing);
-        Ok(Some(PointsAgreement::of(topology, &curves, &nets)))
+        Ok(Some(PointsAgreement::new(topology, &curves, &nets)))
     }
 
     /// The number of triangles that LOD by error emits at a tolerance of `tolerance_px` px, with all other inputs as they are;
@@ -196,17 +196,17 @@ impl Engine {
         Ok(edges + written.iter().filter(|factors| factors.inside_is_capped(tessellation.partitioning)).count() as u64)
     }
 
-    /// The own least of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error,
+    /// The minimum triangle count of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error,
     /// whichever LOD is used. The counts must be known.
     ///
     /// # Errors
     /// More patches than the adapter binds memory for, or a lost device.
-    pub fn own_least(&self, scene: &mut Scene) -> Result<Vec<u32>, GpuError> {
+    pub fn minimum(&self, scene: &mut Scene) -> Result<Vec<u32>, GpuError> {
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(&self.gpu, &mut timing);
-        scene.tessellator.record_own_least(&mut recorder)?;
+        scene.tessellator.record_minimum(&mut recorder)?;
         recorder.submit();
-        let Some(buffer) = scene.tessellator.own_least() else { return Ok(Vec::new()) };
+        let Some(buffer) = scene.tessellator.minimum() else { return Ok(Vec::new()) };
         let bytes = u64::from(scene.tessellator.buffers().patch_count) * size_of::<u32>() as u64;
         Ok(cast(&read_buffer(&self.gpu, buffer, 0, bytes)?))
     }

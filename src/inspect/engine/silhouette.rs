@@ -37,8 +37,8 @@ pub struct SilhouetteDrawing {
 }
 
 /// Makes a tessellator for [`SilhouetteDrawing`], on any thread.
-pub fn beside(scene: &Scene) -> impl FnOnce() -> Result<Tessellator, GpuError> + Send + use<> {
-    scene.tessellator.beside(ARENA_BYTES)
+pub fn sibling(scene: &Scene) -> impl FnOnce() -> Result<Tessellator, GpuError> + Send + use<> {
+    scene.tessellator.sibling(ARENA_BYTES)
 }
 
 impl SilhouetteDrawing {
@@ -127,7 +127,7 @@ impl Engine {
         view: &SilhouetteView,
         progress: &Progress,
     ) -> Result<Option<Silhouette>, GpuError> {
-        let mut drawing = self.start_silhouette(scene, beside(scene)()?, tessellation, view)?;
+        let mut drawing = self.start_silhouette(scene, sibling(scene)()?, tessellation, view)?;
         while progress.check().is_ok() {
             if let Some(mut texels) = drawing.step(&self.gpu)? {
                 return Ok(Some(Silhouette::find(drawing.grid, &texels.wait(&self.gpu)?)));
@@ -155,6 +155,6 @@ fn inputs(own: &Tessellation, view: &SilhouetteView, grid: SampleGrid) -> [Input
     // The surface is drawn in the margin too.
     let half_viewport = grid.padded().map(|side| 0.5 * side as f32).into();
     let clip_from_object = padded_clip(grid, view.seen.clip_from_object);
-    let padded = LodView { clip_from_object, half_viewport, ..view.seen };
+    let padded = view.seen.seen_through(clip_from_object, half_viewport);
     [Inputs::new(own, view.lod), Inputs::new(&source, view.seen), Inputs::new(&surface, padded)]
 }

@@ -15,7 +15,7 @@ pub(super) struct Attributes {
 
 impl Attributes {
     /// What the vertices of a mesh need.
-    pub(super) fn of(mesh: &Mesh) -> Self {
+    pub(super) fn new(mesh: &Mesh) -> Self {
         let Some(details) = &mesh.details else { return Self::default() };
         let looks = || mesh.materials.iter().map(|material| &material.look);
         let mut sets = [false; 2];

@@ -36,7 +36,7 @@ pub(super) fn bytes(attributes: Attributes, vertices: u64, triangles: u64) -> u6
 /// The file would be larger than 4 GiB, or a texture can't be encoded.
 pub(super) fn encode(mesh: &Exported, path: &str) -> Result<(Vec<u8>, Vec<String>), ExportError> {
     let triangles: usize = mesh.triangles.iter().map(Vec::len).sum();
-    let used = Attributes::of(mesh.mesh);
+    let used = Attributes::new(mesh.mesh);
     let bytes = bytes(used, mesh.positions.len() as u64, triangles as u64);
     if bytes > MAX_BYTES {
         return Err(ExportError::TooLarge { path: path.to_owned(), triangles: triangles as u64 });
@@ -49,7 +49,7 @@ pub(super) fn encode(mesh: &Exported, path: &str) -> Result<(Vec<u8>, Vec<String
         if triangles.is_empty() {
             continue;
         }
-        let sets = UvSets::of(material);
+        let sets = UvSets::new(material);
         let index = writer.material(material, &sets, &mut images, path)?;
         primitives.push(writer.primitive(accessors.attributes(&sets), triangles, index));
     }

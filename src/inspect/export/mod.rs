@@ -94,7 +94,7 @@ impl<'a> Exported<'a> {
         // This program writes 32-bit indices in both formats.
         let fits = match ending(path).as_str() {
             "obj" => vertices <= u64::from(u32::MAX),
-            _ => glb::bytes(Attributes::of(mesh), vertices, triangles) <= glb::MAX_BYTES,
+            _ => glb::bytes(Attributes::new(mesh), vertices, triangles) <= glb::MAX_BYTES,
         };
         if fits { Ok(()) } else { Err(ExportError::TooLarge { path: shown_path(path), triangles }) }
     }

@@ -31,7 +31,7 @@ pub struct Facts<'a> {
 
 impl<'a> Facts<'a> {
     /// Facts of a mesh that nothing was measured of.
-    pub fn of_mesh(topology: &'a Topology) -> Self {
+    pub fn from_mesh(topology: &'a Topology) -> Self {
         let (warnings, emitted, measured, junctions) = (None, None, None, None);
         Self { topology, warnings, emitted, measured, junctions, leaks: None, view: None, above: None }
     }
@@ -315,7 +315,7 @@ mod tests {
     fn a_gate_without_the_fact_that_it_needs_fails() {
         let topology = Topology::default();
         let gates = GateKind::ALL.map(|kind| Gate { kind, limit: u64::MAX });
-        for judgement in judge(&gates, &Facts::of_mesh(&topology)) {
+        for judgement in judge(&gates, &Facts::from_mesh(&topology)) {
             assert_eq!((judgement.found, judgement.passed), (None, false), "{judgement:?}");
             let sentence = judgement.sentence_of("a.glb");
             let expected = format!("a.glb fails the gate {}: what it counts was not measured", judgement.gate);

@@ -70,12 +70,12 @@ pub struct PatchSpot {
 impl Spot {
     /// A patch with these corners, and a place on it.
     pub fn patch(corners: [Vec3; 3], at: Vec3) -> Self {
-        Self::Patch(PatchSpot::of(corners, at))
+        Self::Patch(PatchSpot::new(corners, at))
     }
 
     /// The largest fold of a patch, with what is around it, or if it is a needle, its middle.
     pub fn fold(folded: &FoldedPatch) -> Self {
-        let whole = PatchSpot::of(folded.largest, folded.place());
+        let whole = PatchSpot::new(folded.largest, folded.place());
         let [a, b, c] = folded.largest;
         let width = (b - a).as_dvec3().cross((c - a).as_dvec3()).length() as f32 / whole.size;
         let size = (AROUND_FOLD * whole.size).min(AROUND_NEEDLE * width);
@@ -115,7 +115,7 @@ impl Spot {
 
 impl PatchSpot {
     /// The whole of a patch with these corners, and a place on it.
-    pub fn of([a, b, c]: [Vec3; 3], at: Vec3) -> Self {
+    pub fn new([a, b, c]: [Vec3; 3], at: Vec3) -> Self {
         let facing = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         let size = a.distance(b).max(b.distance(c)).max(c.distance(a));
         Self { at, facing, size, both_sides: false }
@@ -206,7 +206,7 @@ mod tests {
     #[test]
     fn a_leak_comes_into_the_middle_and_the_eye_stays() {
         let viewport = vec2(640.0, 480.0);
-        let bounds = Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter());
+        let bounds = Bounds::new([Vec3::NEG_ONE, Vec3::ONE].into_iter());
         let place = Vec3::new(0.4, -0.3, 0.5);
         for orthographic in [false, true] {
             let judged = Camera { orthographic, ..Camera::framing(&bounds, viewport) };

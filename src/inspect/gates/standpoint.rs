@@ -36,7 +36,7 @@ pub struct Standpoints {
 impl Standpoints {
     /// Those of a spot. `judged` is the camera of the judged picture, `viewport` that picture's size in px, and `bounds` are the
     /// mesh's.
-    pub fn of(spot: &Spot, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Self {
+    pub fn new(spot: &Spot, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Self {
         let first = spot.camera(judged, viewport, bounds);
         let mut both_sides = false;
         let (size, facing) = match *spot {
@@ -128,7 +128,7 @@ mod tests {
     use super::*;
 
     fn judged(orthographic: bool) -> (Camera, Vec2, Bounds) {
-        let (viewport, bounds) = (vec2(640.0, 480.0), Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter()));
+        let (viewport, bounds) = (vec2(640.0, 480.0), Bounds::new([Vec3::NEG_ONE, Vec3::ONE].into_iter()));
         (Camera { orthographic, ..Camera::framing(&bounds, viewport) }, viewport, bounds)
     }
 
@@ -139,7 +139,7 @@ mod tests {
     fn a_place_is_seen_from_the_side_that_faces_it_most_and_is_clear() {
         for orthographic in [false, true] {
             let (camera, viewport, bounds) = judged(orthographic);
-            let standpoints = Standpoints::of(&Spot::Edge(EDGE), &camera, viewport, &bounds);
+            let standpoints = Standpoints::new(&Spot::Edge(EDGE), &camera, viewport, &bounds);
             let (at, eyes, near) = standpoints.lines(|camera| camera).expect("a known place");
             assert!(at == EDGE.at && near < 0.05);
             let direction = |camera: &Camera| (camera.eye() - at).normalize();
@@ -161,7 +161,7 @@ mod tests {
     fn a_fold_is_seen_from_the_side_that_is_outside_of_the_mesh() {
         let (camera, viewport, bounds) = judged(false);
         let spot = PatchSpot { at: Vec3::ZERO, facing: Vec3::Z, size: 0.1, both_sides: true };
-        let standpoints = Standpoints::of(&Spot::Patch(spot), &camera, viewport, &bounds);
+        let standpoints = Standpoints::new(&Spot::Patch(spot), &camera, viewport, &bounds);
         let (at, eyes, _) = standpoints.lines(|camera| camera).expect("a known place");
         let beyond = eyes[0].distance(at);
         assert!(beyond > 2.0 * bounds.radius(), "the lines go on to where the mesh ends: {beyond}");
@@ -178,13 +178,13 @@ mod tests {
     fn a_leak_is_seen_from_the_judged_eye_unless_it_is_hidden_there() {
         let (camera, viewport, bounds) = judged(false);
         let leak = |torn| Spot::Leak { px: 0.5 * viewport, pixels: 9, torn };
-        let known = Standpoints::of(&leak(Some(EDGE)), &camera, viewport, &bounds);
+        let known = Standpoints::new(&leak(Some(EDGE)), &camera, viewport, &bounds);
         let (_, eyes, _) = known.lines(|camera| camera).expect("a known place");
         assert!(eyes[0].distance(camera.eye()) < 1e-3);
         let clear = |first: f64| [vec![first], vec![1.0; eyes.len() - 1]].concat();
         assert!(known.clearest(&clear(1.0)).eye().distance(camera.eye()) < 1e-3);
         assert!(known.clearest(&clear(0.9)).eye().normalize().distance(Vec3::Z) < 1e-3, "from where the edge faces");
-        let unknown = Standpoints::of(&leak(None), &camera, viewport, &bounds);
+        let unknown = Standpoints::new(&leak(None), &camera, viewport, &bounds);
         assert!(unknown.lines(|camera| camera).is_none() && unknown.clearest(&[]).eye().distance(camera.eye()) < 1e-3);
     }
 }

@@ -69,7 +69,7 @@ fn order(convention: Convention, side: fn(Convention, u32) -> u32) -> [u32; 3] {
 
 impl Agreement {
     /// Compares the sides of every edge as they are cut under a convention.
-    pub fn of(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
+    pub fn new(topology: &Topology, given: &[HullFactors], convention: Convention) -> Self {
         let culled: Vec<bool> = given.iter().map(|patch| patch.culls()).collect();
         let shown = order(convention, domain_side);
         let mut agreement = Self {
@@ -160,7 +160,7 @@ mod tests {
         ] {
             let (topology, given) = written(wrote);
             for read in Convention::ALL {
-                let agreement = Agreement::of(&topology, &given, read);
+                let agreement = Agreement::new(&topology, &given, read);
                 assert_eq!(consistent(&agreement), [Some(named)], "{wrote:?} as {read:?}");
                 let agrees = (0..3).all(|i| factor_side(wrote, i) == domain_side(read, i));
                 assert_eq!(agreement.edges.is_empty(), agrees, "{wrote:?} as {read:?}");
@@ -173,7 +173,7 @@ mod tests {
         // No convention has this order.
         let (topology, mut given) = written(Convention::D3d11);
         given.iter_mut().for_each(|patch| patch.edges.swap(1, 2));
-        assert_eq!(consistent(&Agreement::of(&topology, &given, Convention::D3d11)), [None]);
+        assert_eq!(consistent(&Agreement::new(&topology, &given, Convention::D3d11)), [None]);
     }
 
     #[test]
@@ -184,7 +184,7 @@ mod tests {
         let edge = topology.sides[side as usize].edge;
         let kept = given[7].edges[0];
         given[7].edges[0] = f32::INFINITY;
-        let agreement = Agreement::of(&topology, &given, Convention::D3d11);
+        let agreement = Agreement::new(&topology, &given, Convention::D3d11);
         assert_eq!(agreement.edges.iter().map(|found| found.edge).collect::<Vec<_>>(), [edge]);
         let other = topology.edge_sides(&topology.edges[edge as usize]).iter().find(|side| side.patch() != 7);
         let other = topology.patches[other.expect("closed").patch() as usize].triangle;
@@ -198,11 +198,11 @@ mod tests {
         let (topology, mut given) = written(Convention::D3d11);
         given[7].edges[0] = f32::NAN;
         given[8].edges[2] = -1.0;
-        let agreement = Agreement::of(&topology, &given, Convention::D3d11);
+        let agreement = Agreement::new(&topology, &given, Convention::D3d11);
         assert_eq!((agreement.patches_culled, agreement.edges.len()), (2, 0));
         assert!(agreement.edges_compared <= 384 - 5 && agreement.edges_compared >= 384 - 6, "{agreement:?}");
         let nothing = vec![HullFactors::default(); given.len()];
-        let agreement = Agreement::of(&topology, &nothing, Convention::D3d11);
+        let agreement = Agreement::new(&topology, &nothing, Convention::D3d11);
         assert_eq!((agreement.edges_compared, agreement.consistent().count()), (0, 6));
     }
 }

@@ -365,13 +365,13 @@ mod tests {
     #[test]
     fn a_patch_that_its_factors_leave_out_beside_one_that_is_drawn_is_a_crack() {
         let mesh = Shape::Torus.build();
-        let topology = Topology::of(&mesh);
+        let topology = Topology::new(&mesh);
         let found = |discarded: &[(u32, [f32; 3])]| {
             let mut given = vec![HullFactors { edges: [3.0; 3], inside: 3.0 }; topology.patches.len()];
             discarded.iter().for_each(|(patch, edges)| given[*patch as usize].edges = *edges);
             let inputs = Settings::default().inputs(view());
             let out = tessellate_given(&mesh, &topology, &inputs, &given);
-            Measured::of(&mesh, &topology, AskedFactors::given(Convention::D3d11, &given), &out).cracks
+            Measured::new(&mesh, &topology, AskedFactors::given(Convention::D3d11, &given), &out).cracks
         };
         assert!(found(&[]).edges.is_empty());
         let [a, b, c] = topology.patch_positions(5);

@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_face_in_a_sphere_is_farthest_from_it_in_its_middle() {
-        let sphere = Arc::new(Truth::of_shape(Shape::Icosphere).expect("a sphere"));
+        let sphere = Arc::new(Truth::from_shape(Shape::Icosphere).expect("a sphere"));
         let field = field([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere);
         let [samples] = &field.chunks[..] else { panic!("one chunk") };
         assert_eq!(field.steps, 24);
@@ -282,7 +282,7 @@ mod tests {
 
     #[test]
     fn a_triangle_with_nan_has_no_samples_and_does_not_count() {
-        let sphere = Arc::new(Truth::of_shape(Shape::Icosphere).expect("a sphere"));
+        let sphere = Arc::new(Truth::from_shape(Shape::Icosphere).expect("a sphere"));
         let field = field([[f32::NAN, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere);
         assert!(field.chunks[0].iter().all(|sample| sample.is_nan()));
         assert_eq!((field.worst(), field.rms()), (None, 0.0));
@@ -291,7 +291,7 @@ mod tests {
     #[test]
     fn many_triangles_have_fewer_samples_each_and_a_cancelled_field_stops() {
         assert_eq!([1, 5_000, 20_000, 60_000, 1_000_000].map(|count| DeviationField::unknown(count).steps), STEPS);
-        let sphere = Arc::new(Truth::of_shape(Shape::Icosphere).expect("a sphere"));
+        let sphere = Arc::new(Truth::from_shape(Shape::Icosphere).expect("a sphere"));
         let progress = Progress::new();
         progress.cancel();
         let field = measured([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere, &progress);
@@ -300,7 +300,7 @@ mod tests {
 
     #[test]
     fn progress_goes_on_from_chunk_to_chunk() {
-        let (truth, progress) = (Truth::of_shape(Shape::Icosphere).expect("a sphere"), Progress::new());
+        let (truth, progress) = (Truth::from_shape(Shape::Icosphere).expect("a sphere"), Progress::new());
         let (target, mesh, topology) = (DeviationTarget::Truth(Arc::new(truth)), Mesh::default(), Topology::default());
         let mut measurement = DeviationMeasurement::new(&target, &mesh, &topology, 4, &progress);
         let vertices = triangle([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);

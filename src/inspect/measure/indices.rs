@@ -47,7 +47,7 @@ pub fn index_differences(
     computed: &[u32],
 ) -> Vec<IndexDifference> {
     let count = layout.per_patch();
-    let dominants = Dominants::of(topology, layout, given);
+    let dominants = Dominants::new(topology, layout, given);
     let mut differences = Vec::new();
     for (patch, computed) in computed.chunks(count).enumerate() {
         let first = patch * count;
@@ -121,7 +121,7 @@ struct Dominants {
 }
 
 impl Dominants {
-    fn of(topology: &Topology, layout: Layout, given: &[u32]) -> Self {
+    fn new(topology: &Topology, layout: Layout, given: &[u32]) -> Self {
         let mut named = Self::default();
         let patches = || topology.patches.iter().zip(given.chunks(layout.per_patch()));
         if layout.parts().any(|(part, _)| part == Part::Dominant) {

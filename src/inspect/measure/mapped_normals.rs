@@ -25,7 +25,7 @@ pub(super) struct MappedSide<'a> {
 
 impl<'a> MappedSide<'a> {
     /// The normal map of a side, an index in [`Topology::sides`]; none if its material has none, or if tangents aren't known.
-    pub(super) fn of(mesh: &'a Mesh, topology: &Topology, side: u32) -> Option<Self> {
+    pub(super) fn new(mesh: &'a Mesh, topology: &Topology, side: u32) -> Option<Self> {
         let details = mesh.details.as_ref()?;
         let side = &topology.sides[side as usize];
         let look = &mesh.materials[topology.material_of(side.patch())].look;

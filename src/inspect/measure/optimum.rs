@@ -241,10 +241,10 @@ fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>
     }
     let alone: Vec<_> = patches.iter_mut().map(|patch| patch.alone(&levels)).collect();
     let lower_bound = alone.iter().map(|own| own.map_or(1, |(_, triangles)| triangles)).sum();
-    let mut own_start = vec![levels[0]; topology.edges.len()];
+    let mut separate_start = vec![levels[0]; topology.edges.len()];
     for (patch, own) in patches.iter().zip(&alone) {
         for (k, &edge) in patch.edges.iter().enumerate() {
-            own_start[edge] = own_start[edge].max(own.map_or(levels[0], |(edges, _)| edges[k]));
+            separate_start[edge] = separate_start[edge].max(own.map_or(levels[0], |(edges, _)| edges[k]));
         }
     }
     let mut search = Search { around: vec![Vec::new(); topology.edges.len()], patches, levels };
@@ -254,7 +254,7 @@ fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>
     let uniform = search.uniform();
     let uniform_start = uniform.map(|(factor, _)| vec![factor; topology.edges.len()]);
     let mut best: Option<(u64, Vec<u32>)> = None;
-    for start in starts.iter().cloned().chain([own_start]).chain(uniform_start) {
+    for start in starts.iter().cloned().chain([separate_start]).chain(uniform_start) {
         let (triangles, edges) = search.improve(start);
         if best.as_ref().is_none_or(|(fewest, _)| triangles < *fewest) {
             best = Some((triangles, edges));

@@ -27,7 +27,7 @@ pub struct PointsDisagreement {
 impl PointsAgreement {
     /// Compares the first side of every edge with the others. `nets` has for each curve the control points near its start and near
     /// its end, in object units.
-    pub fn of(topology: &Topology, curves: &Curves, nets: &[[Vec3; 2]]) -> Self {
+    pub fn new(topology: &Topology, curves: &Curves, nets: &[[Vec3; 2]]) -> Self {
         // The control points of a side in its edge's direction.
         let along_edge = |side: u32| {
             let [ab, ba] = nets[curves.side_curves[side as usize] as usize];
@@ -85,7 +85,7 @@ mod tests {
             })
             .collect();
         nets[curves.side_curves[side as usize] as usize][0] += off;
-        let agreement = PointsAgreement::of(&topology, &curves, &nets);
+        let agreement = PointsAgreement::new(&topology, &curves, &nets);
         (topology, agreement)
     }
 

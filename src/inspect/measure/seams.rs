@@ -87,7 +87,7 @@ impl Seams {
             topology.side_corners(&topology.sides[side as usize]).map(|corner| mesh.corners[corner as usize].normal)
         });
         self.shading.edges += 1;
-        let mapped = [first, second].map(|side| MappedSide::of(mesh, topology, side));
+        let mapped = [first, second].map(|side| MappedSide::new(mesh, topology, side));
         let is_mapped = mapped.iter().any(Option::is_some);
         self.mapped.edges += u64::from(is_mapped);
         for ((t, a), b) in outlines.weights(topology, first).into_iter().zip(&a.points).zip(&b.points) {
@@ -130,11 +130,11 @@ mod tests {
     use geometry::tessellate::{Convention, Inputs, LodView, Normals, Partitioning, Tessellation, tessellate};
 
     fn seams(mesh: &Mesh, tessellation: Tessellation) -> Seams {
-        let topology = Topology::of(mesh);
+        let topology = Topology::new(mesh);
         let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
         let out = tessellate(mesh, &topology, &inputs, None);
         let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-        Measured::of(mesh, &topology, asked, &out).seams
+        Measured::new(mesh, &topology, asked, &out).seams
     }
 
     /// A roof of two triangles, which meet at the edge from (0, 0, 0) to (0, 2, 0). `lean` says how far the normals of its sides
@@ -253,13 +253,13 @@ mod tests {
     fn edges_with_different_numbers_of_points_are_left_out() {
         let mirrored = Tessellation { convention: Convention::Mirrored, ..Tessellation::default() };
         let mesh = Shape::CubeSplit.build();
-        let topology = Topology::of(&mesh);
+        let topology = Topology::new(&mesh);
         let inputs = Inputs::new(&mirrored, LodView::new(Mat4::IDENTITY, Vec2::ONE));
         // Each edge has a factor of its own, and a wrong convention gives it to others.
         let factors: Vec<f32> = (0..topology.edges.len()).map(|edge| 1.0 + edge as f32).collect();
         let out = tessellate(&mesh, &topology, &inputs, Some(&factors));
         let asked = AskedFactors::new(mirrored.edges, mirrored.convention, factors);
-        let found = Measured::of(&mesh, &topology, asked, &out).seams;
+        let found = Measured::new(&mesh, &topology, asked, &out).seams;
         assert!(found.shading.edges < 12, "{found:?}");
     }
 }

@@ -80,13 +80,13 @@ mod tests {
     #[test]
     fn the_torn_edge_that_comes_closest_on_screen_is_found() {
         let mesh = Shape::CubeSplit.build();
-        let topology = Topology::of(&mesh);
+        let topology = Topology::new(&mesh);
         let found = |surface| {
             let tessellation = Tessellation { surface, factor: 4.0, ..Tessellation::default() };
             let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
             let out = tessellate(&mesh, &topology, &inputs, None);
             let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-            Measured::of(&mesh, &topology, asked, &out)
+            Measured::new(&mesh, &topology, asked, &out)
         };
         // The cube's corners are at 0.577 along each axis, 57.7 px from the middle of a picture that is seen along -Z.
         let view = ScreenView { clip_from_object: Mat4::from_scale(vec3(0.5, 0.5, 1.0)), viewport: vec2(400.0, 400.0) };

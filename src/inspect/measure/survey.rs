@@ -35,7 +35,7 @@ pub struct Culled {
 }
 
 impl Culled {
-    fn of(factors: &[PatchFactors]) -> Self {
+    fn new(factors: &[PatchFactors]) -> Self {
         let mut culled = Self::default();
         for patch in factors.iter().filter(|patch| patch_is_culled(**patch)) {
             *match patch.inside {
@@ -77,7 +77,7 @@ impl<'a> Survey<'a> {
     /// A survey of patches with these factors.
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
         let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-        let culled = Culled::of(&factors);
+        let culled = Culled::new(&factors);
         let outlines = Outlines::new(factors, asked);
         Self { mesh, topology, ulp: ulp(topology), culled, outlines, folded: Vec::new(), not_finite: 0, extent }
     }
@@ -133,7 +133,7 @@ impl Visitor for Survey<'_> {
 
 impl Measured {
     /// Measures what the CPU emitted.
-    pub fn of(mesh: &Mesh, topology: &Topology, asked: AskedFactors, out: &Tessellated) -> Self {
+    pub fn new(mesh: &Mesh, topology: &Topology, asked: AskedFactors, out: &Tessellated) -> Self {
         let mut survey = Survey::new(mesh, topology, out.patch_factors.clone(), asked);
         survey.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
         survey.finish()
@@ -162,7 +162,7 @@ mod tests {
         out.vertices.iter_mut().step_by(10_007).for_each(|vertex| vertex.uv = [f32::NAN, 0.0]);
         let measured = |threads| {
             let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-            on_threads(threads, || Measured::of(&mesh, &topology, asked, &out)).expect("threads")
+            on_threads(threads, || Measured::new(&mesh, &topology, asked, &out)).expect("threads")
         };
         let alone = measured(1);
         assert!(alone.folds > 300 && alone.folded.iter().any(|patch| patch.folds > 1), "{}", alone.folds);
@@ -183,7 +183,7 @@ mod tests {
             let mut out = tessellate(&mesh, &topology, &inputs, None);
             out.vertices[0].uv = [f32::NAN, 0.0];
             let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-            let own = Measured::of(&mesh, &topology, asked, &out);
+            let own = Measured::new(&mesh, &topology, asked, &out);
             assert_eq!((own.patches_low, own.patches_at_limit, own.culled.total()), (low, at_limit, 0), "{factor}");
             assert_eq!((own.cracks.edges_compared, own.folds, own.not_finite), (384, 0, 1), "{factor}");
             let positions = out.vertices[1..].iter().map(|vertex| Vec3::from(vertex.position));

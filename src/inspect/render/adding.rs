@@ -104,6 +104,6 @@ impl Added {
 
     /// Records a copy of all samples, row by row.
     pub(super) fn read(&self, gpu: &Gpu, recorder: &mut Recorder) -> Readback {
-        Readback::of_texture(gpu, recorder.encoder(), &self.texture)
+        Readback::from_texture(gpu, recorder.encoder(), &self.texture)
     }
 }

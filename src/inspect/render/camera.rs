@@ -215,7 +215,7 @@ impl Camera {
     /// The view for LOD and clipping.
     pub fn lod_view(&self, viewport: Vec2, bounds: &Bounds) -> LodView {
         let radius = bounds.radius().max(f32::MIN_POSITIVE);
-        LodView { eye: self.eye(), radius, ..LodView::new(self.clip_from_object(viewport, bounds), viewport * 0.5) }
+        LodView::new(self.clip_from_object(viewport, bounds), viewport * 0.5).seen_from(self.eye(), radius)
     }
 }
 
@@ -226,7 +226,7 @@ mod tests {
     use glam::vec2;
 
     fn unit_bounds() -> Bounds {
-        Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter())
+        Bounds::new([Vec3::NEG_ONE, Vec3::ONE].into_iter())
     }
 
     #[test]

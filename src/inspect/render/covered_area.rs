@@ -110,8 +110,8 @@ mod tests {
 
     #[test]
     fn an_area_holds_all_that_is_seen_of_a_box_and_little_more() {
-        let all = Bounds::of([Vec3::splat(-1.0), Vec3::ONE].into_iter());
-        let part = Bounds::of([vec3(0.1, 0.2, -0.3), vec3(0.4, 0.9, 0.2)].into_iter());
+        let all = Bounds::new([Vec3::splat(-1.0), Vec3::ONE].into_iter());
+        let part = Bounds::new([vec3(0.1, 0.2, -0.3), vec3(0.4, 0.9, 0.2)].into_iter());
         let viewport = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
         let framed = Camera::framing(&all, viewport);
         // From afar, from so near that the box reaches behind the eye, and from within.
@@ -144,16 +144,16 @@ mod tests {
 
     #[test]
     fn what_is_out_of_view_covers_nothing() {
-        let all = Bounds::of([Vec3::splat(-1.0), Vec3::ONE].into_iter());
+        let all = Bounds::new([Vec3::splat(-1.0), Vec3::ONE].into_iter());
         let viewport = Vec2::new(SIZE[0] as f32, SIZE[1] as f32);
         let camera = Camera { azimuth: 0.0, elevation: 0.0, ..Camera::framing(&all, viewport) };
         let matrix = camera.clip_from_object(viewport, &all);
-        let around = |center: Vec3| Bounds::of([center - 0.5, center + 0.5].into_iter());
+        let around = |center: Vec3| Bounds::new([center - 0.5, center + 0.5].into_iter());
         for center in [camera.eye() + vec3(0.0, 0.0, 2.0), vec3(40.0, 0.0, 0.0), vec3(0.0, -40.0, 0.0)] {
             assert_eq!(covered_area(&around(center), matrix, SIZE), [0; 4], "{center}");
         }
         assert_eq!(covered_area(&all.grown(1e9), matrix, SIZE), [0, 0, SIZE[0], SIZE[1]]);
-        let unknown = Bounds::of([Vec3::ZERO, Vec3::ONE].into_iter()).grown(f32::NAN);
+        let unknown = Bounds::new([Vec3::ZERO, Vec3::ONE].into_iter()).grown(f32::NAN);
         assert_eq!(covered_area(&unknown, matrix, SIZE), [0, 0, SIZE[0], SIZE[1]]);
     }
 

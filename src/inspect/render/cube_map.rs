@@ -14,7 +14,7 @@ pub struct CubeMap {
 
 impl CubeMap {
     /// Takes the mean of four directions for each texel of the first level, and the mean of four texels for those of the others.
-    pub fn of(size: u32, radiance: impl Fn(Vec3) -> Vec3) -> Self {
+    pub fn new(size: u32, radiance: impl Fn(Vec3) -> Vec3) -> Self {
         let size = size.next_power_of_two();
         let mean = |face, x: u32, y: u32| {
             let spots = [(0.25, 0.25), (0.75, 0.25), (0.25, 0.75), (0.75, 0.75)];
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn solid_angles_add_up_to_the_sphere() {
-        let map = CubeMap::of(32, |_| Vec3::ONE);
+        let map = CubeMap::new(32, |_| Vec3::ONE);
         let sum: f32 = map.lights().map(|(_, solid_angle, _)| solid_angle).sum();
         assert!((sum / (4.0 * PI) - 1.0).abs() < 1e-3, "{sum}");
     }
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn samples_follow_what_the_map_was_made_of_and_join_at_borders() {
         let radiance = |direction: Vec3| 0.5 + 0.5 * direction;
-        let map = CubeMap::of(64, radiance);
+        let map = CubeMap::new(64, radiance);
         assert_eq!(map.levels.len(), 7);
         for direction in [vec3(0.3, 0.9, 0.1), vec3(1.0, 0.999, 0.0), vec3(-1.0, 0.2, -1.001), vec3(0.1, -0.2, 0.9)] {
             let direction = direction.normalize();

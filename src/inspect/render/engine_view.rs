@@ -10,7 +10,7 @@ impl Camera {
     ///
     /// # Errors
     /// The matrix isn't that of a view.
-    pub fn of_matrix(matrix: &ViewProjection, bounds: &Bounds) -> Result<Self, ViewProjectionError> {
+    pub fn from_matrix(matrix: &ViewProjection, bounds: &Bounds) -> Result<Self, ViewProjectionError> {
         let rows = matrix.rows()?;
         let axes = rows.axes();
         let (eye, projection) = match rows.eye() {
@@ -22,7 +22,7 @@ impl Camera {
             }
         };
         let file = FileCamera { name: String::new(), eye, axes, projection };
-        let camera = Self { rows: Some(rows), ..Self::of_file(&file, bounds) };
+        let camera = Self { rows: Some(rows), ..Self::from_file(&file, bounds) };
         if camera.is_sound() { Ok(camera) } else { Err(ViewProjectionError::TooFar) }
     }
 }

@@ -85,7 +85,7 @@ impl Environment {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn studio(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, studio_light))
+        Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, studio_light))
     }
 
     /// The same light (linear RGB) from all sides, under which a white surface that absorbs nothing can't be seen.
@@ -93,23 +93,23 @@ impl Environment {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
-        Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |_| light.into()))
+        Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, |_| light.into()))
     }
 
     /// The light of a panorama.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub fn of_panorama(gpu: &Gpu, panorama: Panorama) -> Result<Self, GpuError> {
+    pub fn from_panorama(gpu: &Gpu, panorama: Panorama) -> Result<Self, GpuError> {
         let backdrop = Lazy::default();
         backdrop.get_or_make(gpu, || Backdrop::new(gpu, &panorama))?;
         // A quarter of a turn has at least as many pixels as a face has texels, and at most twice as many.
         let panorama = panorama.reduced(4 * ENVIRONMENT_SIZE as usize);
-        let own = Self::of(gpu, &CubeMap::of(ENVIRONMENT_SIZE, |direction| panorama.light_from(direction)))?;
+        let own = Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, |direction| panorama.light_from(direction)))?;
         Ok(Self { backdrop, ..own })
     }
 
-    fn of(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
+    fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
         let irradiance = irradiance(light);
         let (source, cube, dfg, sampler) =
             gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), linear_sampler(gpu)))?;
@@ -122,7 +122,7 @@ impl Environment {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(crate) fn backdrop(&self, gpu: &Gpu) -> Result<&Backdrop, GpuError> {
-        self.backdrop.get_or_make(gpu, || Backdrop::new(gpu, &Panorama::of(STUDIO_SIZE, studio_light)))
+        self.backdrop.get_or_make(gpu, || Backdrop::new(gpu, &Panorama::from_radiance(STUDIO_SIZE, studio_light)))
     }
 
     /// The `Surroundings` of a picture for which the light is turned and shown like this. Each picture has its own, so that one

@@ -13,7 +13,7 @@ impl Camera {
     /// The view through a camera of a file, of a mesh with these bounds. The target is where the camera's axis passes the middle of
     /// the mesh. Its height is the camera's in pictures of any shape. Nothing far away is cut off, and of a perspective view only what
     /// is nearer than a thousandth of the distance to the target.
-    pub fn of_file(file: &FileCamera, bounds: &Bounds) -> Self {
+    pub fn from_file(file: &FileCamera, bounds: &Bounds) -> Self {
         let [right, _, back] = file.axes.map(Vec3::as_dvec3);
         // Straight up or down all azimuths are the same, and the roll has the rest.
         let across = back.x.hypot(back.z);
@@ -115,7 +115,7 @@ mod tests {
     fn corners_of_a_cube_are_where_the_specification_puts_them() {
         let corners = (0..8).map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 2.0 - 1.0);
         let corners: Vec<_> = corners.collect();
-        let bounds = Bounds::of(corners.iter().copied());
+        let bounds = Bounds::new(corners.iter().copied());
         let [near, far] = [0.01_f64, 100.0];
         for (size, yfov) in [([1280.0, 720.0], 0.4), ([300.0, 900.0], 1.2), ([1000.0, 1000.0], 0.9)] {
             for (turn, tilt, roll) in
@@ -156,7 +156,7 @@ mod tests {
                     let (file, view) = seen_through(&camera, parent, rotation, place);
                     assert_eq!(file.name, "Shot");
                     let viewport = vec2(size[0] as f32, size[1] as f32);
-                    let own = Camera::of_file(&file, &bounds);
+                    let own = Camera::from_file(&file, &bounds);
                     assert!(own.is_sound(), "{own:?}");
                     let clip = own.clip_from_object(viewport, &bounds);
                     for &corner in &corners {
@@ -171,23 +171,23 @@ mod tests {
 
     #[test]
     fn a_camera_within_or_behind_the_mesh_gives_a_valid_view() {
-        let bounds = Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter());
+        let bounds = Bounds::new([Vec3::NEG_ONE, Vec3::ONE].into_iter());
         for eye in [Vec3::ZERO, Vec3::Z * -50.0, Vec3::ONE * 1e9] {
             for projection in [Projection::Perspective(3.1), Projection::Orthographic(1e-10)] {
                 let file = FileCamera { name: String::new(), eye, axes: [Vec3::X, Vec3::Y, Vec3::Z], projection };
-                let view = Camera::of_file(&file, &bounds);
+                let view = Camera::from_file(&file, &bounds);
                 assert!(view.is_sound(), "{view:?}");
                 assert!(view.orthographic || view.eye().distance(eye) <= 1e-6 * (1.0 + eye.length()), "{view:?}");
             }
         }
-        let view = Camera::of_file(
+        let view = Camera::from_file(
             &FileCamera {
                 name: String::new(),
                 eye: Vec3::Y,
                 axes: [Vec3::X, Vec3::NEG_Z, Vec3::Y],
                 projection: Projection::Perspective(0.7),
             },
-            &Bounds::of(std::iter::once(Vec3::ZERO)),
+            &Bounds::new(std::iter::once(Vec3::ZERO)),
         );
         assert!(view.is_sound(), "a mesh of one point");
     }

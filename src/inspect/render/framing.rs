@@ -40,7 +40,7 @@ impl Camera {
         let reach = f64::from(reach).max(0.0);
         let extent = (most - least).max_element() + 2.0 * reach;
         if !(extent > 0.0 && extent.is_finite()) {
-            let bounds = if extent == 0.0 { Bounds::of(std::iter::once(self.at(least))) } else { Bounds::default() };
+            let bounds = if extent == 0.0 { Bounds::new(std::iter::once(self.at(least))) } else { Bounds::default() };
             return self.frame(&bounds, viewport);
         }
         let middle = 0.5 * (least.z + most.z);
@@ -107,7 +107,7 @@ mod tests {
     use geometry::view::project;
 
     fn unit_bounds() -> Bounds {
-        Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter())
+        Bounds::new([Vec3::NEG_ONE, Vec3::ONE].into_iter())
     }
 
     #[test]
@@ -123,7 +123,7 @@ mod tests {
 
     /// The least and greatest x and y of fitted positions on screen, from -1 to 1 in the viewport.
     fn filled(camera: &Camera, positions: &[Vec3], reach: f32, viewport: Vec2) -> [Vec2; 2] {
-        let bounds = Bounds::of(positions.iter().copied());
+        let bounds = Bounds::new(positions.iter().copied());
         let clip = camera.clip_from_object(viewport, &bounds);
         let axes = camera.axes();
         let (mut least, mut most) = (Vec2::INFINITY, Vec2::NEG_INFINITY);
@@ -156,7 +156,7 @@ mod tests {
                     (0.0, -89.9, false, 0.3),
                     (123.0, 45.0, true, 0.2),
                 ] {
-                    let bounds = Bounds::of(placed.iter().copied());
+                    let bounds = Bounds::new(placed.iter().copied());
                     let mut camera = Camera { azimuth, elevation, orthographic, ..Camera::framing(&bounds, viewport) };
                     camera.fit(placed.iter().copied(), reach * size, viewport);
                     let [least, most] = filled(&camera, &placed, reach * size, viewport);
@@ -173,7 +173,7 @@ mod tests {
     fn fitting_comes_nearer_than_framing() {
         let viewport = vec2(300.0, 240.0);
         let tall = [vec3(0.0, -1.0, 0.0), vec3(0.1, 1.0, 0.0), vec3(0.0, 0.0, 0.1)];
-        let framed = Camera::framing(&Bounds::of(tall.into_iter()), viewport);
+        let framed = Camera::framing(&Bounds::new(tall.into_iter()), viewport);
         let mut fitted = framed;
         fitted.fit(tall.into_iter(), 0.0, viewport);
         assert!(fitted.distance < 0.99 * framed.distance, "{fitted:?}");
@@ -196,7 +196,7 @@ mod tests {
                     camera.target.is_finite() && camera.distance.is_finite() && camera.distance > 0.0,
                     "{camera:?}"
                 );
-                let bounds = Bounds::of(positions.iter().copied());
+                let bounds = Bounds::new(positions.iter().copied());
                 let clip = camera.clip_from_object(viewport, &bounds);
                 let within = |p: Vec3| project(clip, viewport, p).is_some_and(|at| at.distance(viewport * 0.5) < 1.0);
                 assert!(!seen || positions.iter().all(|&p| within(p)), "{camera:?}");

@@ -78,7 +78,7 @@ mod tests {
 
     #[test]
     fn the_ground_is_under_the_mesh_and_its_lines_are_at_multiples_of_the_spacing() {
-        let bounds = Bounds::of([vec3(100.3, -2.0, -7.0), vec3(104.3, 1.0, -3.0)].into_iter());
+        let bounds = Bounds::new([vec3(100.3, -2.0, -7.0), vec3(104.3, 1.0, -3.0)].into_iter());
         let Ground { middle, spacing } = Ground::under(&bounds);
         assert_eq!((spacing, middle), (0.5, vec3(102.5, -2.0, -5.0)));
         assert_eq!(Ground::under(&Bounds::default()), Ground { middle: Vec3::ZERO, spacing: 1.0 });

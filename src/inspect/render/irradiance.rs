@@ -50,9 +50,9 @@ mod tests {
 
     #[test]
     fn an_even_light_gives_itself() {
-        let map = CubeMap::of(32, |_| Vec3::new(1.0, 0.5, 0.25));
+        let map = CubeMap::new(32, |_| Vec3::new(1.0, 0.5, 0.25));
         let coefficients = irradiance(&map);
-        for (normal, ..) in CubeMap::of(2, |_| Vec3::ZERO).lights() {
+        for (normal, ..) in CubeMap::new(2, |_| Vec3::ZERO).lights() {
             assert!(irradiance_of(&coefficients, normal).distance(Vec3::new(1.0, 0.5, 0.25)) < 1e-3);
         }
     }
@@ -61,9 +61,9 @@ mod tests {
     #[test]
     fn smooth_lights_give_their_integral() {
         let map =
-            CubeMap::of(32, |d| Vec3::new(1.0 + 0.5 * d.y, 1.0 + d.x * d.z, 1.0 + 0.4 * d.x * d.x - 0.3 * d.z * d.y));
+            CubeMap::new(32, |d| Vec3::new(1.0 + 0.5 * d.y, 1.0 + d.x * d.z, 1.0 + 0.4 * d.x * d.x - 0.3 * d.z * d.y));
         let coefficients = irradiance(&map);
-        for (normal, ..) in CubeMap::of(4, |_| Vec3::ZERO).lights() {
+        for (normal, ..) in CubeMap::new(4, |_| Vec3::ZERO).lights() {
             let (found, exact) = (irradiance_of(&coefficients, normal), integrated(&map, normal));
             assert!(found.distance(exact) < 3e-3, "{normal}: {found} {exact}");
         }

@@ -59,7 +59,7 @@ fn sphere_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<w
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     });
-    let view = upload(gpu, &materials.mipmaps, picture, ImageUse::of(MipFilter::Colors))?;
+    let view = upload(gpu, &materials.mipmaps, picture, ImageUse::new(MipFilter::Colors))?;
     let bound = [
         (0, constants.as_entire_binding()),
         (1, wgpu::BindingResource::TextureView(&view)),

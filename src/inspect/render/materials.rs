@@ -59,10 +59,10 @@ impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
         let depths = [(HIDING_DEPTHS_BINDING, FRAGMENT, depths(gpu))];
         let lights = [&Environment::bindings(LIGHT_BINDING)[..], &[(FILE_LIGHTS_BINDING, FRAGMENT, UNIFORM)]].concat();
-        let lit = [own_bindings(&all_images()), lights].concat();
-        let found = [&own_bindings(&IMAGES_OF_LAYERS)[..], &depths].concat();
+        let lit = [user_bindings(&all_images()), lights].concat();
+        let found = [&user_bindings(&IMAGES_OF_LAYERS)[..], &depths].concat();
         Self {
-            layout: group_layout(gpu, "material", &own_bindings(&[0])),
+            layout: group_layout(gpu, "material", &user_bindings(&[0])),
             lit_layout: group_layout(gpu, "lit material", &lit),
             found_layout: group_layout(gpu, "found material", &found),
             white: white(gpu),
@@ -96,7 +96,7 @@ impl Materials {
         }
         for slot in Slot::ALL {
             if let Some(map) = &material.look.maps[slot as usize] {
-                let view = textures.view(gpu, &self.mipmaps, &map.texture, ImageUse::of(MipFilter::of_map(slot)))?;
+                let view = textures.view(gpu, &self.mipmaps, &map.texture, ImageUse::new(MipFilter::from_map(slot)))?;
                 images[1 + slot as usize] = (view, sampler(map.sampling));
             }
         }
@@ -180,7 +180,7 @@ fn map_place(map: Option<&Map>) -> MapPlace {
 }
 
 /// The constants, and a texture and a sampler for each of these images.
-fn own_bindings(images: &[usize]) -> Vec<Binding> {
+fn user_bindings(images: &[usize]) -> Vec<Binding> {
     let both = images.iter().map(|&image| image_binding(image));
     let both = both.flat_map(|binding| [(binding, FRAGMENT, IMAGE), (binding + 1, FRAGMENT, SAMPLER)]);
     std::iter::once((0, FRAGMENT, UNIFORM)).chain(both).collect()
@@ -198,7 +198,7 @@ fn image_binding(image: usize) -> u32 {
     }
 }
 
-/// What is bound at [`own_bindings`].
+/// What is bound at [`user_bindings`].
 fn own_bound<'a>(
     constants: &'a wgpu::Buffer,
     images: &'a [(wgpu::TextureView, wgpu::Sampler); IMAGES],

@@ -42,7 +42,7 @@ impl Needs {
 
     /// What a material of a mesh needs of its shader with these settings; or, where materials share a shader, what all of the mesh's
     /// materials need together.
-    pub(super) fn of(mesh: &Mesh, material: &Material, settings: &Settings, kind: PictureKind) -> Self {
+    pub(super) fn new(mesh: &Mesh, material: &Material, settings: &Settings, kind: PictureKind) -> Self {
         let own = if kind.shares_shaders { &mesh.materials } else { std::slice::from_ref(material) };
         let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
         let details = mesh.details.is_some();
@@ -108,7 +108,12 @@ pub(super) struct Cut {
 
 impl Cut {
     /// How one of a mesh's materials is cut under these settings, in such pictures; none if it isn't, or if it is lit from all around.
-    pub(super) fn of(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Option<Self> {
+    pub(super) fn from_settings(
+        settings: &Settings,
+        mesh: &Mesh,
+        material: &Material,
+        kind: PictureKind,
+    ) -> Option<Self> {
         let is_seen = settings.overlays.colors.source() == ColorSource::Materials && !settings.shows_materials();
         let is_cut = is_seen && matches!(material.look.alpha, Alpha::Mask(_));
         is_cut.then_some(Self { details: mesh.details.is_some(), samples: kind.samples > 1 })
@@ -145,7 +150,7 @@ mod tests {
 
     /// What the materials of a mesh need together.
     fn needs(mesh: &Mesh, settings: &Settings) -> Needs {
-        Needs::of(mesh, &mesh.materials[0], settings, kind(4, false))
+        Needs::new(mesh, &mesh.materials[0], settings, kind(4, false))
     }
 
     #[test]
@@ -198,7 +203,7 @@ mod tests {
         velvet.look.sheen_color = [0.1; 3];
         mesh.materials.extend([coated, velvet]);
         let kind = PictureKind { shares_shaders: false, ..kind(4, false) };
-        let own = mesh.materials.iter().map(|own| Needs::of(&mesh, own, &Settings::default(), kind));
+        let own = mesh.materials.iter().map(|own| Needs::new(&mesh, own, &Settings::default(), kind));
         assert!(own.eq([NOTHING, Needs { coat: true, ..NOTHING }, Needs { sheen: true, ..NOTHING }]));
     }
 }

@@ -116,7 +116,7 @@ impl Picker {
                 run.record(&mut recorder, scene, &self.emitted, 3 * triangles, index == 0)?;
             }
         }
-        let mut readback = Readback::of_buffers(gpu, recorder.encoder(), [(&run.pick, 0..run.pick.size())]);
+        let mut readback = Readback::from_buffers(gpu, recorder.encoder(), [(&run.pick, 0..run.pick.size())]);
         recorder.submit();
         readback.request();
         Ok(Picking(readback))

@@ -34,7 +34,7 @@ pub struct Renderer {
     matcaps: Matcaps,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
-    /// The buffer that is bound where deviations, or patches' own least, aren't known.
+    /// The buffer that is bound where deviations, or patches' minimum triangle counts, aren't known.
     unknown: wgpu::Buffer,
     samples: u32,
     /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.

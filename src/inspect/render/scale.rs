@@ -41,7 +41,7 @@ pub(crate) const SIZE_SCALE: Scale = Scale {
     colors: hex_colors([0xe4eef6, 0xcbdeee, 0xaecbe3, 0x8fb5d6, 0x709dc6, 0x5584b2, 0x3d6a9b]),
 };
 
-/// The scale for how many times as many triangles a patch has as its own least. It runs from cream to a dark red (ColorBrewer's
+/// The scale for how many times as many triangles a patch has as it needs. It runs from cream to a dark red (ColorBrewer's
 /// OrRd, its dark end lightened, so that lines stay visible on it).
 pub const EXCESS_SCALE: Scale = Scale {
     least: 1.0,

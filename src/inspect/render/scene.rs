@@ -88,8 +88,8 @@ impl Scene {
     }
 
     /// Makes a scene of the same mesh for [`Self::set_left`], on any thread. It shares the mesh, topology and images.
-    pub fn beside(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
-        let tessellator = self.tessellator.beside(arena_bytes);
+    pub fn sibling(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
+        let tessellator = self.tessellator.sibling(arena_bytes);
         let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
         let (lights, environment) = (self.lights.clone(), self.environment.clone());
         move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, materials) })

@@ -29,11 +29,11 @@ pub(super) fn surface_draw(
 
 /// What colours a material, and which of its faces are drawn: these, unless it has fronts only.
 fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, kind: PictureKind) -> (Shading, Faces) {
-    if let Some(cut) = Cut::of(settings, mesh, material, kind) {
+    if let Some(cut) = Cut::from_settings(settings, mesh, material, kind) {
         return (Shading::Cut(cut), faces);
     }
     if settings.shows_materials() {
-        let needs = Needs::of(mesh, material, settings, kind).own(material, kind);
+        let needs = Needs::new(mesh, material, settings, kind).own(material, kind);
         return (Shading::Lit(needs), own_faces(settings, material).unwrap_or(faces));
     }
     (DrawnColors::new(settings.overlays.colors).look().map_or(Shading::Textured, Shading::Look), faces)

@@ -18,13 +18,13 @@ pub(super) struct ImageUse {
 
 impl ImageUse {
     /// Without a test of alpha.
-    pub(super) fn of(filter: MipFilter) -> Self {
+    pub(super) fn new(filter: MipFilter) -> Self {
         Self { filter, least_alpha: None }
     }
 
     /// As the image of a material's base colour.
     pub(super) fn base_color(material: &Material) -> Self {
-        let filter = MipFilter::of_base_color(material.look.alpha);
+        let filter = MipFilter::from_base_color(material.look.alpha);
         let least_alpha = match material.look.alpha {
             Alpha::Mask(cutoff) => Some((255.0 * cutoff / material.base_color[3] - ROUNDING).ceil()),
             Alpha::Opaque | Alpha::Blend => None,

@@ -7,27 +7,7 @@
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4, vec4};
 use thiserror::Error;
 
-/// What the depth of a clip space is on the near plane, after the division by w, and where it goes from there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DepthRange {
-    /// 0 on the near plane, 1 far away: Direct3D, Vulkan, Metal and WebGPU.
-    ZeroToOne,
-    /// 1 on the near plane, 0 far away: the same with depth reversed.
-    Reversed,
-    /// -1 on the near plane, 1 far away: OpenGL.
-    MinusOneToOne,
-}
-
-impl DepthRange {
-    /// The row whose product with a point is 0 on the near plane and grows into the view.
-    fn near_plane(self, z: DVec4, w: DVec4) -> DVec4 {
-        match self {
-            Self::ZeroToOne => z,
-            Self::Reversed => w - z,
-            Self::MinusOneToOne => w + z,
-        }
-    }
-}
+pub use geometry::view::DepthRange;
 
 /// Where +y of a clip space is on the screen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -53,7 +53,7 @@ choices! {
             "Colours patches whose edge and inside factors are all below 2: without tessellation they would look \
              almost the same and cost less.";
         Excess => "excess", "Excess triangles",
-            "Colours patches by how many times as many triangles they have as their own least: the fewest with which \
+            "Colours patches by how many times as many triangles they have as the minimum that they need: the fewest with which \
              a patch alone would keep the tolerance of LOD by error.";
         Normals => "normals", "Normals",
             "Normals of the tessellated vertices, 18 px long across the view; faint behind the surface. Where there \
@@ -191,7 +191,7 @@ impl Overlays {
     }
 
     /// These overlays on, all others off; none if two of them colour the surface.
-    pub fn of(overlays: &[Overlay]) -> Option<Self> {
+    pub fn new(overlays: &[Overlay]) -> Option<Self> {
         let mut all = Self::default();
         for &overlay in overlays {
             match all.control(overlay) {
@@ -221,7 +221,7 @@ mod tests {
         overlays.toggle(Overlay::Factors);
         assert_eq!(overlays.colors, Colors::Material);
         let factors = Overlays { colors: Colors::Factors, wireframe: true, ..Overlays::default() };
-        assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Wireframe, Overlay::Factors]), Some(factors));
-        assert_eq!(Overlays::of(&[Overlay::Factors, Overlay::Barycentric]), None);
+        assert_eq!(Overlays::new(&[Overlay::Factors, Overlay::Wireframe, Overlay::Factors]), Some(factors));
+        assert_eq!(Overlays::new(&[Overlay::Factors, Overlay::Barycentric]), None);
     }
 }

@@ -251,11 +251,11 @@ impl fmt::Display for Value {
 pub(super) trait Field: Sized {
     fn value(&self) -> Value;
     /// None if the value is of another kind.
-    fn of(value: Value) -> Option<Self>;
+    fn from_value(value: Value) -> Option<Self>;
 
     /// False, with the field unchanged, if the value is of another kind.
     fn put(&mut self, value: Value) -> bool {
-        let own = Self::of(value);
+        let own = Self::from_value(value);
         let is_taken = own.is_some();
         own.into_iter().for_each(|own| *self = own);
         is_taken
@@ -270,7 +270,7 @@ macro_rules! named_fields {
                 Value::Name(self.name())
             }
 
-            fn of(value: Value) -> Option<Self> {
+            fn from_value(value: Value) -> Option<Self> {
                 if let Value::Name(name) = value { Self::named(name) } else { None }
             }
         })+
@@ -290,10 +290,10 @@ impl Field for FileUnit {
         }
     }
 
-    fn of(value: Value) -> Option<Self> {
+    fn from_value(value: Value) -> Option<Self> {
         match value {
             Value::Name(name) => LengthUnit::named(name).map(Self::Named),
-            Value::Number(metres) => Self::of_metres(metres),
+            Value::Number(metres) => Self::from_metres(metres),
             _ => None,
         }
     }
@@ -304,8 +304,8 @@ impl<T: Field> Field for Option<T> {
         self.as_ref().map_or(Value::Unset, Field::value)
     }
 
-    fn of(value: Value) -> Option<Self> {
-        if value == Value::Unset { Some(None) } else { T::of(value).map(Some) }
+    fn from_value(value: Value) -> Option<Self> {
+        if value == Value::Unset { Some(None) } else { T::from_value(value).map(Some) }
     }
 }
 
@@ -314,7 +314,7 @@ impl Field for f32 {
         Value::Number(*self)
     }
 
-    fn of(value: Value) -> Option<Self> {
+    fn from_value(value: Value) -> Option<Self> {
         if let Value::Number(number) = value { Some(number) } else { None }
     }
 }
@@ -324,7 +324,7 @@ impl Field for bool {
         Value::Switch(*self)
     }
 
-    fn of(value: Value) -> Option<Self> {
+    fn from_value(value: Value) -> Option<Self> {
         if let Value::Switch(is_on) = value { Some(is_on) } else { None }
     }
 }
@@ -334,7 +334,7 @@ impl Field for [u8; 3] {
         Value::Color(*self)
     }
 
-    fn of(value: Value) -> Option<Self> {
+    fn from_value(value: Value) -> Option<Self> {
         if let Value::Color(color) = value { Some(color) } else { None }
     }
 }
@@ -345,9 +345,9 @@ impl Field for Overlays {
         Value::Names(self.on().map(Choice::name).collect())
     }
 
-    fn of(value: Value) -> Option<Self> {
+    fn from_value(value: Value) -> Option<Self> {
         let Value::Names(names) = value else { return None };
         let overlays: Option<Vec<_>> = names.into_iter().map(Overlay::named).collect();
-        Self::of(&overlays?)
+        Self::new(&overlays?)
     }
 }

@@ -21,7 +21,7 @@ pub(super) enum Relief {
 const MARKS: [&str; 4] = ["@N@", "@D@", "@U@", "@V@"];
 
 impl Relief {
-    pub(super) fn of(own: &Tessellation) -> Self {
+    pub(super) fn new(own: &Tessellation) -> Self {
         match (own.displacement.is_on(), own.used_lod().follows_view()) {
             (false, _) => Self::Off,
             (true, false) => Self::UniformLod,
@@ -41,11 +41,11 @@ impl Relief {
 
     /// Returns a template with the lines that have no mark, or one of its own.
     pub(super) fn chosen_lines(self, template: &str) -> String {
-        template.lines().filter_map(|line| self.own_text(line)).flat_map(|line| [line, "\n"]).collect()
+        template.lines().filter_map(|line| self.user_text(line)).flat_map(|line| [line, "\n"]).collect()
     }
 
     /// Returns a line without its mark; `None` if that is another's.
-    fn own_text(self, line: &str) -> Option<&str> {
+    fn user_text(self, line: &str) -> Option<&str> {
         let marked = MARKS.iter().find_map(|mark| Some((mark, line.strip_prefix(mark)?)));
         marked.map_or(Some(line), |(mark, text)| self.marks().contains(mark).then_some(text))
     }

@@ -222,7 +222,7 @@ impl Export<'_> {
     }
 
     fn relief(&self) -> Relief {
-        Relief::of(self.tessellation)
+        Relief::new(self.tessellation)
     }
 
     fn glsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {

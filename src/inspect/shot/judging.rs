@@ -131,7 +131,7 @@ impl Shot {
     /// The device was lost.
     fn standpoint(&mut self, spot: &Spot) -> Result<Camera, GpuError> {
         let viewport = self.target.viewport();
-        let standpoints = Standpoints::of(spot, &self.view.camera, viewport, &self.scene.bounds);
+        let standpoints = Standpoints::new(spot, &self.view.camera, viewport, &self.scene.bounds);
         let Some((at, eyes, near)) = standpoints.lines(|camera| camera) else { return Ok(standpoints.clearest(&[])) };
         let mut sight = Sight::new(at, eyes, near);
         self.engine.visit(&mut self.scene, &mut [&mut sight])?;
@@ -151,5 +151,5 @@ fn overlays_of(kind: GateKind) -> Overlays {
         GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => &[],
     };
     // None of these lists has two overlays that colour the surface.
-    Overlays::of(shown).unwrap_or_default()
+    Overlays::new(shown).unwrap_or_default()
 }

@@ -8,13 +8,13 @@ pub mod files;
 mod judging;
 pub mod legend;
 mod outline_stats;
-mod own_shader_report;
 mod picture_comparison;
 mod picture_file;
 mod reference;
 mod reference_surface;
 mod stats;
 mod turn;
+mod user_shader_report;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -26,22 +26,22 @@ pub use copied_command::{CopiedCommand, given};
 pub use error::ShotError;
 pub use factors_report::{FactorsFile, agreement_lines, read_factors, said};
 pub use judging::Numbers;
-pub use own_shader_report::{not_numbers_said, report_own_lod, report_own_surface, straight_sides_said};
 pub use picture_comparison::{CompareError, Comparison, compare};
 pub use picture_file::{png_bytes, write_drawn, write_picture};
 pub use reference::{BETWEEN_DRIVERS, Judged, Reference};
 pub use reference_surface::ReferenceSurface;
 pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
+pub use user_shader_report::{not_numbers_said, report_user_lod, report_user_surface, straight_sides_said};
 
 use camera_stats::ViewStats;
 use files::{to_json, write_text};
 use legend::draw_legend;
 use outline_stats::SilhouetteStats;
-use own_shader_report::{LodShaderStats, SurfaceShaderStats};
 use picture_file::write_stamped;
 use reference_surface::{AccuracyStats, DeviationStats};
 use stats::{AnimationStats, LeftStats};
+use user_shader_report::{LodShaderStats, SurfaceShaderStats};
 
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
 use crate::gates::Judgement;
@@ -153,7 +153,7 @@ impl Subject {
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
-    pub fn dress(&self, engine: &Engine, scene: &mut Scene) -> Result<(), GpuError> {
+    pub fn apply_to_scene(&self, engine: &Engine, scene: &mut Scene) -> Result<(), GpuError> {
         scene.matcap = self.matcap.as_ref().map(|picture| engine.renderer.matcap(picture)).transpose()?;
         scene.tessellator.give(self.given.clone())?;
         scene.tessellator.set_surface_shader(self.surface_shader.clone())?;
@@ -212,9 +212,9 @@ impl Shot {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn report_own_shaders(&self) -> Result<(), GpuError> {
-        report_own_surface(&self.engine, &self.scene)?;
-        report_own_lod(&self.engine, &self.scene)
+    pub fn report_user_shaders(&self) -> Result<(), GpuError> {
+        report_user_surface(&self.engine, &self.scene)?;
+        report_user_lod(&self.engine, &self.scene)
     }
 
     /// Moves the picture's camera. LOD follows it, unless that has a camera of its own.
@@ -464,8 +464,8 @@ impl Shot {
         let passes = engine.time(scene, target, camera, *lod_view, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
-        let lod_shader = LodShaderStats::of(engine, scene)?;
-        let surface_shader = SurfaceShaderStats::of(engine, scene)?;
+        let lod_shader = LodShaderStats::new(engine, scene)?;
+        let surface_shader = SurfaceShaderStats::new(engine, scene)?;
         let mut stats = Stats::new(engine, &self.posed, scene, measured, settings, view, &passes);
         (stats.triangles_in_view, stats.triangles_below_3_px) =
             results.sizes.map_or((0, 0), |sizes| (sizes.in_view, sizes.small));

@@ -15,7 +15,7 @@ use gpu::identity;
 use load::files::{file_reason, open_file};
 
 /// The largest mean difference of a square of 8 x 8 px that pictures of two drivers may have, in steps of 255. Chosen by what
-/// an NVIDIA H200 draws otherwise than the software driver, which the manual lists, and by the pairs in `tests/gpu/reference.rs`.
+/// an NVIDIA H200 draws otherwise than the software driver, which docs/results/compare-pictures.md lists, and by the pairs in `tests/gpu/reference.rs`.
 pub const BETWEEN_DRIVERS: f32 = 1.5;
 
 /// The part of stats about the reference.

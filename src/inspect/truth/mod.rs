@@ -59,7 +59,7 @@ pub enum Truth {
 
 impl Truth {
     /// Returns the surface that a shape's corners are samples of, or `None` if the shape has none.
-    pub fn of_shape(shape: Shape) -> Option<Self> {
+    pub fn from_shape(shape: Shape) -> Option<Self> {
         of_shape(shape).map(Self::Exact)
     }
 
@@ -75,17 +75,17 @@ impl Truth {
         progress: &Progress,
     ) -> Result<Option<Self>, LoadError> {
         let shape = source.shape();
-        if let Some(exact) = shape.and_then(Self::of_shape) {
+        if let Some(exact) = shape.and_then(Self::from_shape) {
             return Ok(Some(exact));
         }
         let import = if shape.is_some() { Import::default() } else { import.placement() };
         let selected = Selection { import, ..Selection::default() };
-        Ok(Self::of_mesh(&source.load_selected(selected, limits, progress)?.mesh))
+        Ok(Self::from_mesh(&source.load_selected(selected, limits, progress)?.mesh))
     }
 
     /// Returns a mesh as reference surface, with its interpolated normals, or `None` if it has no triangle. It needn't
     /// be closed or manifold.
-    pub fn of_mesh(mesh: &Mesh) -> Option<Self> {
+    pub fn from_mesh(mesh: &Mesh) -> Option<Self> {
         Reference::new(mesh).map(Self::Mesh)
     }
 

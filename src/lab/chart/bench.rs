@@ -61,7 +61,7 @@ impl Bench<'_> {
             return Ok(None);
         }
         let passes = engine.time(scene, target, camera, inputs.view, &settings, self.effort.runs)?;
-        let time = Time::of(&passes);
+        let time = Time::new(&passes);
         let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None, triangles_by_error: None };
         let wanted = Measurements {
             accuracy: self.truth.map(|truth| (truth, &inputs.view, self.effort.accuracy)),

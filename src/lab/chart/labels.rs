@@ -9,7 +9,7 @@ pub(super) struct Rect {
 
 /// A point that should have a label, and the label's size, in px.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Wanted {
+pub(super) struct LabelRequest {
     pub at: [f64; 2],
     pub size: [f64; 2],
 }
@@ -51,7 +51,7 @@ const GAP: f64 = 6.0;
 /// Places labels inside `bounds` so that they cover no point, line or other label. Earlier labels have the first choice. A
 /// label that fits nowhere gets `None`.
 pub(super) fn place(
-    wanted: &[Wanted],
+    wanted: &[LabelRequest],
     points: &[[f64; 2]],
     lines: &[[[f64; 2]; 2]],
     bounds: Rect,
@@ -69,7 +69,7 @@ pub(super) fn place(
 }
 
 /// The possible places of a label around its point, the best first.
-fn places(&Wanted { at: [x, y], size: [width, height] }: &Wanted) -> [Rect; 8] {
+fn places(&LabelRequest { at: [x, y], size: [width, height] }: &LabelRequest) -> [Rect; 8] {
     let slant = GAP * 0.6;
     let (left, middle, right) = (x - width, x - width / 2.0, x);
     let (above, level, below) = (y - height, y - height / 2.0, y);

@@ -28,7 +28,7 @@ pub fn method_styles(subject: &Subject) -> Vec<(Method, MethodStyle)> {
     let methods = subject.methods();
     let variants = variants(&methods);
     let variant = |method: &Method| variants.iter().position(|other| same(other, method)).unwrap_or(0);
-    methods.iter().map(|method| (*method, MethodStyle::of(*method, variant(method)))).collect()
+    methods.iter().map(|method| (*method, MethodStyle::new(*method, variant(method)))).collect()
 }
 
 /// One method for each pair of partitioning and normals; empty if every LOD has only one such pair, so that the pairs needn't
@@ -69,7 +69,7 @@ pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
     add(&mut surfaces, Sample::Front, "nothing has less error at less cost".to_owned());
     let mut pairs = Vec::new();
     for (index, method) in variants.iter().enumerate() {
-        let style = MethodStyle { color: INK, shape: Shape::Disc, ..MethodStyle::of(*method, index) };
+        let style = MethodStyle { color: INK, shape: Shape::Disc, ..MethodStyle::new(*method, index) };
         let name = format!("{}, {} normals", method.partitioning.name(), method.normals.name());
         add(&mut pairs, Sample::Marker(style), name);
     }

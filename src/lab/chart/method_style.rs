@@ -61,13 +61,13 @@ impl Shape {
 
 impl MethodStyle {
     /// The style of a method. `variant` is its index among methods with the same surface and LOD.
-    pub fn of(method: Method, variant: usize) -> Self {
+    pub fn new(method: Method, variant: usize) -> Self {
         let fill = [Fill::Full, Fill::Hollow, Fill::Pale][variant % 3];
-        Self { fill, dash: dash(method.lod), ..Self::of_surface(method.surface) }
+        Self { fill, dash: dash(method.lod), ..Self::from_surface(method.surface) }
     }
 
     /// The style of a surface under uniform LOD.
-    pub fn of_surface(surface: Surface) -> Self {
+    pub fn from_surface(surface: Surface) -> Self {
         let (color, shape) = match surface {
             Surface::Flat => (INK, Shape::Disc),
             Surface::PnAen => (BLUE, Shape::Polygon(4, 45)),

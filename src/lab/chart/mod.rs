@@ -112,7 +112,7 @@ pub struct Errors {
 const TESSELLATE: [&str; 7] = ["factors", "levels", "counts", "scan", "chunks", "emit", "displace"];
 
 impl Time {
-    pub fn of(passes: &[PassTime]) -> Self {
+    pub fn new(passes: &[PassTime]) -> Self {
         let sum = |which: &dyn Fn(&str) -> bool| {
             passes.iter().filter(|time| which(time.pass)).map(|time| time.ms).sum::<f64>()
         };

@@ -6,7 +6,7 @@ use plotters::coord::cartesian::Cartesian2d;
 use plotters::prelude::*;
 
 use super::axis::Axis;
-use super::labels::{Rect, Wanted, place};
+use super::labels::{LabelRequest, Rect, place};
 use super::legend::{Entry, draw_legend, legend, method_styles};
 use super::method_style::Shape;
 use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, font, place_of, px, width};
@@ -36,14 +36,14 @@ const FINE_GRID: RGBColor = RGBColor(246, 246, 246);
 
 /// Draws charts as a bitmap.
 pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
-    let layout = Layout::of(subjects);
+    let layout = Layout::from_subjects(subjects);
     plot::bitmap([WIDTH, layout.height()], |area| layout.draw(area))
 }
 
 /// Draws charts as an SVG file. Its labels are text.
 pub fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
     plot::use_font()?;
-    let layout = Layout::of(subjects);
+    let layout = Layout::from_subjects(subjects);
     let (size, drawn) = ([WIDTH, layout.height()], [WIDTH, layout.height()].map(|side| side * DENSITY));
     let mut text = String::new();
     {
@@ -66,7 +66,7 @@ struct Layout<'a> {
 const LETTERS: usize = 145;
 
 impl<'a> Layout<'a> {
-    fn of(subjects: &'a [Subject]) -> Self {
+    fn from_subjects(subjects: &'a [Subject]) -> Self {
         let lines = |subject: &Subject| subject.sentences().iter().flat_map(|text| broken(text, LETTERS)).collect();
         Self { subjects: subjects.iter().map(|subject| (subject, lines(subject))).collect(), legend: legend(subjects) }
     }
@@ -205,7 +205,7 @@ fn draw_labels<DB: DrawingBackend>(
     let texts: Vec<String> = all.iter().map(|(row, _)| row.setting.label()).collect();
     let points: Vec<_> = all.iter().map(|(_, point)| *point).collect();
     let size = |text: &str| [pen.text_width(text, SMALL) * 1.08, f64::from(SMALL)];
-    let wanted: Vec<_> = points.iter().zip(&texts).map(|(&at, text)| Wanted { at, size: size(text) }).collect();
+    let wanted: Vec<_> = points.iter().zip(&texts).map(|(&at, text)| LabelRequest { at, size: size(text) }).collect();
     for (text, rect) in texts.iter().zip(place(&wanted, &points, lines, frame)) {
         if let Some(Rect { min, max }) = rect {
             pen.text(text, [(min[0] + max[0]) / 2.0, (min[1] + max[1]) / 2.0], SMALL, MIDDLE)?;

@@ -24,7 +24,7 @@ impl LodKind {
     pub const ALL: [Self; 4] = every![LodKind: Uniform, Paper, Error, ErrorRows];
 
     /// The kind of an LOD with a partitioning; `None` for one that isn't tried.
-    fn of(lod: Lod, partitioning: Partitioning) -> Option<Self> {
+    fn new(lod: Lod, partitioning: Partitioning) -> Option<Self> {
         let has_rows = partitioning.has_rows() && lod.is_by_error();
         Self::ALL.into_iter().find(|kind| kind.lod() == lod && (*kind == Self::ErrorRows) == has_rows)
     }
@@ -58,7 +58,7 @@ impl Choice for LodKind {
                 "White paper",
                 "The white paper's length of an edge on screen, divided by the length of a segment in px.",
             ),
-            Self::Error => Description::new("error", "Error", "The error on screen, in px."),
+            Self::Error => Description::new("error", "Screen error", "The error on screen, in px."),
             Self::ErrorRows => Description::new(
                 "error-rows",
                 "Error under rows",
@@ -92,9 +92,9 @@ pub struct Setting {
 
 impl Setting {
     /// The setting that some settings amount to; `None` under an LOD that isn't tried.
-    pub fn of(settings: &Settings) -> Option<Self> {
+    pub fn new(settings: &Settings) -> Option<Self> {
         let Tessellation { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings.tessellation;
-        let lod = LodKind::of(settings.tessellation.used_lod(), partitioning)?;
+        let lod = LodKind::new(settings.tessellation.used_lod(), partitioning)?;
         let value = match lod {
             LodKind::Uniform => factor,
             LodKind::Paper => pixels,

@@ -1,6 +1,6 @@
 use proptest::prelude::*;
 
-use super::labels::{Rect, Wanted, place};
+use super::labels::{LabelRequest, Rect, place};
 use super::*;
 use geometry::tessellate::{Clip, Lod, Normals, Partitioning, Surface, Tessellation};
 use inspect::settings::Settings;
@@ -86,7 +86,7 @@ proptest! {
     #[test]
     fn labels_cover_neither_each_other_nor_points(at in prop::collection::vec((0.0..300.0, 0.0..200.0), 1..80)) {
         let points: Vec<[f64; 2]> = at.into_iter().map(|(x, y)| [x, y]).collect();
-        let wanted: Vec<_> = points.iter().map(|&at| Wanted { at, size: [30.0, 12.0] }).collect();
+        let wanted: Vec<_> = points.iter().map(|&at| LabelRequest { at, size: [30.0, 12.0] }).collect();
         let lines: Vec<_> = points.windows(2).take(3).map(|ends| [ends[0], ends[1]]).collect();
         let bounds = Rect { min: [0.0; 2], max: [300.0, 200.0] };
         let placed: Vec<Rect> = place(&wanted, &points, &lines, bounds).into_iter().flatten().collect();
@@ -109,7 +109,7 @@ proptest! {
 
 #[test]
 fn a_single_point_has_its_label_beside_it() {
-    let wanted = [Wanted { at: [50.0, 50.0], size: [20.0, 10.0] }];
+    let wanted = [LabelRequest { at: [50.0, 50.0], size: [20.0, 10.0] }];
     let all = Rect { min: [0.0; 2], max: [100.0; 2] };
     let [Some(label)] = place(&wanted, &[[50.0, 50.0]], &[], all)[..] else { panic!("there is room") };
     assert!(Rect::around([50.0, 50.0], 20.0).overlaps(&label));
@@ -197,7 +197,7 @@ fn rows_read_back_from_csv() {
 fn time_counts_the_passes_that_a_view_makes_run_again() {
     let passes = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];
     let times = passes.map(|pass| PassTime { pass, ms: 1.0 });
-    assert_eq!(Time::of(&times), Time { tessellate: 5.0, draw: 1.0 });
+    assert_eq!(Time::new(&times), Time { tessellate: 5.0, draw: 1.0 });
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn a_setting_is_applied_and_read_back_and_changes_nothing_else() {
     });
     for setting in Plan::default().settings() {
         let applied = setting.applied(&own);
-        assert_eq!(Setting::of(&applied), Some(setting));
+        assert_eq!(Setting::new(&applied), Some(setting));
         let Tessellation { surface, normals, partitioning, lod, factor, pixels, tolerance, .. } = applied.tessellation;
         assert_eq!(
             applied,
@@ -259,14 +259,14 @@ fn a_setting_is_applied_and_read_back_and_changes_nothing_else() {
         );
     }
     assert_eq!(
-        Setting::of(&own.with(Tessellation { lod: Lod::Distance, ..own.tessellation })),
+        Setting::new(&own.with(Tessellation { lod: Lod::Distance, ..own.tessellation })),
         None,
         "charts don't try LOD by distance"
     );
     let equal =
         own.with(Tessellation { lod: Lod::Distance, partitioning: Partitioning::Subtriangulation, ..own.tessellation });
     assert_eq!(
-        Setting::of(&equal).map(|setting| setting.to_string()),
+        Setting::new(&equal).map(|setting| setting.to_string()),
         Some("factor 7".into()),
         "subtriangulation is uniform under any LOD"
     );

@@ -46,7 +46,7 @@ fn meshes_in(folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
         let path = entry.path();
         // A link to a file that is gone is an asset that can't be opened.
         let is_lost = entry.path_is_symlink() && !path.exists();
-        if Format::of_name(path).is_some() && (path.is_file() || is_lost) {
+        if Format::from_name(path).is_some() && (path.is_file() || is_lost) {
             files.push(entry.into_path());
         }
     }

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::Ours;
+use super::OurTessellation;
 use super::foreign::ForeignMesh;
 use super::locator::Locator;
 use super::spaces::Space;
@@ -91,9 +91,9 @@ impl Alignment {
     /// nearly all do. `None` if they do as they are, or under none. A vertex lies on the surface within `fit` object units.
     ///
     /// Other spaces are tried after all ways to exchange and turn axes, and before places that are only near.
-    pub(super) fn find(theirs: &ForeignMesh, own: &Locator, ours: &Ours, fit: f64) -> Option<Frame> {
+    pub(super) fn find(theirs: &ForeignMesh, own: &Locator, ours: &OurTessellation, fit: f64) -> Option<Frame> {
         let emitted = &ours.emitted_positions()[..];
-        let bounds_of_own = Bounds::of(emitted.iter().copied());
+        let bounds_of_own = Bounds::new(emitted.iter().copied());
         let our_size = (bounds_of_own.max - bounds_of_own.min).as_dvec3();
         let our_middle = bounds_of_own.center().as_dvec3();
         let bounds = theirs.bounds();
@@ -115,8 +115,8 @@ impl Alignment {
             })
         };
         let near = NEAR * our_size.length();
-        let sought = Sought { theirs, ours: own, emitted: Cells::new(emitted, fit), fit, near };
-        let of_camera = Space::of_camera(&ours.inputs.view, ours.matrix);
+        let sought = AlignmentSearch { theirs, ours: own, emitted: Cells::new(emitted, fit), fit, near };
+        let of_camera = Space::from_camera(&ours.inputs.view, ours.matrix);
         for how in [How::AtVertices, How::OnSurface, How::NearSurface] {
             let kept = if how == How::NearSurface { KEPT } else { FOUND };
             // A mesh that is only a part of ours lies near it, too.
@@ -141,7 +141,7 @@ impl Alignment {
                 return Some(Frame::Space(found));
             }
             if how == How::AtVertices {
-                let found = Space::of_triangles(theirs, emitted, &ours.tessellated.triangles).find(is_found);
+                let found = Space::from_triangles(theirs, emitted, &ours.tessellated.triangles).find(is_found);
                 if let Some(found) = found {
                     return Some(Frame::Space(found.settled(&sought.pairs(&found, emitted))));
                 }
@@ -180,7 +180,7 @@ enum How {
 }
 
 /// What an alignment is sought by.
-struct Sought<'a> {
+struct AlignmentSearch<'a> {
     theirs: &'a ForeignMesh,
     ours: &'a Locator<'a>,
     emitted: Cells,
@@ -189,7 +189,7 @@ struct Sought<'a> {
     near: f64,
 }
 
-impl Sought<'_> {
+impl AlignmentSearch<'_> {
     /// The share of their vertices that are where they are asked for.
     fn share(&self, in_ours: impl Fn(DVec3) -> DVec3, how: How) -> f64 {
         let is_there = |&index: &u32| {

@@ -141,7 +141,7 @@ impl<'a> Overlaid<'a> {
     }
 
     fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: Winding) -> Fit {
-        Fit::of(triangle.map(|corner| self.place_on(corner, patch)), self.fit, winding)
+        Fit::new(triangle.map(|corner| self.place_on(corner, patch)), self.fit, winding)
     }
 
     /// Returns the patch that a triangle lies on: the one on whose surface most of its corners are, and on which it is wound as
@@ -197,7 +197,7 @@ struct Fit {
 }
 
 impl Fit {
-    fn of(places: [Place; 3], fit: f64, winding: Winding) -> Self {
+    fn new(places: [Place; 3], fit: f64, winding: Winding) -> Self {
         let area = domain_area(places.map(|place| place.weights));
         Self {
             corners: places.iter().filter(|place| place.distance <= fit).count(),
@@ -306,13 +306,13 @@ mod tests {
         for surface in [Surface::Pn, Surface::PnAen, Surface::Flat] {
             for shape in [Shape::CubeSplit, Shape::Moebius, Shape::Torus, Shape::Cone] {
                 let mesh = shape.build();
-                let topology = Topology::of(&mesh);
+                let topology = Topology::new(&mesh);
                 let tessellation = Tessellation { surface, ..Tessellation::default() };
                 let inputs = Inputs::new(&tessellation, LodView::default());
                 let out = tessellate(&mesh, &topology, &inputs, None);
                 let positions: Vec<Vec3> = out.vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect();
                 let theirs = ForeignMesh::new(&positions, out.triangles.iter().rev().copied());
-                let locator = Locator::of_surface(&mesh, &topology, &inputs.into(), FINE);
+                let locator = Locator::from_surface(&mesh, &topology, &inputs.into(), FINE);
                 let own: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
                 let progress = Progress::new();
                 // As if none of them were ours.

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::assignment::Part;
 use super::domain_points::{DomainPoints, pattern_points, pattern_triangles};
 use super::matching::Match;
-use super::own_mesh::OwnPatch;
+use super::our_mesh::OurPatch;
 use geometry::tessellate::{Convention, HullFactors, Partitioning, weight_corner};
 
 /// An order of a patch's corners: where the tessellator's weights u, v and w belong.
@@ -34,14 +34,14 @@ impl CornerOrder {
     pub(super) fn explains(
         self,
         part: &Part,
-        own: &OwnPatch,
+        own: &OurPatch,
         found: &Match,
         cut: (Convention, HullFactors, Partitioning),
     ) -> bool {
         let (convention, written, partitioning) = cut;
         let sides = written.cutting(convention);
         let turned = [0, 1, 2].map(|k| sides[self.side(k)]);
-        let factors = HullFactors::of_sides(Convention::D3d11, turned, written.inside).rounded(partitioning);
+        let factors = HullFactors::from_sides(Convention::D3d11, turned, written.inside).rounded(partitioning);
         let factors = factors.process(partitioning);
         let points = DomainPoints::new(own.weights.iter().copied());
         // Patterns that are turned differ by a few units of fixed point inside.
@@ -56,7 +56,7 @@ impl CornerOrder {
         let vertices: Vec<_> = pattern_points(factors, Convention::D3d11).into_iter().map(of_own).collect();
         let pattern = triples(pattern_triangles(factors), |vertex| vertices[vertex as usize]);
         let theirs = triples(part.triangles.iter().copied(), |vertex| {
-            found.own_vertices[vertex as usize].map(|vertex| own.firsts[vertex as usize])
+            found.our_vertices[vertex as usize].map(|vertex| own.firsts[vertex as usize])
         });
         theirs.is_subset(&pattern)
     }

@@ -49,7 +49,7 @@ impl ForeignMesh {
     }
 
     /// Collects the triangles of a mesh that was read from a file.
-    pub fn of_mesh(mesh: &Mesh) -> Self {
+    pub fn from_mesh(mesh: &Mesh) -> Self {
         let positions: Vec<Vec3> = mesh.corners.iter().map(|corner| corner.position).collect();
         Self::new(&positions, mesh.triangles.iter().copied())
     }
@@ -66,7 +66,7 @@ impl ForeignMesh {
     }
 
     pub fn bounds(&self) -> Bounds {
-        Bounds::of(self.positions.iter().copied())
+        Bounds::new(self.positions.iter().copied())
     }
 
     /// Up to `most` of its vertices, spread evenly over the list.

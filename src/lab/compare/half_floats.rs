@@ -1,6 +1,6 @@
 //! Tells coordinates that were rounded to 16-bit floating-point numbers, as vertex buffers of engines often are.
 
-use super::Ours;
+use super::OurTessellation;
 use super::foreign::ForeignMesh;
 use geometry::mesh::Bounds;
 
@@ -15,13 +15,13 @@ const LEAST: f32 = 1.0 / 16_777_216.0;
 
 /// Half a unit in the last place of their largest coordinate as a number of 16 bits, in our object units. `None` if some of their
 /// coordinates have more bits, or if all of ours have as few.
-pub(super) fn resolution(theirs: &ForeignMesh, ours: &Ours) -> Option<f64> {
+pub(super) fn resolution(theirs: &ForeignMesh, ours: &OurTessellation) -> Option<f64> {
     let is_rounded = |position: &glam::Vec3| position.to_array().into_iter().all(has_16_bits);
     let emitted = ours.emitted_positions();
     if !theirs.positions.iter().all(is_rounded) || emitted.iter().all(is_rounded) {
         return None;
     }
-    let [own, bounds] = [Bounds::of(emitted.into_iter()), theirs.bounds()];
+    let [own, bounds] = [Bounds::new(emitted.into_iter()), theirs.bounds()];
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
     let unit = f64::from(largest.max(LEAST_NORMAL)).log2().floor().exp2() / 1024.0;
     // Their units may be others than ours.

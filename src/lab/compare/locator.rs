@@ -8,7 +8,7 @@ use super::net_mistakes::NetMistake;
 use super::patch_starts::patch_starts;
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{
-    Clip, ControlNet, FIXED_ONE, Inputs, LimitSurface, Lod, Partitioning, Tessellated, Tessellation, Vertex, tessellate,
+    ControlNet, FIXED_ONE, Inputs, LimitSurface, Partitioning, Tessellated, Tessellation, Vertex, tessellate,
 };
 use inspect::truth::{Triangles, closest_on_triangle};
 
@@ -28,12 +28,12 @@ pub(super) struct Locator<'a> {
 
 /// A surface of ours, or what a mistake makes of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct OwnSurface {
+pub(super) struct OurSurface {
     pub inputs: Inputs,
     pub mistake: Option<NetMistake>,
 }
 
-impl OwnSurface {
+impl OurSurface {
     /// Where vertices of ours would be on it.
     pub(super) fn positions(&self, mesh: &Mesh, topology: &Topology, vertices: &[Vertex]) -> Vec<Vec3> {
         let limit = LimitSurface::new(mesh, topology, &self.inputs);
@@ -46,7 +46,7 @@ impl OwnSurface {
     }
 }
 
-impl From<Inputs> for OwnSurface {
+impl From<Inputs> for OurSurface {
     fn from(inputs: Inputs) -> Self {
         Self { inputs, mistake: None }
     }
@@ -74,13 +74,13 @@ pub(super) const COARSE: usize = 1 << 14;
 impl<'a> Locator<'a> {
     /// Prepares the surface of a tessellation with these inputs, which displace nothing. `triangles` is about how many triangles it
     /// is searched with. Returns `None` if the mesh has no patches.
-    pub(super) fn of_surface(
+    pub(super) fn from_surface(
         mesh: &'a Mesh,
         topology: &'a Topology,
-        surface: &OwnSurface,
+        surface: &OurSurface,
         triangles: usize,
     ) -> Option<Self> {
-        let OwnSurface { inputs, mistake } = surface;
+        let OurSurface { inputs, mistake } = surface;
         let segments = ((triangles / topology.patches.len().max(1)) as f32).sqrt().floor().clamp(1.0, 16.0);
         let tessellation = Tessellation {
             partitioning: Partitioning::Subtriangulation,
@@ -96,7 +96,7 @@ impl<'a> Locator<'a> {
     }
 
     /// Prepares the triangles that were emitted, which are the surface themselves. Returns `None` if there are none.
-    pub(super) fn of_emitted(emitted: &'a Tessellated, topology: &Topology) -> Option<Self> {
+    pub(super) fn from_emitted(emitted: &'a Tessellated, topology: &Topology) -> Option<Self> {
         Self::new(Cow::Borrowed(emitted), topology, None, None)
     }
 
@@ -235,14 +235,17 @@ mod tests {
     }
 
     #[test]
-    fn emitted_vertices_are_found_at_their_own_places() {
+    fn emitted_vertices_are_found_at_their_our_places() {
         let mesh = Shape::CubeSplit.build();
-        let topology = Topology::of(&mesh);
+        let topology = Topology::new(&mesh);
         for surface in Surface::ALL {
             let inputs = Inputs::new(&Tessellation { surface, ..Tessellation::default() }, LodView::default());
             let out = tessellate(&mesh, &topology, &inputs, None);
-            check(&Locator::of_surface(&mesh, &topology, &inputs.into(), FINE).expect("it has patches"), &out.vertices);
-            check(&Locator::of_emitted(&out, &topology).expect("it has triangles"), &out.vertices);
+            check(
+                &Locator::from_surface(&mesh, &topology, &inputs.into(), FINE).expect("it has patches"),
+                &out.vertices,
+            );
+            check(&Locator::from_emitted(&out, &topology).expect("it has triangles"), &out.vertices);
         }
     }
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::assignment::{Part, domain_area};
 use super::domain_points::DomainPoints;
 use super::locator::Place;
-use super::own_mesh::{OwnPatch, is_thin};
+use super::our_mesh::{OurPatch, is_thin};
 use geometry::tessellate::FIXED_ONE;
 
 /// How a patch of theirs differs from ours.
@@ -16,7 +16,7 @@ pub(super) struct Match {
     /// Whether both have the same domain points, but for ours that only missing triangles have.
     pub has_same_points: bool,
     /// Our vertex for each of theirs, if the domain points are the same.
-    pub own_vertices: Vec<Option<u32>>,
+    pub our_vertices: Vec<Option<u32>>,
     /// How many of their vertices lie on the surface, but were moved along it.
     pub slid: u64,
     /// How many of our triangles they don't have, while their points are the same. Those that are cut otherwise don't count.
@@ -55,16 +55,16 @@ impl Reach {
 }
 
 impl Match {
-    pub(super) fn of(part: &Part, own: &OwnPatch, reach: Reach) -> Self {
+    pub(super) fn new(part: &Part, own: &OurPatch, reach: Reach) -> Self {
         let mut none = Self::default();
         for weights in part.triangles.iter().map(|triangle| part.weights(*triangle)) {
             let (area, thin) = (domain_area(weights), reach.thin(weights));
             none.flipped += u64::from(area < -thin);
             none.thin += u64::from(area.abs() <= thin);
         }
-        let Some((own_vertices, slid)) = own_vertices(part, own, reach) else { return none };
+        let Some((our_vertices, slid)) = our_vertices(part, own, reach) else { return none };
         let mut is_covered = vec![false; own.positions.len()];
-        own_vertices.iter().flatten().for_each(|vertex| is_covered[own.firsts[*vertex as usize] as usize] = true);
+        our_vertices.iter().flatten().for_each(|vertex| is_covered[own.firsts[*vertex as usize] as usize] = true);
         // Of several points that are nearer to each other than can be told apart, one is enough.
         let covered = DomainPoints::new(
             (own.weights.iter().zip(&is_covered)).filter(|(_, is_covered)| **is_covered).map(|(weights, _)| *weights),
@@ -74,7 +74,7 @@ impl Match {
             own.firsts[vertex as usize] == vertex && !is_covered[vertex as usize] && !is_near()
         };
         let has_all_points = !(0..own.positions.len() as u32).any(is_bare);
-        let triangles = Triangles::of(part, own, &own_vertices, reach.domain);
+        let triangles = Triangles::from_part(part, own, &our_vertices, reach.domain);
         // Points are only missing with the triangles around them, or else the patch is cut more coarsely.
         let has_same_points = has_all_points || part_area(part) < 0.999 && triangles.other == 0;
         if !has_same_points {
@@ -82,15 +82,15 @@ impl Match {
         }
         let Triangles { missing, doubled, other } = triangles;
         let missing = if other > 0 { missing.saturating_sub(other) } else { missing };
-        Self { has_same_points, own_vertices, slid, missing, doubled, other, ..none }
+        Self { has_same_points, our_vertices, slid, missing, doubled, other, ..none }
     }
 }
 
 /// Returns our vertex for each of theirs, and how many of these were moved along the surface. `None` if more of theirs lie where
 /// we have no point than a few vertices that were moved.
-fn own_vertices(part: &Part, own: &OwnPatch, reach: Reach) -> Option<(Vec<Option<u32>>, u64)> {
+fn our_vertices(part: &Part, own: &OurPatch, reach: Reach) -> Option<(Vec<Option<u32>>, u64)> {
     let points = DomainPoints::new(own.weights.iter().copied());
-    let own_weights = |vertex: u32| own.weights[vertex as usize];
+    let our_weights = |vertex: u32| own.weights[vertex as usize];
     let on_surface = |place: &Place| place.distance <= reach.fit;
     let nearest = |place: &Place| points.nearest(place.weights, reach.domain).filter(|_| on_surface(place));
     let mut found: Vec<Option<u32>> = part.places.iter().map(nearest).collect();
@@ -105,14 +105,14 @@ fn own_vertices(part: &Part, own: &OwnPatch, reach: Reach) -> Option<(Vec<Option
     }
     for (place, found) in part.places.iter().zip(&mut found).filter(|(_, found)| found.is_none()) {
         let distance = |vertex: u32| {
-            let [u, v] = own_weights(vertex);
+            let [u, v] = our_weights(vertex);
             (u - place.weights[0]).hypot(v - place.weights[1])
         };
         let left = (0..own.weights.len() as u32).filter(|vertex| is_left[*vertex as usize]);
         let vertex = left.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         // A vertex that is moved along the surface stays on its side. On another side it is one of other factors.
         let sides = |weights: [f64; 2]| sides_at(weights, reach.domain);
-        if on_surface(place) && vertex.is_some_and(|own| sides(own_weights(own)) != sides(place.weights)) {
+        if on_surface(place) && vertex.is_some_and(|own| sides(our_weights(own)) != sides(place.weights)) {
             return None;
         }
         vertex.iter().for_each(|vertex| is_left[*vertex as usize] = false);
@@ -142,7 +142,7 @@ struct Triangles {
 }
 
 impl Triangles {
-    fn of(part: &Part, own: &OwnPatch, own_vertices: &[Option<u32>], reach: f64) -> Self {
+    fn from_part(part: &Part, own: &OurPatch, our_vertices: &[Option<u32>], reach: f64) -> Self {
         // Points that are nearer to each other than can be told apart are one.
         let points = DomainPoints::new(own.weights.iter().copied());
         let first = |vertex: u32| {
@@ -158,7 +158,7 @@ impl Triangles {
         }
         let mut other = 0;
         for triangle in &part.triangles {
-            let ours = triangle.map(|corner| own_vertices[corner as usize].map(|vertex| firsts[vertex as usize]));
+            let ours = triangle.map(|corner| our_vertices[corner as usize].map(|vertex| firsts[vertex as usize]));
             match ours {
                 [Some(a), Some(b), Some(c)] if !is_thin([a, b, c]) => {
                     counts.entry(sorted([a, b, c])).or_default()[1] += 1;
@@ -209,11 +209,11 @@ mod tests {
     use super::*;
 
     /// A patch in the plane, cut into four triangles.
-    fn own() -> OwnPatch {
+    fn own() -> OurPatch {
         let weights = vec![[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [0.5, 0.5], [0.0, 0.5], [0.5, 0.0]];
         let positions: Vec<DVec3> = weights.iter().map(|[u, v]| DVec3::new(*u, *v, 0.0)).collect();
         let triangles = vec![[0, 3, 5], [3, 1, 4], [5, 4, 2], [3, 4, 5]];
-        OwnPatch { normals: vec![DVec3::Z; 6], firsts: (0..6).collect(), weights, positions, triangles }
+        OurPatch { normals: vec![DVec3::Z; 6], firsts: (0..6).collect(), weights, positions, triangles }
     }
 
     fn part(triangles: &[[u32; 3]], left_out: usize) -> Part {
@@ -228,7 +228,7 @@ mod tests {
     fn triangles_that_are_missing_doubled_flipped_or_cut_otherwise_are_counted() {
         let reach = Reach { domain: 0.01, fit: 1e-6 };
         let counts = |triangles: &[[u32; 3]], left_out: usize| {
-            let found = Match::of(&part(triangles, left_out), &own(), reach);
+            let found = Match::new(&part(triangles, left_out), &own(), reach);
             (found.has_same_points, [found.missing, found.doubled, found.flipped, found.other])
         };
         assert_eq!(counts(&own().triangles, 0), (true, [0; 4]));
@@ -245,24 +245,24 @@ mod tests {
     fn a_vertex_that_was_moved_along_the_surface_is_no_other_factor() {
         let mut moved = part(&own().triangles, 0);
         moved.places[3].weights = [0.45, 0.55];
-        let found = Match::of(&moved, &own(), Reach { domain: 0.01, fit: 1e-6 });
-        assert_eq!((found.has_same_points, found.slid, found.own_vertices[3]), (true, 1, Some(3)));
+        let found = Match::new(&moved, &own(), Reach { domain: 0.01, fit: 1e-6 });
+        assert_eq!((found.has_same_points, found.slid, found.our_vertices[3]), (true, 1, Some(3)));
         // It lies on another side than the point that is left.
         let mut elsewhere = moved.clone();
         elsewhere.places[3].weights = [0.25, 0.0];
-        assert!(!Match::of(&elsewhere, &own(), Reach { domain: 0.01, fit: 1e-6 }).has_same_points);
+        assert!(!Match::new(&elsewhere, &own(), Reach { domain: 0.01, fit: 1e-6 }).has_same_points);
         // The side has a point more than ours.
         moved.places.push(Place { patch: 0, weights: [0.75, 0.25], distance: 0.0 });
         moved.vertices.push(6);
-        assert!(!Match::of(&moved, &own(), Reach { domain: 0.01, fit: 1e-6 }).has_same_points);
+        assert!(!Match::new(&moved, &own(), Reach { domain: 0.01, fit: 1e-6 }).has_same_points);
     }
 
     #[test]
     fn a_vertex_off_the_surface_is_the_point_that_is_left() {
         let mut moved = part(&own().triangles, 0);
         moved.places[3] = Place { patch: 0, weights: [0.45, 0.45], distance: 0.1 };
-        let found = Match::of(&moved, &own(), Reach { domain: 0.01, fit: 1e-6 });
+        let found = Match::new(&moved, &own(), Reach { domain: 0.01, fit: 1e-6 });
         assert!(found.has_same_points && found.other + found.missing == 0, "{found:?}");
-        assert_eq!(found.own_vertices[3], Some(3));
+        assert_eq!(found.our_vertices[3], Some(3));
     }
 }

@@ -15,8 +15,8 @@ mod half_floats;
 mod locator;
 mod matching;
 mod net_mistakes;
+mod our_mesh;
 mod outcomes;
-mod own_mesh;
 mod patch_starts;
 mod spaces;
 mod surfaces;
@@ -39,16 +39,16 @@ use geometry::view::{ulp, ulp_at};
 
 use alignment::{Alignment, Frame};
 use assignment::{Assignment, Overlaid};
-use locator::{FINE, Locator, OwnSurface};
+use locator::{FINE, Locator, OurSurface};
+use our_mesh::OurMesh;
 use outcomes::Outcomes;
-use own_mesh::OwnMesh;
 use spaces::Space;
 use surfaces::Trial;
 use twins::Twins;
 
 /// Our tessellation of a mesh, which has patches.
 #[derive(Clone, Copy)]
-pub struct Ours<'a> {
+pub struct OurTessellation<'a> {
     pub mesh: &'a Mesh,
     pub topology: &'a Topology,
     pub inputs: &'a Inputs,
@@ -61,14 +61,14 @@ pub struct Ours<'a> {
 
 /// How exact the other program's numbers are, in object units of our mesh.
 #[derive(Clone, Copy, Debug)]
-pub struct Exactness {
-    /// How far vertices may be from ours and be the same.
+pub struct Tolerances {
+    /// Distance within which vertices count as equal.
     pub within: f64,
     /// Half a unit of the last decimal that its file has; 0 if it has them all.
     pub resolution: f64,
 }
 
-impl Exactness {
+impl Tolerances {
     /// The same for numbers that are rounded by up to so many object units.
     fn rounded(self, resolution: Option<f64>) -> Self {
         let resolution = self.resolution.max(resolution.unwrap_or(0.0));
@@ -115,9 +115,9 @@ const MANY_FAR: f64 = 0.2;
 
 /// Compares another program's tessellation with ours.
 pub fn compare(
-    ours: &Ours,
+    ours: &OurTessellation,
     theirs: &ForeignMesh,
-    exactness: Exactness,
+    exactness: Tolerances,
     progress: &Progress,
 ) -> Result<Comparison, Cancelled> {
     let empty = Comparison::new(ours, theirs);
@@ -129,25 +129,25 @@ pub fn compare(
     let mut exactness = exactness.rounded(halves);
     let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
     let apart = apart(asked, empty.ulp);
-    let own_mesh = OwnMesh::new(ours.tessellated, apart);
-    let twins = |own: &[Vec3], positions: &[DVec3]| Twins::find(&own_mesh, own, theirs, positions, apart);
+    let our_mesh = OurMesh::new(ours.tessellated, apart);
+    let twins = |own: &[Vec3], positions: &[DVec3]| Twins::find(&our_mesh, own, theirs, positions, apart);
     let vertices = ours.vertices();
     let mut positions: Vec<_> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
-    let mut own_twins = twins(&vertices, &positions);
-    let own = if own_twins.are_all() { None } else { Locator::of_own(ours) };
+    let mut our_twins = twins(&vertices, &positions);
+    let own = if our_twins.are_all() { None } else { Locator::from_own(ours) };
     let frame = own.as_ref().and_then(|own| Alignment::find(theirs, own, ours, fit));
     if let Some(frame) = &frame {
         positions.iter_mut().for_each(|position| *position = frame.ours(*position));
-        own_twins = twins(&vertices, &positions);
+        our_twins = twins(&vertices, &positions);
     }
     if let Some(Frame::Space(space)) = &frame {
         exactness.within = exactness.within.max(rounding_in(space, theirs));
     }
     let twins = |own: &[Vec3]| twins(own, &positions);
-    let on_own = Overlaid::new(theirs, ours.topology, own, own_twins, &positions, fit, progress)?;
-    let laid = Laid::new(ours, on_own, twins, progress)?;
+    let on_own = Overlaid::new(theirs, ours.topology, own, our_twins, &positions, fit, progress)?;
+    let laid = Registered::new(ours, on_own, twins, progress)?;
     let assignment = Assignment::new(&laid.overlaid, progress)?;
-    let outcomes = Outcomes::new(ours, &own_mesh, &assignment, exactness, progress)?;
+    let outcomes = Outcomes::new(ours, &our_mesh, &assignment, exactness, progress)?;
     let mut found = Comparison {
         from_surface: laid.overlaid.places.iter().map(|place| place.distance).fold(0.0, f64::max),
         farthest: outcomes.farthest(),
@@ -187,11 +187,11 @@ fn rounding_in(space: &Space, theirs: &ForeignMesh) -> f64 {
 }
 
 /// Their vertices over the surface that they lie on, and which one that is.
-struct Laid<'a> {
+struct Registered<'a> {
     /// Over our own surface, over another one of ours, or over our own without displacement.
     overlaid: Overlaid<'a>,
     /// The surface that they lie on, if it isn't our own.
-    other: Option<OwnSurface>,
+    other: Option<OurSurface>,
     /// How many of them are off our own surface.
     off_own: u64,
     /// Whether most of them lie on the surface. Otherwise they are displaced from it, or belong to another mesh.
@@ -200,16 +200,16 @@ struct Laid<'a> {
     fit: f64,
 }
 
-impl<'a> Laid<'a> {
+impl<'a> Registered<'a> {
     /// Seeks their surface, from where they lie over ours.
     fn new(
-        ours: &Ours<'a>,
+        ours: &OurTessellation<'a>,
         on_own: Overlaid<'a>,
         twins: impl Fn(&[Vec3]) -> Twins<'a>,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
-        let Ours { mesh, topology, tessellated, .. } = *ours;
-        let surface = |own: &OwnSurface| Locator::of_surface(mesh, topology, own, FINE);
+        let OurTessellation { mesh, topology, tessellated, .. } = *ours;
+        let surface = |own: &OurSurface| Locator::from_surface(mesh, topology, own, FINE);
         let (fit, strays) = (on_own.fit, on_own.strays());
         let other = match strays.is_empty() {
             true => None,
@@ -247,8 +247,8 @@ impl<'a> Laid<'a> {
     }
 
     /// Names their surface, if it isn't ours.
-    fn other_surface(&self, ours: &Ours) -> Option<Finding> {
-        let OwnSurface { inputs: Inputs { tessellation: theirs, .. }, mistake } = self.other?;
+    fn other_surface(&self, ours: &OurTessellation) -> Option<Finding> {
+        let OurSurface { inputs: Inputs { tessellation: theirs, .. }, mistake } = self.other?;
         let (vertices, of) = (self.off_own, self.overlaid.positions.len() as u64);
         Some(match mistake {
             Some(mistake) => Finding::OtherNets { mistake, vertices, of },
@@ -257,7 +257,7 @@ impl<'a> Laid<'a> {
     }
 }
 
-impl Ours<'_> {
+impl OurTessellation<'_> {
     /// The positions that are emitted, or else those of the mesh.
     fn emitted_positions(&self) -> Vec<Vec3> {
         if self.tessellated.vertices.is_empty() { self.topology.points.clone() } else { self.vertices() }
@@ -271,12 +271,12 @@ impl Ours<'_> {
 
 impl Comparison {
     /// Without anything that was found.
-    fn new(ours: &Ours, theirs: &ForeignMesh) -> Self {
+    fn new(ours: &OurTessellation, theirs: &ForeignMesh) -> Self {
         Self {
             vertices: theirs.positions.len() as u64,
             triangles: theirs.triangles.len() as u64,
             ulp: ulp(ours.topology),
-            diagonal: Bounds::of(ours.topology.points.iter().copied()).diagonal().into(),
+            diagonal: Bounds::new(ours.topology.points.iter().copied()).diagonal().into(),
             ..Self::default()
         }
     }
@@ -284,7 +284,7 @@ impl Comparison {
     /// Names what differs, where theirs is a tessellation of our mesh.
     fn name_differences(
         &mut self,
-        laid: &Laid,
+        laid: &Registered,
         outcomes: &Outcomes,
         frame: Option<&Frame>,
         conventions: &Conventions,
@@ -307,7 +307,7 @@ impl Comparison {
 
     /// Says that their coordinates, which are numbers of 16 bits, are farther from ours than the distance that was asked for. Where
     /// they have other points than ours, their distance from the surface tells.
-    fn rounded_to_halves(&self, laid: &Laid, asked: f64) -> Option<Finding> {
+    fn rounded_to_halves(&self, laid: &Registered, asked: f64) -> Option<Finding> {
         let from_surface = if laid.is_fitted { self.from_surface } else { 0.0 };
         let distance = self.farthest.map_or(from_surface, |farthest| farthest.distance);
         let is_rounding = distance > asked && distance <= laid.fit;
@@ -335,7 +335,7 @@ impl Comparison {
 
     /// Says what distances between the same vertices mean, where nothing else was found but how coordinates are meant.
     fn judge_distances(&mut self, outcomes: &Outcomes, conventions: &Conventions) -> Result<(), Cancelled> {
-        let Conventions { ours, exactness: Exactness { within, .. }, .. } = *conventions;
+        let Conventions { ours, exactness: Tolerances { within, .. }, .. } = *conventions;
         let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return Ok(()) };
         if !self.findings.iter().all(Finding::is_about_coordinates) {
             return Ok(());
@@ -356,9 +356,9 @@ impl Comparison {
 
 /// What their triangles are held against to find their convention.
 struct Conventions<'a> {
-    ours: &'a Ours<'a>,
+    ours: &'a OurTessellation<'a>,
     assignment: &'a Assignment<'a>,
-    exactness: Exactness,
+    exactness: Tolerances,
     progress: &'a Progress,
 }
 
@@ -377,9 +377,9 @@ impl Conventions<'_> {
             let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
             let inputs = Inputs { tessellation, ..*ours.inputs };
             let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
-            let turned = Ours { inputs: &inputs, tessellated: &tessellated, ..*ours };
-            let own_mesh = OwnMesh::new(&tessellated, apart(exactness.within, ulp(ours.topology)));
-            if suits(&Outcomes::new(&turned, &own_mesh, assignment, exactness, progress)?) {
+            let turned = OurTessellation { inputs: &inputs, tessellated: &tessellated, ..*ours };
+            let our_mesh = OurMesh::new(&tessellated, apart(exactness.within, ulp(ours.topology)));
+            if suits(&Outcomes::new(&turned, &our_mesh, assignment, exactness, progress)?) {
                 return Ok(Some(theirs));
             }
         }
@@ -394,11 +394,11 @@ fn undisplaced(inputs: &Inputs) -> Inputs {
 
 impl<'a> Locator<'a> {
     /// Our own surface. If it is displaced that is what was emitted, since heights are read from levels that depend on factors.
-    fn of_own(ours: &Ours<'a>) -> Option<Self> {
-        let exact = || Self::of_surface(ours.mesh, ours.topology, &undisplaced(ours.inputs).into(), FINE);
+    fn from_own(ours: &OurTessellation<'a>) -> Option<Self> {
+        let exact = || Self::from_surface(ours.mesh, ours.topology, &undisplaced(ours.inputs).into(), FINE);
         match ours.inputs.tessellation.displacement {
             Displacement::Off => exact(),
-            _ => Self::of_emitted(ours.tessellated, ours.topology).or_else(exact),
+            _ => Self::from_emitted(ours.tessellated, ours.topology).or_else(exact),
         }
     }
 }

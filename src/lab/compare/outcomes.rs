@@ -7,10 +7,10 @@ use super::corner_orders::CornerOrder;
 use super::cuts::{Cut, cuts_of};
 use super::explanations::{Explainer, Explanation, Rule};
 use super::findings::{Displaced, Finding};
-use super::locator::OwnSurface;
+use super::locator::OurSurface;
 use super::matching::{Farthest, LEAST_REACH, Match, Reach};
-use super::own_mesh::{OwnMesh, OwnPatch};
-use super::{Exactness, Ours};
+use super::our_mesh::{OurMesh, OurPatch};
+use super::{OurTessellation, Tolerances};
 use geometry::mesh::EdgeKind;
 use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{FACTOR_VALUE, Inputs, Partitioning, Tessellation, hull_factors, segments};
@@ -18,7 +18,7 @@ use geometry::view::ulp;
 
 /// How every patch came out.
 pub(super) struct Outcomes<'a> {
-    own_mesh: &'a OwnMesh<'a>,
+    our_mesh: &'a OurMesh<'a>,
     assignment: &'a Assignment<'a>,
     reaches: Vec<Reach>,
     all: Vec<Outcome>,
@@ -84,7 +84,7 @@ pub struct SideCut {
 }
 
 impl SideCut {
-    fn of(cut: &Cut) -> Self {
+    fn new(cut: &Cut) -> Self {
         Self { segments: cut.segments() as u64, factor: cut.factor() }
     }
 }
@@ -115,17 +115,17 @@ const SUITS: f64 = 0.97;
 impl<'a> Outcomes<'a> {
     /// Compares all patches.
     pub(super) fn new(
-        ours: &Ours,
-        own_mesh: &'a OwnMesh<'a>,
+        ours: &OurTessellation,
+        our_mesh: &'a OurMesh<'a>,
         assignment: &'a Assignment<'a>,
-        exactness: Exactness,
+        exactness: Tolerances,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
         let patches = 0..ours.topology.patches.len() as u32;
         let fit = assignment.overlaid.fit;
         let exact = exactness.within.max(exactness.resolution).max(8.0 * ulp(ours.topology));
         let reach = |patch: u32| {
-            let segments = segments_of(own_mesh, patch);
+            let segments = segments_of(our_mesh, patch);
             if !fit.is_finite() {
                 return Reach { domain: OF_SEGMENT / segments, fit };
             }
@@ -138,19 +138,19 @@ impl<'a> Outcomes<'a> {
         let lod = ours.inputs.tessellation.used_lod();
         let has_last_bits = ours.given.is_none() && lod.follows_view() && !lod.is_by_error();
         let theirs = |patch: &u32| assignment.count(*patch) > 0;
-        let emitted = |patch: &u32| own_mesh.emits(*patch);
+        let emitted = |patch: &u32| our_mesh.emits(*patch);
         let all = made_of_all(patches.len(), progress, |patch| {
             let patch = patch as u32;
             if !(theirs(&patch) && emitted(&patch)) {
                 return Outcome::default();
             }
-            let own = own_mesh.patch(patch);
+            let own = our_mesh.patch(patch);
             let slack = if has_last_bits { LAST_BITS * own.stretch() } else { 0.0 };
-            Outcome { slack, ..Outcome::of(assignment, &own, patch, reaches[patch as usize]) }
+            Outcome { slack, ..Outcome::new(assignment, &own, patch, reaches[patch as usize]) }
         })?;
         let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();
         let additional = patches.filter(|patch| theirs(patch) && !emitted(patch)).collect();
-        Ok(Self { own_mesh, assignment, reaches, all, missing, additional })
+        Ok(Self { our_mesh, assignment, reaches, all, missing, additional })
     }
 
     /// The number of patches that have triangles of theirs.
@@ -194,7 +194,7 @@ impl<'a> Outcomes<'a> {
     }
 
     /// Says how vertices are displaced, of which none is expected on the surface. What is nearer than `fit` isn't displaced.
-    pub(super) fn displaced(&self, ours: &Ours, fit: f64) -> Displaced {
+    pub(super) fn displaced(&self, ours: &OurTessellation, fit: f64) -> Displaced {
         let overlaid = self.assignment.overlaid;
         let distances = || overlaid.places.iter().map(|place| place.distance);
         let sum = self.all.iter().fold(Offsets::default(), |sum, outcome| sum.with(outcome.offsets));
@@ -210,7 +210,7 @@ impl<'a> Outcomes<'a> {
     }
 
     /// Says which vertices were moved: those off the surface, and those that were moved along it.
-    pub(super) fn moved(&self, ours: &Ours, strays: &[u32]) -> Option<Finding> {
+    pub(super) fn moved(&self, ours: &OurTessellation, strays: &[u32]) -> Option<Finding> {
         let overlaid = self.assignment.overlaid;
         let slid: u64 = self.all.iter().map(|outcome| outcome.found.slid).sum();
         let distance = |index: &u32| overlaid.places[*index as usize].distance;
@@ -235,8 +235,8 @@ impl<'a> Outcomes<'a> {
     /// it isn't ours. `None` if no point differs but for that surface or for displacement.
     pub(super) fn explain(
         &self,
-        ours: &Ours,
-        other: Option<&OwnSurface>,
+        ours: &OurTessellation,
+        other: Option<&OurSurface>,
         findings: &mut Vec<Finding>,
         progress: &Progress,
     ) -> Result<Option<Vec<SideDifference>>, Cancelled> {
@@ -244,7 +244,7 @@ impl<'a> Outcomes<'a> {
         if different.is_empty() {
             return Ok(Some(Vec::new()));
         }
-        let Ours { mesh, inputs, given, .. } = *ours;
+        let OurTessellation { mesh, inputs, given, .. } = *ours;
         let reaches = &self.reaches;
         let explainer = Explainer {
             mesh,
@@ -280,13 +280,13 @@ impl<'a> Outcomes<'a> {
     }
 
     /// How the sides of these patches, whose points differ, are cut.
-    fn other_cuts(&self, ours: &Ours, different: &[u32]) -> OtherCuts {
+    fn other_cuts(&self, ours: &OurTessellation, different: &[u32]) -> OtherCuts {
         let (mut sides, mut inside): (Vec<SideDifference>, _) = (Vec::new(), 0);
         let (mut suited, mut seen) = ([0_usize; Partitioning::DIRECT3D.len()], 0);
         for &patch in different {
             let theirs = self.cuts(patch);
             let before = sides.len();
-            sides.extend(self.side_differences(ours, patch, &theirs, &self.own_mesh.patch(patch)));
+            sides.extend(self.side_differences(ours, patch, &theirs, &self.our_mesh.patch(patch)));
             inside += u64::from(sides.len() == before);
             if seen < SIDES {
                 seen += theirs.len();
@@ -309,7 +309,13 @@ impl<'a> Outcomes<'a> {
     }
 
     /// The sides of a patch that are cut differently.
-    fn side_differences(&self, ours: &Ours, patch: u32, theirs: &[Cut; 3], own: &OwnPatch) -> Vec<SideDifference> {
+    fn side_differences(
+        &self,
+        ours: &OurTessellation,
+        patch: u32,
+        theirs: &[Cut; 3],
+        own: &OurPatch,
+    ) -> Vec<SideDifference> {
         let reach = self.reaches[patch as usize].domain;
         let positions = ours.topology.patch_positions(patch);
         let difference = |side: usize| {
@@ -318,15 +324,15 @@ impl<'a> Outcomes<'a> {
                 triangle: ours.topology.patches[patch as usize].triangle,
                 side: side as u32,
                 ends: [positions[side], positions[(side + 1) % 3]].map(|end| end.to_array()),
-                theirs: SideCut::of(&theirs[side]),
-                ours: SideCut::of(&own),
+                theirs: SideCut::new(&theirs[side]),
+                ours: SideCut::new(&own),
             })
         };
         (0..3).filter_map(difference).collect()
     }
 
     /// Counts the edges between two patches that their sides cut differently, if there are any.
-    fn cracks(&self, ours: &Ours, progress: &Progress) -> Result<Option<Finding>, Cancelled> {
+    fn cracks(&self, ours: &OurTessellation, progress: &Progress) -> Result<Option<Finding>, Cancelled> {
         let topology = ours.topology;
         let cuts = made_of_all(self.all.len(), progress, |patch| {
             (self.assignment.count(patch as u32) > 0).then(|| self.cuts(patch as u32).map(|cut| cut.factor() as f32))
@@ -346,8 +352,8 @@ impl<'a> Outcomes<'a> {
 
     /// Says what is wrong with triangles: those that are missing, doubled, wound the other way, or join other points.
     /// `is_mirrored` says that their coordinates are.
-    pub(super) fn judge_triangles(&self, ours: &Ours, is_mirrored: bool, findings: &mut Vec<Finding>) {
-        let emitted = (0..self.all.len() as u32).filter(|patch| self.own_mesh.emits(*patch)).count() as u64;
+    pub(super) fn judge_triangles(&self, ours: &OurTessellation, is_mirrored: bool, findings: &mut Vec<Finding>) {
+        let emitted = (0..self.all.len() as u32).filter(|patch| self.our_mesh.emits(*patch)).count() as u64;
         let names = |patches: &[u32]| -> Vec<u32> {
             patches.iter().take(NAMED).map(|patch| ours.topology.patches[*patch as usize].triangle).collect()
         };
@@ -392,7 +398,7 @@ impl<'a> Outcomes<'a> {
     }
 
     /// The order of corners that explains all triangles that join other points.
-    fn corner_order(&self, ours: &Ours) -> Option<CornerOrder> {
+    fn corner_order(&self, ours: &OurTessellation) -> Option<CornerOrder> {
         let Inputs { tessellation, .. } = *ours.inputs;
         if tessellation.partitioning.has_rows() {
             return None;
@@ -405,8 +411,8 @@ impl<'a> Outcomes<'a> {
             self.compared().filter(|(_, outcome)| outcome.found.other > 0).map(|(patch, _)| patch).collect();
         let explains = |order: &CornerOrder| {
             turned.iter().all(|&patch| {
-                let (part, own) = (self.assignment.part(patch), self.own_mesh.patch(patch));
-                let found = Match::of(&part, &own, self.reaches[patch as usize]);
+                let (part, own) = (self.assignment.part(patch), self.our_mesh.patch(patch));
+                let found = Match::new(&part, &own, self.reaches[patch as usize]);
                 let cut = (tessellation.convention, written[patch as usize], tessellation.partitioning);
                 order.explains(&part, &own, &found, cut)
             })
@@ -416,19 +422,19 @@ impl<'a> Outcomes<'a> {
 }
 
 impl Outcome {
-    fn of(assignment: &Assignment, own: &OwnPatch, patch: u32, reach: Reach) -> Self {
+    fn new(assignment: &Assignment, own: &OurPatch, patch: u32, reach: Reach) -> Self {
         let part = assignment.part(patch);
-        let found = Match::of(&part, own, reach);
+        let found = Match::new(&part, own, reach);
         let (mut farthest, mut offsets): (Option<Farthest>, _) = (None, Offsets::default());
-        for (&vertex, own_vertex) in part.vertices.iter().zip(&found.own_vertices) {
-            let Some(own_vertex) = *own_vertex else { continue };
+        for (&vertex, our_vertex) in part.vertices.iter().zip(&found.our_vertices) {
+            let Some(our_vertex) = *our_vertex else { continue };
             let theirs = assignment.overlaid.positions[vertex as usize];
-            let ours = own.positions[own_vertex as usize];
+            let ours = own.positions[our_vertex as usize];
             let apart = Farthest { distance: theirs.distance(ours), patch, theirs, ours };
             farthest = Some(farthest.map_or(apart, |farthest| farthest.farther(apart)));
-            offsets.add(theirs - ours, own.normals[own_vertex as usize]);
+            offsets.add(theirs - ours, own.normals[our_vertex as usize]);
         }
-        Self { is_compared: true, found: Match { own_vertices: Vec::new(), ..found }, farthest, slack: 0.0, offsets }
+        Self { is_compared: true, found: Match { our_vertices: Vec::new(), ..found }, farthest, slack: 0.0, offsets }
     }
 }
 
@@ -455,7 +461,7 @@ impl Offsets {
 }
 
 /// How far apart points of a patch may be in the domain if they are the same to within `exact` object units.
-fn exact_reach(ours: &Ours, patch: u32, exact: f64) -> f64 {
+fn exact_reach(ours: &OurTessellation, patch: u32, exact: f64) -> f64 {
     let [a, b, c] = ours.topology.patch_positions(patch).map(|corner| corner.as_dvec3());
     let (sides, area) = ([a.distance(b), b.distance(c), c.distance(a)], (b - a).cross(c - a).length());
     // The least height of the triangle: along it, weights change the fastest.
@@ -465,8 +471,8 @@ fn exact_reach(ours: &Ours, patch: u32, exact: f64) -> f64 {
 }
 
 /// The largest number of segments into which we cut a side, or the inside, of a patch.
-fn segments_of(own_mesh: &OwnMesh, patch: u32) -> f64 {
-    let factors = own_mesh.factors(patch);
+fn segments_of(our_mesh: &OurMesh, patch: u32) -> f64 {
+    let factors = our_mesh.factors(patch);
     let outside = factors.outside.into_iter().map(segments).max().unwrap_or(1);
     f64::from(outside.max((factors.inside & FACTOR_VALUE).div_ceil(1 << 16)).max(1))
 }

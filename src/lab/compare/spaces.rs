@@ -40,7 +40,7 @@ impl Space {
     }
 
     #[cfg(test)]
-    pub(super) fn of_kind(kind: SpaceKind) -> Self {
+    pub(super) fn from_kind(kind: SpaceKind) -> Self {
         Self { kind, ours_from_theirs: DMat4::IDENTITY }
     }
 
@@ -62,7 +62,7 @@ impl Space {
     }
 
     /// The spaces of a camera. `matrix` is that of the other program, if it was given.
-    pub(super) fn of_camera(view: &LodView, matrix: Option<DMat4>) -> Vec<Self> {
+    pub(super) fn from_camera(view: &LodView, matrix: Option<DMat4>) -> Vec<Self> {
         let of_view = view_matrix(view).and_then(|matrix| Self::new(SpaceKind::View, matrix));
         let clips = matrix.into_iter().chain([view.clip_from_object.as_dmat4()]).flat_map(|clip| {
             let mut without_w = clip.transpose();
@@ -74,7 +74,7 @@ impl Space {
 
     /// The spaces that bring triangles of ours onto triangles of theirs: similar ones, of which the largest are tried. `emitted` are our
     /// positions, and `triangles` their indices.
-    pub(super) fn of_triangles(
+    pub(super) fn from_triangles(
         theirs: &ForeignMesh,
         emitted: &[Vec3],
         triangles: &[[u32; 3]],
@@ -228,16 +228,16 @@ mod tests {
         let eye = vec3(1.0, 2.0, 4.0);
         let looks = looking::look_at_mat4(eye, Vec3::ZERO, Vec3::Y);
         let clip = proj::perspective(0.7, 1.5, 0.1, 20.0) * looks;
-        let view = LodView { eye, ..LodView::new(clip, Vec2::ONE) };
+        let view = LodView::new(clip, Vec2::ONE).seen_from(eye, 1.0);
         let place = vec3(0.3, -0.2, 0.5);
         let [of_view, divided, of_clip] =
             [looks * place.extend(1.0), clip * place.extend(1.0), clip * place.extend(1.0)];
-        let all = Space::of_camera(&view, Some(clip.as_dmat4()));
+        let all = Space::from_camera(&view, Some(clip.as_dmat4()));
         let found = |kind: SpaceKind| *all.iter().find(|space| space.kind == kind).expect("a space");
         let near = |space: Space, theirs: Vec3| space.ours(theirs.as_dvec3()).distance(place.as_dvec3()) < 1e-4;
         assert!(near(found(SpaceKind::View), of_view.truncate()));
         assert!(near(found(SpaceKind::DividedClip), divided.truncate() / divided.w));
         assert!(near(found(SpaceKind::Clip), of_clip.truncate()));
-        assert!(Space::of_camera(&LodView::new(Mat4::ZERO, Vec2::ONE), None).is_empty());
+        assert!(Space::from_camera(&LodView::new(Mat4::ZERO, Vec2::ONE), None).is_empty());
     }
 }

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::assignment::{Overlaid, made_of_all};
 use super::foreign::spread;
-use super::locator::{COARSE, Locator, OwnSurface};
+use super::locator::{COARSE, Locator, OurSurface};
 use super::net_mistakes::{NetMistake, THIRD};
 use geometry::mesh::Mesh;
 use geometry::progress::{Cancelled, Progress};
@@ -53,7 +53,7 @@ impl<'a> Trial<'a> {
 
     /// Returns the surface of ours that the vertices lie on, or what a usual mistake makes of our own; `None` if they lie on none of these
     /// better than on our own.
-    pub(super) fn other_surface(&self, progress: &Progress) -> Result<Option<OwnSurface>, Cancelled> {
+    pub(super) fn other_surface(&self, progress: &Progress) -> Result<Option<OurSurface>, Cancelled> {
         let found = match self.best(self.candidates(), progress)? {
             Some(found) => Some(found),
             None => match self.other_strength(progress)? {
@@ -61,15 +61,15 @@ impl<'a> Trial<'a> {
                 None => self.mistake(progress)?,
             },
         };
-        let own = OwnSurface::from(self.inputs);
+        let own = OurSurface::from(self.inputs);
         Ok(found
             .filter(|(surface, fitting)| *surface != own && fitting.share > self.own + 0.01)
             .map(|(surface, _)| surface))
     }
 
     /// The first of the surfaces that the most vertices lie on, if nearly all do.
-    fn best(&self, among: Vec<OwnSurface>, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
-        let mut best: Option<(OwnSurface, Fitting)> = None;
+    fn best(&self, among: Vec<OurSurface>, progress: &Progress) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
+        let mut best: Option<(OurSurface, Fitting)> = None;
         for surface in among {
             let fitting = self.fitting(&surface, progress)?;
             if best.is_none_or(|(_, other)| fitting.share > other.share + 0.005) {
@@ -84,12 +84,12 @@ impl<'a> Trial<'a> {
         self.inputs.tessellation.undisplaced()
     }
 
-    fn surface(&self, tessellation: Tessellation, mistake: Option<NetMistake>) -> OwnSurface {
-        OwnSurface { inputs: Inputs { tessellation, ..self.inputs }, mistake }
+    fn surface(&self, tessellation: Tessellation, mistake: Option<NetMistake>) -> OurSurface {
+        OurSurface { inputs: Inputs { tessellation, ..self.inputs }, mistake }
     }
 
     /// The surfaces that are tried, without displacement. Our own comes first, if ours is displaced or has a strength.
-    fn candidates(&self) -> Vec<OwnSurface> {
+    fn candidates(&self) -> Vec<OurSurface> {
         let own = self.undisplaced();
         let others = Surface::ALL.into_iter().flat_map(|surface| {
             let strengths = if surface.is_phong() { &STRENGTHS[..] } else { &STRENGTHS[..1] };
@@ -104,7 +104,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Seeks the strength of Phong tessellation at which the vertices are nearest to it.
-    fn other_strength(&self, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
+    fn other_strength(&self, progress: &Progress) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
         let own = self.undisplaced();
         for surface in [Surface::PhongAen, Surface::Phong] {
             let at = |alpha: f32| self.surface(Tessellation { surface, alpha: alpha.clamp(0.0, 1.0), ..own }, None);
@@ -118,7 +118,7 @@ impl<'a> Trial<'a> {
     }
 
     /// Seeks the usual mistake in the control points of our own surface that gives theirs.
-    fn mistake(&self, progress: &Progress) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
+    fn mistake(&self, progress: &Progress) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
         let own = self.undisplaced();
         if own.surface.is_flat() {
             return Ok(None);
@@ -142,10 +142,10 @@ impl<'a> Trial<'a> {
     fn fitted(
         &self,
         [mut least, mut most]: [f32; 2],
-        at: impl Fn(f32) -> OwnSurface,
+        at: impl Fn(f32) -> OurSurface,
         plain: impl Fn(f32) -> f32,
         progress: &Progress,
-    ) -> Result<Option<(OwnSurface, Fitting)>, Cancelled> {
+    ) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
         const STEPS: usize = 4;
         for _ in 0..STEPS {
             let [lower, upper] = [self.fitting(&at(least), progress)?.mean, self.fitting(&at(most), progress)?.mean];
@@ -162,8 +162,8 @@ impl<'a> Trial<'a> {
         Ok((fitting.share >= FOUND).then_some((found, fitting)))
     }
 
-    fn fitting(&self, surface: &OwnSurface, progress: &Progress) -> Result<Fitting, Cancelled> {
-        let Some(locator) = Locator::of_surface(self.mesh, self.overlaid.topology, surface, COARSE) else {
+    fn fitting(&self, surface: &OurSurface, progress: &Progress) -> Result<Fitting, Cancelled> {
+        let Some(locator) = Locator::from_surface(self.mesh, self.overlaid.topology, surface, COARSE) else {
             return Ok(Fitting { share: 0.0, mean: f64::INFINITY });
         };
         let distance = |index: usize| locator.place(self.sample[index]).map_or(f64::INFINITY, |place| place.distance);

@@ -30,11 +30,11 @@ struct Theirs {
 
 impl Scene {
     fn new(shape: Shape, tessellation: Tessellation) -> Self {
-        Self::of(shape.build(), tessellation)
+        Self::from_mesh(shape.build(), tessellation)
     }
 
-    fn of(mesh: Mesh, tessellation: Tessellation) -> Self {
-        let topology = Topology::of(&mesh);
+    fn from_mesh(mesh: Mesh, tessellation: Tessellation) -> Self {
+        let topology = Topology::new(&mesh);
         // Seen obliquely, so that edges of all directions have different lengths on screen.
         let clip = Mat4::from_cols_array_2d(&[
             [0.6, 0.1, 0.2, 0.0],
@@ -52,7 +52,7 @@ impl Scene {
         let mut tessellation = self.inputs.tessellation;
         change(&mut tessellation);
         let inputs = Inputs::new(&tessellation, self.inputs.view);
-        Theirs::of(&tessellate(&self.mesh, &self.topology, &inputs, None))
+        Theirs::new(&tessellate(&self.mesh, &self.topology, &inputs, None))
     }
 
     /// What we emit if the hull shader changes the factors of sides 0, 1 and 2, and of the inside.
@@ -67,7 +67,7 @@ impl Scene {
             factors.edges = [0, 1, 2].map(|i| sides[side(i)]);
             factors.inside = inside;
         }
-        Theirs::of(&tessellate_given(&self.mesh, &self.topology, &self.inputs, &written))
+        Theirs::new(&tessellate_given(&self.mesh, &self.topology, &self.inputs, &written))
     }
 
     fn compare(&self, theirs: &Theirs) -> Comparison {
@@ -76,7 +76,7 @@ impl Scene {
 
     /// Compares with numbers that were rounded by up to `resolution` object units, as their file says.
     fn compare_to_decimals(&self, theirs: &Theirs, resolution: f64) -> Comparison {
-        let ours = Ours {
+        let ours = OurTessellation {
             mesh: &self.mesh,
             topology: &self.topology,
             inputs: &self.inputs,
@@ -86,7 +86,7 @@ impl Scene {
         };
         let within = (16.0 * ulp(&self.topology)).max(2.0 * resolution);
         let theirs = ForeignMesh::new(&theirs.positions, theirs.triangles.iter().copied());
-        compare(&ours, &theirs, Exactness { within, resolution }, &Progress::new()).expect("nobody cancels")
+        compare(&ours, &theirs, Tolerances { within, resolution }, &Progress::new()).expect("nobody cancels")
     }
 
     /// Compares, and checks that these kinds are found and no others. Returns their texts.
@@ -100,7 +100,7 @@ impl Scene {
 }
 
 impl Theirs {
-    fn of(out: &Tessellated) -> Self {
+    fn new(out: &Tessellated) -> Self {
         let positions = out.vertices.iter().map(|vertex| Vec3::from(vertex.position)).collect();
         Self { positions, triangles: out.triangles.clone() }
     }
@@ -136,13 +136,13 @@ fn what_we_emit_is_the_same_in_any_order() {
     for shape in Shape::ALL {
         for surface in [Surface::Flat, Surface::Pn, Surface::PnAen, Surface::Phong, Surface::NagataAen] {
             let scene = Scene::new(shape, Tessellation { surface, factor: 5.5, ..Tessellation::default() });
-            scene.check(&Theirs::of(&scene.out).shuffled(), &[]);
+            scene.check(&Theirs::new(&scene.out).shuffled(), &[]);
         }
     }
     for partitioning in Partitioning::ALL {
         for convention in [Convention::D3d11, Convention::AmdPn, Convention::Rotated] {
             let scene = Scene::new(Shape::Torus, Tessellation { convention, ..varied(partitioning) });
-            scene.check(&Theirs::of(&scene.out).shuffled(), &[]);
+            scene.check(&Theirs::new(&scene.out).shuffled(), &[]);
         }
     }
 }
@@ -153,7 +153,7 @@ fn rounding_is_told_from_mistakes() {
     for lod in [Lod::Uniform, Lod::Error] {
         let scene = Scene::new(Shape::Torus, Tessellation { factor: 5.5, lod, ..Tessellation::default() });
         let noise = |size: f32| {
-            Theirs::of(&scene.out).moved(|p| p + vec3((p.x * 1e4).sin(), (p.y * 1e4).sin(), (p.z * 1e4).cos()) * size)
+            Theirs::new(&scene.out).moved(|p| p + vec3((p.x * 1e4).sin(), (p.y * 1e4).sin(), (p.z * 1e4).cos()) * size)
         };
         scene.check(&noise(1e-7), &[]);
         let text = scene.check(&noise(5e-6), &["rounding"]);
@@ -168,9 +168,9 @@ fn numbers_of_16_bits_are_named_beside_other_mistakes() {
     let unit = |x: f32| x.abs().max(1.0 / 16384.0).log2().floor().exp2() / 1024.0;
     let halves = |p: Vec3| p.map(|x| (x / unit(x)).round() * unit(x));
     for scene in [torus(Partitioning::FractionalOdd), torus(Partitioning::Integer)] {
-        let text = scene.check(&Theirs::of(&scene.out).moved(halves), &["rounding"]);
+        let text = scene.check(&Theirs::new(&scene.out).moved(halves), &["rounding"]);
         assert!(text.contains("rounded to 16-bit floating-point numbers") && text.contains("--within "), "{text}");
-        let scaled = Theirs::of(&scene.out).moved(|p| halves(100.0 * p));
+        let scaled = Theirs::new(&scene.out).moved(|p| halves(100.0 * p));
         scene.check(&scaled, &["coordinates", "rounding"]);
     }
     let scene =
@@ -185,8 +185,8 @@ fn numbers_of_16_bits_are_named_beside_other_mistakes() {
         factor: 4.0,
         ..Tessellation::default()
     };
-    let cube = Scene::of(mesh, tessellation);
-    let own = Theirs::of(&cube.out);
+    let cube = Scene::from_mesh(mesh, tessellation);
+    let own = Theirs::new(&cube.out);
     let inside = |p: &Vec3| p.x == 0.5 && p.y.abs() < 0.5 && p.z.abs() < 0.5;
     let inside = own.positions.iter().copied().find(inside).expect("a face has points inside");
     let lifted = own.moved(|p| if p == inside { p + Vec3::X / 1024.0 } else { p });
@@ -202,7 +202,7 @@ fn three_decimals_are_enough_where_points_are_farther_apart() {
             let found = scene.compare_to_decimals(&theirs.moved(decimals), resolution);
             found.findings.iter().map(Finding::kind).collect::<Vec<_>>()
         };
-        assert_eq!(kinds(Theirs::of(&scene.out)), [""; 0], "{partitioning:?}");
+        assert_eq!(kinds(Theirs::new(&scene.out)), [""; 0], "{partitioning:?}");
         assert_eq!(kinds(scene.theirs(|own| own.factor = 2.0)), ["factors"], "{partitioning:?}");
     }
 }
@@ -299,8 +299,11 @@ fn every_other_surface_is_named() {
 
 /// What we emit if control points have a mistake.
 fn with_mistake(scene: &Scene, mistake: NetMistake) -> Theirs {
-    let surface = OwnSurface { inputs: scene.inputs, mistake: Some(mistake) };
-    Theirs { positions: surface.positions(&scene.mesh, &scene.topology, &scene.out.vertices), ..Theirs::of(&scene.out) }
+    let surface = OurSurface { inputs: scene.inputs, mistake: Some(mistake) };
+    Theirs {
+        positions: surface.positions(&scene.mesh, &scene.topology, &scene.out.vertices),
+        ..Theirs::new(&scene.out)
+    }
 }
 
 #[test]
@@ -334,7 +337,7 @@ fn mistakes_in_control_points_are_named() {
 #[test]
 fn other_spaces_are_named() {
     let scene = Scene::new(Shape::Bicubic, Tessellation { factor: 3.0, ..Tessellation::default() });
-    let whole = Theirs::of(&scene.out).shuffled();
+    let whole = Theirs::new(&scene.out).shuffled();
     let turn = Mat4::from_axis_angle(vec3(1.0, 2.0, 2.0) / 3.0, 0.5) * Mat4::from_translation(vec3(0.3, -0.2, 0.1));
     let text = scene.check(&whole.clone().moved(|p| turn.transform_point3(p)), &["coordinates"]);
     assert!(
@@ -357,9 +360,10 @@ fn another_view_is_told_from_moved_vertices() {
     for partitioning in [Partitioning::Integer, Partitioning::FractionalOdd] {
         let own = Tessellation { pixels: 30.0, ..varied(partitioning) };
         let scene = Scene::new(Shape::Icosphere, own);
-        let view = LodView { half_viewport: scene.inputs.view.half_viewport * 1.3, ..scene.inputs.view };
+        let view =
+            scene.inputs.view.seen_through(scene.inputs.view.clip_from_object, scene.inputs.view.half_viewport * 1.3);
         let theirs = tessellate(&scene.mesh, &scene.topology, &Inputs { view, ..scene.inputs }, None);
-        let found = scene.compare(&Theirs::of(&theirs).shuffled());
+        let found = scene.compare(&Theirs::new(&theirs).shuffled());
         let kinds: Vec<_> = found.findings.iter().map(Finding::kind).collect();
         assert!(kinds.contains(&"factors") && !kinds.contains(&"moved_vertices"), "{partitioning:?}: {kinds:?}");
     }
@@ -369,7 +373,7 @@ fn another_view_is_told_from_moved_vertices() {
 fn displacement_along_normals_is_told_from_other_moves() {
     let scene =
         Scene::new(Shape::Torus, Tessellation { partitioning: Partitioning::Integer, ..Tessellation::default() });
-    let mut theirs = Theirs::of(&scene.out);
+    let mut theirs = Theirs::new(&scene.out);
     for (position, vertex) in theirs.positions.iter_mut().zip(&scene.out.vertices) {
         *position += unpack_normal(vertex.normal) * (0.02 + 0.01 * (position.x * 9.0).sin());
     }
@@ -377,7 +381,7 @@ fn displacement_along_normals_is_told_from_other_moves() {
     assert!(text.contains("along the normals, by up to 0.0300 object units outward"), "{text}");
     // Their factors are ours, though some of their points seem to lie elsewhere.
     assert!(scene.compare(&theirs).sides.is_empty() && scene.compare(&theirs).different.is_empty());
-    let wavy = Theirs::of(&scene.out).moved(|p| p + vec3(0.006 * (p.y * 5.0).cos(), 0.0, 0.0));
+    let wavy = Theirs::new(&scene.out).moved(|p| p + vec3(0.006 * (p.y * 5.0).cos(), 0.0, 0.0));
     let text = scene.check(&wavy, &["displaced"]);
     assert!(text.contains("not along the normals"), "{text}");
 }
@@ -388,8 +392,9 @@ fn a_displaced_surface_is_told_from_its_base() {
     let height = |i: u32| 0.5 + 0.5 * ((i % 64) as f32 / 5.0).sin() * ((i / 64) as f32 / 7.0).cos();
     mesh.heights =
         Some(Arc::new(Heights::everywhere(&mesh, HeightMap::new([64, 64], (0..4096).map(height).collect()))));
-    let scene = Scene::of(mesh, Tessellation { displacement: Displacement::On, ..varied(Partitioning::Integer) });
-    scene.check(&Theirs::of(&scene.out).shuffled(), &[]);
+    let scene =
+        Scene::from_mesh(mesh, Tessellation { displacement: Displacement::On, ..varied(Partitioning::Integer) });
+    scene.check(&Theirs::new(&scene.out).shuffled(), &[]);
     let flat = scene.theirs(|own| own.displacement = Displacement::Off);
     let text = scene.check(&flat.shuffled(), &["surface"]);
     assert!(text.contains("It isn't displaced"), "{text}");
@@ -401,7 +406,7 @@ fn a_displaced_surface_is_told_from_its_base() {
 #[test]
 fn a_moved_vertex_is_found() {
     let scene = torus(Partitioning::Integer);
-    let whole = Theirs::of(&scene.out);
+    let whole = Theirs::new(&scene.out);
     // The last vertex of a patch is inside.
     let patch = scene.out.vertices[scene.out.vertices.len() / 2].patch();
     let last = scene.out.vertices.iter().rposition(|vertex| vertex.patch() == patch).expect("a vertex");
@@ -440,7 +445,7 @@ fn place_between(scene: &Scene, a: usize, b: usize) -> Place {
 #[test]
 fn missing_and_additional_triangles_are_counted() {
     let scene = torus(Partitioning::FractionalEven);
-    let whole = Theirs::of(&scene.out);
+    let whole = Theirs::new(&scene.out);
     let patch_of = |triangle: &[u32; 3]| scene.out.vertices[triangle[0] as usize].patch();
     let mut without_patches = whole.clone();
     without_patches.triangles.retain(|triangle| ![17, 40].contains(&patch_of(triangle)));
@@ -466,7 +471,7 @@ fn missing_and_additional_triangles_are_counted() {
 #[test]
 fn winding_and_diagonals_are_told() {
     let scene = torus(Partitioning::FractionalOdd);
-    let whole = Theirs::of(&scene.out);
+    let whole = Theirs::new(&scene.out);
     let mut flipped = whole.clone();
     flipped.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     let text = scene.check(&flipped.shuffled(), &["winding"]);
@@ -502,7 +507,7 @@ fn apart(a: [u32; 3], b: [u32; 3]) -> ([u32; 2], [u32; 2]) {
 fn coordinates_that_are_turned_scaled_mirrored_or_moved_are_found_first() {
     // Nothing is symmetric about the bicubic vase.
     let scene = Scene::new(Shape::Bicubic, Tessellation { factor: 3.0, ..Tessellation::default() });
-    let whole = Theirs::of(&scene.out).shuffled();
+    let whole = Theirs::new(&scene.out).shuffled();
     for (theirs, said) in [
         (whole.clone().moved(|p| p * 100.0), "scaled (100 times ours)"),
         (whole.clone().moved(|p| vec3(p.x, -p.z, p.y)), "turned (its x, y, z are our x, -z, y)"),
@@ -528,7 +533,7 @@ fn coordinates_that_are_turned_scaled_mirrored_or_moved_are_found_first() {
 fn coordinates_of_a_symmetric_mesh_are_told_by_its_vertices() {
     // The torus looks nearly the same from eight sides and their opposites; LOD cuts each otherwise.
     let scene = torus(Partitioning::Integer);
-    let whole = Theirs::of(&scene.out).shuffled();
+    let whole = Theirs::new(&scene.out).shuffled();
     for (theirs, said) in [
         (
             whole.clone().moved(|p| vec3(p.x, -p.z, p.y) * 100.0),
@@ -554,14 +559,14 @@ fn coordinates_of_a_symmetric_mesh_are_told_by_its_vertices() {
 fn another_mesh_is_no_tessellation_of_this_one() {
     let scene = torus(Partitioning::Integer);
     let other = Scene::new(Shape::CubeSplit, Tessellation::default());
-    let text = scene.check(&Theirs::of(&other.out), &["not_a_tessellation"]);
+    let text = scene.check(&Theirs::new(&other.out), &["not_a_tessellation"]);
     assert!(text.contains("vertices are farther than"), "{text}");
 }
 
 #[test]
 fn triangles_that_are_not_finite_are_said() {
     let scene = torus(Partitioning::Integer);
-    let mut theirs = Theirs::of(&scene.out).shuffled();
+    let mut theirs = Theirs::new(&scene.out).shuffled();
     theirs.positions[3].y = f32::NAN;
     let text = scene.check(&theirs, &["not_finite", "missing_triangles"]);
     assert!(text.contains("1 triangle has a coordinate that is NaN"), "{text}");
@@ -574,7 +579,7 @@ fn examples() -> Vec<Finding> {
     use super::findings::Displaced;
     use super::spaces::SpaceKind;
     let axes = |axes, scale| Finding::Aligned(Frame::Axes(Alignment { axes, scale, offset: DVec3::ZERO }));
-    let space = |kind| Finding::Aligned(Frame::Space(Space::of_kind(kind)));
+    let space = |kind| Finding::Aligned(Frame::Space(Space::from_kind(kind)));
     let net = |mistake| Finding::OtherNets { mistake, vertices: 120, of: 300 };
     let edges = |share, bend| net(NetMistake::Edges { share, bend });
     let surface = |surface, alpha| Tessellation { surface, alpha, ..Tessellation::default() };

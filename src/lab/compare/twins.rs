@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 use super::foreign::ForeignMesh;
 use super::locator::Place;
-use super::own_mesh::{OwnMesh, is_thin};
+use super::our_mesh::{OurMesh, is_thin};
 use geometry::mesh::weld::weld_alike;
 use geometry::tessellate::{FIXED_ONE, Vertex};
 
@@ -53,7 +53,7 @@ impl<'a> Twins<'a> {
     /// Finds the twins of their triangles, whose vertices are at `positions` in our coordinates. `own` are the positions of our
     /// vertices on the surface that theirs lie on. Positions within `tolerance` object units are the same.
     pub(super) fn find(
-        ours: &OwnMesh<'a>,
+        ours: &OurMesh<'a>,
         own: &[Vec3],
         theirs: &ForeignMesh,
         positions: &[DVec3],
@@ -61,36 +61,36 @@ impl<'a> Twins<'a> {
     ) -> Self {
         let at = |i: usize| own.get(i).copied().unwrap_or_else(|| positions[i - own.len()].as_vec3());
         let (_, points) = weld_alike(own.len() + positions.len(), |i| (at(i), 0), tolerance);
-        let (own_points, their_points) = points.split_at(own.len());
+        let (our_points, their_points) = points.split_at(own.len());
         let of = |triangle: &[u32; 3], points: &[u32]| triangle.map(|vertex| points[vertex as usize]);
-        let own_triangles = Triangle::sorted(ours.triangles().iter().map(|triangle| of(triangle, own_points)));
+        let our_triangles = Triangle::sorted(ours.triangles().iter().map(|triangle| of(triangle, our_points)));
         let their_triangles = Triangle::sorted(theirs.triangles.iter().map(|triangle| of(triangle, their_points)));
         let mut corners = vec![None; theirs.triangles.len()];
-        let mut own_groups = own_triangles.chunk_by(|a, b| a.points == b.points).peekable();
+        let mut our_groups = our_triangles.chunk_by(|a, b| a.points == b.points).peekable();
         for group in their_triangles.chunk_by(|a, b| a.points == b.points) {
             let compared = |own: &&[Triangle]| own[0].points.cmp(&group[0].points);
-            while own_groups.next_if(|own| compared(own) == Ordering::Less).is_some() {}
-            let Some(own_group) = own_groups.next_if(|own| compared(own) == Ordering::Equal) else { continue };
+            while our_groups.next_if(|own| compared(own) == Ordering::Less).is_some() {}
+            let Some(our_group) = our_groups.next_if(|own| compared(own) == Ordering::Equal) else { continue };
             let their_corners = |their: u32| theirs.triangles[their as usize].map(|vertex| vertex as usize);
             let twin = |their: u32, own: u32| {
                 let corners = ours.triangles()[own as usize];
                 let corner =
-                    |vertex: usize| corners.into_iter().find(|own| own_points[*own as usize] == their_points[vertex]);
+                    |vertex: usize| corners.into_iter().find(|own| our_points[*own as usize] == their_points[vertex]);
                 let [a, b, c] = their_corners(their).map(corner);
                 a.zip(b).zip(c).map(|((a, b), c)| [a, b, c])
             };
-            let apart = |their: u32, own_triangle: u32| {
-                let twins = twin(their, own_triangle).into_iter().flatten();
+            let apart = |their: u32, our_triangle: u32| {
+                let twins = twin(their, our_triangle).into_iter().flatten();
                 let pairs = their_corners(their).into_iter().zip(twins);
                 pairs.map(|(vertex, twin)| positions[vertex].distance(own[twin as usize].as_dvec3())).sum::<f64>()
             };
-            for (their, own) in pairs(group, own_group, apart) {
+            for (their, own) in pairs(group, our_group, apart) {
                 corners[their as usize] = twin(their, own);
             }
         }
         let is_thin = theirs.triangles.iter().map(|triangle| is_thin(of(triangle, their_points))).collect();
         let mut at_points = vec![None; points.iter().max().map_or(0, |last| *last as usize + 1)];
-        (0..).zip(own_points).for_each(|(vertex, point)| at_points[*point as usize] = Some(vertex));
+        (0..).zip(our_points).for_each(|(vertex, point)| at_points[*point as usize] = Some(vertex));
         let mut twins = Self { own: ours.vertices(), corners, places: Vec::new(), is_thin };
         let place = |point: &u32| at_points[*point as usize].map(|twin: u32| twins.place(twin));
         let mut places: Vec<Option<Place>> = their_points.iter().map(place).collect();
@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn each_gets_one_of_its_own_winding_first() {
+    fn each_gets_one_of_its_our_winding_first() {
         let list = |all: &[[u32; 3]]| Triangle::sorted(all.iter().copied());
         let found = |theirs: &[[u32; 3]], own: &[[u32; 3]]| {
             let mut found = pairs(&list(theirs), &list(own), |_, _| 0.0);

@@ -33,7 +33,7 @@ pub struct Tile {
 
 impl Tile {
     /// A technique that is one value of an option. Its name and explanation are those of the value.
-    fn of(value: impl Choice, tessellation: Tessellation) -> Self {
+    fn new(value: impl Choice, tessellation: Tessellation) -> Self {
         let Description { name, text, .. } = value.description();
         Self {
             name: name.to_owned(),
@@ -59,7 +59,7 @@ fn usual() -> Tessellation {
 }
 
 fn surfaces() -> Exhibit {
-    let of = |surface| Tile::of(surface, Tessellation { surface, ..usual() });
+    let of = |surface| Tile::new(surface, Tessellation { surface, ..usual() });
     Exhibit {
         name: "surfaces",
         title: "Surfaces",
@@ -73,7 +73,7 @@ fn surfaces() -> Exhibit {
 }
 
 fn creases() -> Exhibit {
-    let of = |surface| Tile::of(surface, Tessellation { surface, ..usual() });
+    let of = |surface| Tile::new(surface, Tessellation { surface, ..usual() });
     let band = Tile { crease_band: 0.02, ..of(Surface::Pn) };
     Exhibit {
         name: "creases",
@@ -93,7 +93,7 @@ fn creases() -> Exhibit {
 }
 
 fn normals() -> Exhibit {
-    let of = |normals| Tile::of(normals, Tessellation { normals, ..usual() });
+    let of = |normals| Tile::new(normals, Tessellation { normals, ..usual() });
     Exhibit {
         name: "normals",
         title: "Shading normals",
@@ -108,7 +108,7 @@ fn normals() -> Exhibit {
 
 fn patterns() -> Exhibit {
     let of = |partitioning| {
-        let tile = Tile::of(partitioning, Tessellation { partitioning, ..usual() });
+        let tile = Tile::new(partitioning, Tessellation { partitioning, ..usual() });
         Tile { factor: Some(5.4), ..tile }
     };
     Exhibit {
@@ -123,7 +123,7 @@ fn patterns() -> Exhibit {
 
 fn heights() -> Exhibit {
     let of = |displacement| {
-        let tile = Tile::of(displacement, Tessellation { displacement, ..usual() });
+        let tile = Tile::new(displacement, Tessellation { displacement, ..usual() });
         Tile { factor: Some(24.0), ..tile }
     };
     Exhibit {

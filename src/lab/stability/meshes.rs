@@ -273,7 +273,7 @@ mod tests {
 
     #[test]
     fn each_fault_of_normals_is_counted() {
-        let faults = |mesh: &Mesh| NormalFaults::of(mesh, &topology(mesh));
+        let faults = |mesh: &Mesh| NormalFaults::new(mesh, &topology(mesh));
         assert!(faults(&made("opposite-normals")).opposite > 20);
         assert!(faults(&edge_normals()).along_edge > 20);
         assert_eq!(faults(&made("inward-normals")).against_face, 240);

@@ -187,7 +187,7 @@ pub struct Tried {
 
 impl Tried {
     /// The mesh itself, from where its case's picture is taken.
-    pub fn of_mesh(subject: &Subject) -> Self {
+    pub fn from_mesh(subject: &Subject) -> Self {
         let settings = Method::Surface(Surface::Flat).settings(Partitioning::Integer, 1.0);
         let camera = views::camera(&subject.mesh.bounds(), &subject.view, viewport());
         Self { settings, camera, moment: None }

@@ -33,7 +33,7 @@ impl Verdict {
         }
     }
 
-    fn of(row: &Row) -> Self {
+    fn new(row: &Row) -> Self {
         match (row.holds, row.promised) {
             (true, _) => Self::Holds,
             (false, false) => Self::Fails,
@@ -53,7 +53,7 @@ pub fn lines(rows: &[Row]) -> Vec<Line> {
             lines.len() - 1
         });
         let line = &mut lines[index];
-        line.verdict = line.verdict.max(Verdict::of(row));
+        line.verdict = line.verdict.max(Verdict::new(row));
         match line.worst.iter_mut().find(|(quantity, _)| *quantity == row.quantity) {
             Some((_, worst)) => *worst = worst.max(row.measured),
             None => line.worst.push((row.quantity, row.measured)),

@@ -207,7 +207,7 @@ impl<'a> Running<'a> {
                 settings.tessellation.convention,
                 out.edge_factors.clone(),
             );
-            let measured = Measured::of(&mesh, &topology, asked, &out);
+            let measured = Measured::new(&mesh, &topology, asked, &out);
             self.take(&mut worst, &measured, tried, &view, effort);
         }
         if self.case.probe == Probe::Sweep {

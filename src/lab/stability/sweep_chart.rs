@@ -59,7 +59,7 @@ fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     axes(&mut chart, sweeps)?;
     for sweep in sweeps {
         let points = parts(sweep, diagonal, decades.start);
-        let style = CurveStyle::of(sweep.partitioning);
+        let style = CurveStyle::new(sweep.partitioning);
         style.draw(&mut chart, &points, decades.start, legend_text(sweep, diagonal))?;
     }
     chart
@@ -144,7 +144,7 @@ enum Shape {
 }
 
 impl CurveStyle {
-    fn of(partitioning: Partitioning) -> Self {
+    fn new(partitioning: Partitioning) -> Self {
         let (color, shape) = match partitioning {
             Partitioning::Integer => (VERMILION, Shape::Discs),
             Partitioning::Pow2 => (BLUE, Shape::Crosses),
@@ -225,7 +225,7 @@ mod tests {
 
     /// The centres of the discs to the left of the legend, in px from the upper left corner.
     fn discs(picture: &RgbImage) -> Vec<[f64; 2]> {
-        let RGBColor(r, g, b) = CurveStyle::of(Partitioning::Integer).color;
+        let RGBColor(r, g, b) = CurveStyle::new(Partitioning::Integer).color;
         let mut found: Vec<_> = picture.enumerate_pixels().filter(|(_, _, pixel)| pixel.0 == [r, g, b]).collect();
         found.retain(|(x, _, _)| *x < picture.width() * 6 / 10);
         found.sort_by_key(|(x, _, _)| *x);
@@ -260,7 +260,7 @@ mod tests {
             let picture = sweep_chart(&[sweep(shown, &jumps)], 1.0, [640, 400]).expect("it draws");
             for partitioning in Partitioning::ALL {
                 assert_eq!(
-                    has(&picture, CurveStyle::of(partitioning).color),
+                    has(&picture, CurveStyle::new(partitioning).color),
                     partitioning == shown,
                     "{partitioning:?}"
                 );

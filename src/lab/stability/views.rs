@@ -47,7 +47,7 @@ mod tests {
 
     #[test]
     fn some_cameras_are_inside_and_most_are_not() {
-        let bounds = Bounds::of([Vec3::NEG_ONE, Vec3::ONE].into_iter());
+        let bounds = Bounds::new([Vec3::NEG_ONE, Vec3::ONE].into_iter());
         let cameras: Vec<_> = (0..200).map(|index| random(&bounds, index)).collect();
         let inside = cameras.iter().filter(|camera| camera.eye().length() < bounds.radius()).count();
         assert!((10..120).contains(&inside), "{inside}");

@@ -41,7 +41,7 @@ fn corners(places: &[[f32; 2]]) -> Vec<NumberedCorner> {
 
 fn added(places: &[&[[f32; 2]]]) -> Result<LoadedMesh, ReadError> {
     let (budget, progress) = (Budget::unlimited(), Progress::new());
-    let mut faces = FaceBuilder::new(&ModelFile::of_test("faces", &progress), &budget);
+    let mut faces = FaceBuilder::new(&ModelFile::from_test("faces", &progress), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     for places in places {
         faces.add(material, &mut corners(places), FilePosition::Line(7))?;
@@ -86,7 +86,7 @@ fn faces_at_impossible_positions_are_left_out() {
 #[test]
 fn corners_keep_their_colours() {
     let (budget, progress) = (Budget::unlimited(), Progress::new());
-    let mut faces = FaceBuilder::new(&ModelFile::of_test("faces", &progress), &budget);
+    let mut faces = FaceBuilder::new(&ModelFile::from_test("faces", &progress), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4])).unwrap();
     faces.color();
     let square = corners(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);

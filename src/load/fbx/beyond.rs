@@ -18,7 +18,7 @@ pub(super) struct Span {
 
 impl Span {
     /// Returns what the clip itself says, or its key frames if it says nothing that can be.
-    pub(super) fn of(anim: &Anim, key_times: [f64; 2]) -> Self {
+    pub(super) fn new(anim: &Anim, key_times: [f64; 2]) -> Self {
         let Anim { time_begin: begin, time_end: end, .. } = *anim;
         let is_fit = begin < end && [begin, end].iter().all(|time| time.abs() <= MAX_LENGTH);
         if is_fit { Self { begin, end } } else { Self { begin: key_times[0].min(0.0), end: key_times[1] } }

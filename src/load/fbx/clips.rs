@@ -121,7 +121,7 @@ impl Reader<'_> {
         };
         let bytes = baked.metadata.result_memory_used as u64;
         self.budget.hold(bytes)?;
-        let span = Span::of(&stack.anim, [baked.key_time_min, baked.key_time_max]);
+        let span = Span::new(&stack.anim, [baked.key_time_min, baked.key_time_max]);
         let beyond = Beyond::new(anim, span, SAMPLES, self.samples_left);
         let mut curves = Curves { anim, span, beyond };
         let channels = self.channels(&baked, &mut curves);

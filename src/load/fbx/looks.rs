@@ -115,7 +115,7 @@ impl<'a> LookSource<'a> {
     /// Returns its textures, and how texels of each are averaged.
     pub(super) fn images(&self) -> impl Iterator<Item = (&'a Texture, MipFilter)> {
         let filters = [
-            (self.base, MipFilter::of_base_color(self.look.alpha)),
+            (self.base, MipFilter::from_base_color(self.look.alpha)),
             (self.opacity, MipFilter::Numbers),
             (self.roughness, MipFilter::Numbers),
             (self.metalness, MipFilter::Numbers),

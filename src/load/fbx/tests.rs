@@ -17,7 +17,7 @@ use geometry::progress::Progress;
 use tree::{Arrays, Entry, binary, text};
 
 fn read(bytes: &[u8]) -> Result<LoadedMesh, ReadError> {
-    read_here(bytes.to_vec(), &ModelFile::of_test("test", &Progress::new()))
+    read_here(bytes.to_vec(), &ModelFile::from_test("test", &Progress::new()))
 }
 
 /// Reads a file as text, as plain binary and as compressed binary. All must give the same mesh.

@@ -90,7 +90,7 @@ pub(crate) struct List<'a, T: Clone> {
 
 impl<'a, T: Copy + Sync + 'a> List<'a, T> {
     /// Makes a list of values that were decoded before.
-    pub(crate) fn of(values: &'a [T], zero: T) -> Self {
+    pub(crate) fn new(values: &'a [T], zero: T) -> Self {
         Self::decoded(Cow::Borrowed(values), zero)
     }
 

@@ -58,7 +58,7 @@ impl<T: Carriable> Carried<T> {
     /// Reads a list, and takes out of nodes which of its elements they have.
     pub(super) fn take(root: &mut Map<String, Value>, list: &[Value], notes: &RefCell<Notes>) -> Self {
         let kind = T::KIND;
-        let element = |(i, value)| T::read(&Members::of(value, format!("/{}/{i}", kind.list), notes)?);
+        let element = |(i, value)| T::read(&Members::new(value, format!("/{}/{i}", kind.list), notes)?);
         let list: Vec<_> = list.iter().enumerate().map(element).collect();
         let mut nodes = Vec::new();
         for (node, object) in objects(root, "nodes") {
@@ -67,7 +67,7 @@ impl<T: Carriable> Carried<T> {
                 None => (object.remove(kind.member).map(|own| json!({ kind.member: own })), format!("/nodes/{node}")),
             };
             let Some(own) = own else { continue };
-            let members = Members::of(&own, pointer, notes);
+            let members = Members::new(&own, pointer, notes);
             let index = members.and_then(|members| members.index(kind.member, kind.list, list.len()));
             let name = || object.get("name").and_then(Value::as_str).map(str::to_owned);
             nodes.extend(index.map(|index| Carrier { node, name: name(), index }));

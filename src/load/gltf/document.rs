@@ -77,7 +77,7 @@ pub(super) fn parse(
     if list(root, "buffers").is_empty() && !list(root, "bufferViews").is_empty() {
         root.insert("buffers".to_owned(), json!([{ "byteLength": 0 }]));
     }
-    let mut extensions = Extensions::of(root);
+    let mut extensions = Extensions::new(root);
     for (_, scene) in objects(root, "scenes") {
         scene.entry("nodes").or_insert_with(|| json!([]));
     }
@@ -85,10 +85,10 @@ pub(super) fn parse(
     if !requires_draco {
         extensions.leave_out_packed(&root);
     }
-    let mut reach = Reach::of(&root, &faults, hiding);
+    let mut reach = Reach::new(&root, &faults, hiding);
     let parts = node_parts::take(&mut root, &extensions.instances, &reach, selected.hidden, budget)?;
     if parts.is_cut {
-        reach = Reach::of(&root, &faults, reach.hiding);
+        reach = Reach::new(&root, &faults, reach.hiding);
     }
     let materials = lists.materials.len();
     let settled = Settled { reach: &reach, faults: &faults, rotations, materials, requires_draco };

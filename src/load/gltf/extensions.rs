@@ -84,7 +84,7 @@ pub(crate) enum MeshoptFilter {
 
 impl Extensions {
     /// Reads the extensions of a document that has been [checked](super::schema_check).
-    pub(crate) fn of(root: &Map<String, Value>) -> Self {
+    pub(crate) fn new(root: &Map<String, Value>) -> Self {
         let compressed = |view: &Value| {
             let (name, own) = compression(view)?;
             Some(MeshoptExtension { name, ..read(own)? })

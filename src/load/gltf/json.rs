@@ -29,7 +29,7 @@ pub(super) const PER_READ: u64 = 400;
 pub(super) fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value, GltfError> {
     // JSON has no byte order mark, but some editors write one.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let shape = JsonSize::of(text, progress)?;
+    let shape = JsonSize::new(text, progress)?;
     if shape.depth > MAX_DEPTH {
         let reason = format!("its JSON is nested {} levels deep, but at most {MAX_DEPTH} levels are read", shape.depth);
         return Err(GltfError::NotGltf { reason });
@@ -101,7 +101,7 @@ struct JsonSize {
 }
 
 impl JsonSize {
-    fn of(text: &[u8], progress: &Progress) -> Result<Self, Cancelled> {
+    fn new(text: &[u8], progress: &Progress) -> Result<Self, Cancelled> {
         let mut scan = Scan::default();
         for piece in text.chunks(PIECE) {
             progress.check()?;
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn brackets_in_strings_do_not_count() {
-        let of = |text: &[u8]| JsonSize::of(text, &Progress::new()).expect("not cancelled");
+        let of = |text: &[u8]| JsonSize::new(text, &Progress::new()).expect("not cancelled");
         let shape = of(br#"{"a[\"{[":[[1,2],{}],"b\\":"]"}"#);
         assert_eq!(shape, JsonSize { depth: 3, values: 7, objects: 2 });
         assert_eq!(of(b"]]]["), JsonSize { depth: 1, values: 1, objects: 0 });

@@ -19,7 +19,7 @@ pub(super) struct Members<'a> {
 
 impl<'a> Members<'a> {
     /// Looks at a value, which should be an object; returns none if it is something else, which becomes a sentence.
-    pub(super) fn of(value: &'a Value, pointer: String, notes: &'a RefCell<Notes>) -> Option<Self> {
+    pub(super) fn new(value: &'a Value, pointer: String, notes: &'a RefCell<Notes>) -> Option<Self> {
         match value {
             Value::Object(object) => Some(Self { object, pointer, notes }),
             other => {
@@ -49,7 +49,7 @@ impl<'a> Members<'a> {
 
     /// Returns the object in a member.
     pub(super) fn inside(&self, name: &str) -> Option<Self> {
-        Self::of(self.get(name)?, format!("{}/{name}", self.pointer), self.notes)
+        Self::new(self.get(name)?, format!("{}/{name}", self.pointer), self.notes)
     }
 
     /// Returns the text in a member; none if it is something else.

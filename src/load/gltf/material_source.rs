@@ -75,7 +75,7 @@ fn silent() -> MaterialSource {
 
 impl MaterialSource {
     /// Reads a material, or returns that of primitives without one. `textures` is how many the document has.
-    pub(super) fn of(members: Option<&Members>, textures: usize) -> Self {
+    pub(super) fn new(members: Option<&Members>, textures: usize) -> Self {
         let mut source = silent();
         let Some(members) = members else { return source };
         source.name = members.text("name").map(str::to_owned);
@@ -84,8 +84,8 @@ impl MaterialSource {
             source.base_color = rough.numbers("baseColorFactor", [1.0; 4], UNIT);
             source.look.metallic = rough.number("metallicFactor", 1.0, UNIT);
             source.look.roughness = rough.number("roughnessFactor", 1.0, UNIT);
-            source.base_map = MapSource::of(&rough, "baseColorTexture", textures);
-            source.map(Slot::MetallicRoughness, MapSource::of(&rough, "metallicRoughnessTexture", textures));
+            source.base_map = MapSource::new(&rough, "baseColorTexture", textures);
+            source.map(Slot::MetallicRoughness, MapSource::new(&rough, "metallicRoughnessTexture", textures));
         }
         if let Some(normal) = members.inside("normalTexture") {
             source.look.normal_scale = normal.number("scale", 1.0, ANY);
@@ -96,7 +96,7 @@ impl MaterialSource {
             source.map(Slot::Occlusion, MapSource::inside(&occlusion, textures));
         }
         source.look.emissive = members.numbers("emissiveFactor", [0.0; 3], UNIT);
-        source.map(Slot::Emissive, MapSource::of(members, "emissiveTexture", textures));
+        source.map(Slot::Emissive, MapSource::new(members, "emissiveTexture", textures));
         let cutoff = members.number("alphaCutoff", 0.5, POSITIVE);
         source.look.alpha = match members.word("alphaMode", &["OPAQUE", "MASK", "BLEND"]) {
             "MASK" => Alpha::Mask(cutoff),
@@ -126,8 +126,8 @@ impl MaterialSource {
         if let Some(specular) = extensions.inside("KHR_materials_specular") {
             look.specular = specular.number("specularFactor", 1.0, UNIT);
             look.specular_color = specular.numbers("specularColorFactor", [1.0; 3], POSITIVE);
-            self.map(Slot::Specular, MapSource::of(&specular, "specularTexture", textures));
-            self.map(Slot::SpecularColor, MapSource::of(&specular, "specularColorTexture", textures));
+            self.map(Slot::Specular, MapSource::new(&specular, "specularTexture", textures));
+            self.map(Slot::SpecularColor, MapSource::new(&specular, "specularColorTexture", textures));
         }
         if let Some(coat) = extensions.inside("KHR_materials_clearcoat") {
             self.coat(&coat, textures);
@@ -135,15 +135,15 @@ impl MaterialSource {
         self.look.unlit = extensions.has("KHR_materials_unlit");
         if let Some(transmission) = extensions.inside(TRANSMISSION) {
             self.look.transmission = transmission.number("transmissionFactor", 0.0, UNIT);
-            self.map(Slot::Transmission, MapSource::of(&transmission, "transmissionTexture", textures));
+            self.map(Slot::Transmission, MapSource::new(&transmission, "transmissionTexture", textures));
         }
         if let Some(sheen) = extensions.inside("KHR_materials_sheen") {
             self.look.sheen_color = sheen.numbers("sheenColorFactor", [0.0; 3], UNIT);
             self.look.sheen_roughness = sheen.number("sheenRoughnessFactor", 0.0, UNIT);
             // Images of a sheen that isn't there needn't be read.
             if self.look.has_sheen() {
-                self.map(Slot::SheenColor, MapSource::of(&sheen, "sheenColorTexture", textures));
-                self.map(Slot::SheenRoughness, MapSource::of(&sheen, "sheenRoughnessTexture", textures));
+                self.map(Slot::SheenColor, MapSource::new(&sheen, "sheenColorTexture", textures));
+                self.map(Slot::SheenRoughness, MapSource::new(&sheen, "sheenRoughnessTexture", textures));
             }
         }
         if let Some(glossy) = extensions.inside("KHR_materials_pbrSpecularGlossiness") {
@@ -157,8 +157,8 @@ impl MaterialSource {
         self.look.clearcoat_roughness = coat.number("clearcoatRoughnessFactor", 0.0, UNIT);
         // Images of a coat that isn't there needn't be read.
         if self.look.clearcoat > 0.0 {
-            self.map(Slot::Clearcoat, MapSource::of(coat, "clearcoatTexture", textures));
-            self.map(Slot::ClearcoatRoughness, MapSource::of(coat, "clearcoatRoughnessTexture", textures));
+            self.map(Slot::Clearcoat, MapSource::new(coat, "clearcoatTexture", textures));
+            self.map(Slot::ClearcoatRoughness, MapSource::new(coat, "clearcoatRoughnessTexture", textures));
             if let Some(normal) = coat.inside("clearcoatNormalTexture") {
                 self.look.clearcoat_normal_scale = normal.number("scale", 1.0, ANY);
                 self.map(Slot::ClearcoatNormal, MapSource::inside(&normal, textures));
@@ -170,10 +170,10 @@ impl MaterialSource {
     /// seen head-on is the specular colour itself. KHR_materials_ior has the index 0 for this.
     fn glossy(&mut self, glossy: &Members, textures: usize) {
         self.base_color = glossy.numbers("diffuseFactor", [1.0; 4], UNIT);
-        self.base_map = MapSource::of(glossy, "diffuseTexture", textures);
+        self.base_map = MapSource::new(glossy, "diffuseTexture", textures);
         self.map(Slot::MetallicRoughness, None);
         self.map(Slot::Specular, None);
-        self.map(Slot::SpecularColor, MapSource::of(glossy, "specularGlossinessTexture", textures));
+        self.map(Slot::SpecularColor, MapSource::new(glossy, "specularGlossinessTexture", textures));
         let glossiness = glossy.number("glossinessFactor", 1.0, UNIT);
         self.glossiness = Some(glossiness);
         let look = &mut self.look;
@@ -231,7 +231,7 @@ fn index_of_refraction(members: &Members) -> f32 {
 
 impl MapSource {
     /// Reads a texture in a member; none without one, or if the document doesn't have it.
-    fn of(members: &Members, name: &str, textures: usize) -> Option<Self> {
+    fn new(members: &Members, name: &str, textures: usize) -> Option<Self> {
         Self::inside(&members.inside(name)?, textures)
     }
 
@@ -246,7 +246,7 @@ impl MapSource {
             texture,
             uvs: Uvs {
                 set: transform.as_ref().and_then(|transform| transform.uv_set("texCoord")).unwrap_or(set),
-                transform: transform.as_ref().and_then(UvTransform::of),
+                transform: transform.as_ref().and_then(UvTransform::new),
             },
         })
     }

@@ -127,8 +127,8 @@ impl<'a> Materials<'a> {
         }
         self.hold(size_of::<MaterialSource>() + size_of::<Material>())?;
         let value = index.and_then(|index| Some((index, self.lists.materials.get(index)?)));
-        let members = value.and_then(|(i, value)| Members::of(value, format!("/materials/{i}"), &self.notes));
-        let source = MaterialSource::of(members.as_ref(), self.lists.textures.len());
+        let members = value.and_then(|(i, value)| Members::new(value, format!("/materials/{i}"), &self.notes));
+        let source = MaterialSource::new(members.as_ref(), self.lists.textures.len());
         let name = name(&source, index);
         for undrawn in &source.undrawn {
             self.undrawn.entry(undrawn.clone()).or_default().add(&name);
@@ -161,9 +161,9 @@ impl<'a> Materials<'a> {
         let mut seen = HashSet::new();
         for key in keys {
             let Some(source) = self.sources.get(&key).cloned() else { continue };
-            let base = source.base_map.map(|map| (map.texture, MipFilter::of_base_color(source.look.alpha)));
+            let base = source.base_map.map(|map| (map.texture, MipFilter::from_base_color(source.look.alpha)));
             let maps = Slot::ALL.into_iter().zip(source.maps);
-            let maps = maps.filter_map(|(slot, map)| Some((map?.texture, MipFilter::of_map(slot))));
+            let maps = maps.filter_map(|(slot, map)| Some((map?.texture, MipFilter::from_map(slot))));
             for (texture, filter) in base.into_iter().chain(maps) {
                 let Some(TextureSource { images, .. }) = self.texture_source(texture) else { continue };
                 progress.check()?;
@@ -174,7 +174,7 @@ impl<'a> Materials<'a> {
             }
         }
         let sizes: Vec<_> = found.iter().map(|image| image.size).collect();
-        let scalings = TextureRoom::of(self.budget, reserved).scalings(&sizes);
+        let scalings = TextureRoom::new(self.budget, reserved).scalings(&sizes);
         // What takes most memory while it is decoded comes first, while the others don't take any yet.
         let mut order: Vec<_> = found.into_iter().zip(scalings).collect();
         order.sort_by_key(|(image, _)| std::cmp::Reverse(decoded_bytes(image.size)));
@@ -217,7 +217,7 @@ impl<'a> Materials<'a> {
         self.look_at(key)?;
         let Some(source) = self.sources.get(&key).cloned() else { return Ok(Resolved::default()) };
         let name = name(&source, key);
-        let filter = MipFilter::of_base_color(source.look.alpha);
+        let filter = MipFilter::from_base_color(source.look.alpha);
         let base = source.base_map.and_then(|map| self.texture(map.texture, filter, "texture", &name));
         let mut look = source.look.clone();
         for slot in Slot::ALL {
@@ -229,7 +229,7 @@ impl<'a> Materials<'a> {
         }
         let (texture, sampling) =
             base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
-        let (uvs, needs) = (source.own_uvs(), DetailNeeds::of(&look));
+        let (uvs, needs) = (source.own_uvs(), DetailNeeds::new(&look));
         let MaterialSource { base_color, double_sided, .. } = source;
         let triangles = 0..0;
         let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
@@ -240,7 +240,7 @@ impl<'a> Materials<'a> {
 
     fn map(&mut self, map: MapSource, slot: Slot, own: Uvs, material: &str) -> Option<Map> {
         let what = slot_name(slot);
-        let (texture, sampling) = self.texture(map.texture, MipFilter::of_map(slot), what, material)?;
+        let (texture, sampling) = self.texture(map.texture, MipFilter::from_map(slot), what, material)?;
         let Uvs { set, transform } = map.uvs;
         let uv = match set {
             _ if map.uvs == own => MapUv::Own,
@@ -303,7 +303,7 @@ impl<'a> Materials<'a> {
         let is_new = !self.images.contains_key(&image);
         if is_new {
             let size = self.size(image).unwrap_or_default();
-            let mut scalings = TextureRoom::of(self.budget, self.reserved).scalings(&[size]);
+            let mut scalings = TextureRoom::new(self.budget, self.reserved).scalings(&[size]);
             self.read_image(FoundImage { image, filter, size }, scalings.pop().unwrap_or_default());
         }
         let ReadImage { texture, scaled } = self.images.get_mut(&image)?;
@@ -331,7 +331,7 @@ impl<'a> Materials<'a> {
 }
 
 impl DetailNeeds {
-    fn of(look: &Look) -> Self {
+    fn new(look: &Look) -> Self {
         let mut needs = Self { tangents: look.tangent_map().is_some(), ..Self::default() };
         for map in look.maps.iter().flatten() {
             if let MapUv::Set(set, _) = map.uv {

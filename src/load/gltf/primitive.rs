@@ -70,9 +70,9 @@ impl<'a> Indices<'a> {
     ///
     /// # Errors
     /// [`GltfError::Accessor`].
-    fn of(source: &PrimitiveData<'a>, vertices: usize) -> Result<Self, GltfError> {
+    fn new(source: &PrimitiveData<'a>, vertices: usize) -> Result<Self, GltfError> {
         let list = source.primitive.indices().map(|accessor| match source.unpacked {
-            Some(unpacked) => Ok(List::of(&unpacked.indices, 0)),
+            Some(unpacked) => Ok(List::new(&unpacked.indices, 0)),
             None => source.accessors.indices(&accessor, &format!("indices of {}", source.name)),
         });
         let list = list.transpose()?;
@@ -104,14 +104,14 @@ impl<'a> Indices<'a> {
 /// How many of so many vertices, or triangles, are read on all cores before they are stored: so few that they take little memory beside
 /// what is made of them all.
 fn at_once(count: usize) -> usize {
-    (count / 16).clamp(TOGETHER, 1 << 15)
+    (count / 16).clamp(BATCH, 1 << 15)
 }
 
 /// The least number of vertices or triangles that are worth a thread.
 const LEAST: usize = 1 << 10;
 
 /// How many corners are stored before there is room for more.
-const TOGETHER: usize = 256;
+const BATCH: usize = 256;
 
 /// How many indices are decoded at a time: whole triangles.
 const BLOCK: usize = 3 << 10;
@@ -151,11 +151,11 @@ impl PrimitiveReader {
         let (is_detailed, repairs, budget) = (details.is_some(), self.repairs, accessors.budget);
         let mut vertices = Vertices::new(source, pose, material, is_detailed, is_morphing, repairs, &mut self.notes)?;
         let moving = binder.map(|binder| AnimatedVertices::new(budget, &vertices, pose.instance, is_morphing, binder));
-        let indices = Indices::of(&source, vertices.count)?;
+        let indices = Indices::new(&source, vertices.count)?;
         // The number and the marks of each vertex's corner, and a bit that says whether it is used.
         budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
-        let kept = KeptVertices::of(&mut vertices, &used, moving, details, builder, budget)?;
+        let kept = KeptVertices::from_used(&mut vertices, &used, moving, details, builder, budget)?;
         drop(used);
         let (mode, count) = (primitive.mode(), indices.count);
         self.repairs = vertices.repairs;
@@ -186,7 +186,7 @@ impl PrimitiveReader {
         let at_once = at_once(all);
         for first in (0..all).step_by(at_once) {
             let read = in_ranges(at_once.min(all - first), LEAST, |range| {
-                PlacedTriangles::of(mode, indices, kept, first + range.start..first + range.end)
+                PlacedTriangles::new(mode, indices, kept, first + range.start..first + range.end)
             });
             for some in read {
                 unplaced += some.unplaced;
@@ -260,7 +260,7 @@ struct PlacedTriangles {
 
 impl PlacedTriangles {
     /// Reads those of a primitive's triangles that have these numbers.
-    fn of(mode: Mode, indices: &Indices, kept: &KeptVertices, numbers: Range<usize>) -> Self {
+    fn new(mode: Mode, indices: &Indices, kept: &KeptVertices, numbers: Range<usize>) -> Self {
         let mut placed = Self { triangles: Vec::with_capacity(numbers.len()), ..Self::default() };
         if mode != Mode::Triangles {
             triangles(mode, numbers, |i| indices.get(i)).for_each(|triangle| placed.add(triangle, kept));
@@ -332,7 +332,7 @@ impl KeptVertices {
     ///
     /// # Errors
     /// [`GltfError::Accessor`] and [`GltfError::TooLarge`].
-    fn of(
+    fn from_used(
         vertices: &mut Vertices,
         used: &[AtomicU64],
         mut moving: Option<AnimatedVertices>,
@@ -342,7 +342,7 @@ impl KeptVertices {
     ) -> Result<Self, GltfError> {
         let mut kept = Self::new(vertices.count);
         // What moves a vertex gets its number in the order of the vertices, and its memory before that of later corners.
-        let at_once = if moving.is_some() { TOGETHER } else { at_once(vertices.count) };
+        let at_once = if moving.is_some() { BATCH } else { at_once(vertices.count) };
         for first in (0..vertices.count).step_by(at_once) {
             let block = first..(first + at_once).min(vertices.count);
             let read = match &mut moving {
@@ -381,7 +381,7 @@ impl KeptVertices {
         let (mut rest, mut stored) = (&corners[..], Vec::with_capacity(corners.len()));
         while !rest.is_empty() {
             // Corners that turn out not to be distinct need room for a moment.
-            builder.make_room(rest.len().min(TOGETHER), budget)?;
+            builder.make_room(rest.len().min(BATCH), budget)?;
             let (now, later) = rest.split_at(rest.len().min(builder.room()));
             builder.corners(now, &mut stored);
             rest = later;

@@ -105,7 +105,7 @@ impl<'a> PrimitiveData<'a> {
         }
         match self.unpacked.and_then(|unpacked| unpacked.attributes.get(attribute)) {
             Some(Ok(values)) if accessor.dimensions().multiplicity() == N => {
-                Ok(List::of(values.as_chunks().0, [0.0; N]))
+                Ok(List::new(values.as_chunks().0, [0.0; N]))
             }
             // The accessor has no other data.
             Some(Err(reason)) => {

@@ -33,7 +33,7 @@ pub(super) struct Reach {
 
 impl Reach {
     /// Follows the scene that the document names, or all nodes if it has no scenes.
-    pub(super) fn of(root: &Root, faults: &Faults, hiding: Vec<bool>) -> Self {
+    pub(super) fn new(root: &Root, faults: &Faults, hiding: Vec<bool>) -> Self {
         let is_bound = |(m, mesh): (usize, &Mesh)| {
             let has = |k: usize, own: &Primitive, name: Semantic| {
                 attribute(own, &name).is_some()

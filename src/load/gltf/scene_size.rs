@@ -78,7 +78,7 @@ pub(crate) fn check(
         let size = match known.get(&mesh.index()) {
             Some(size) => *size,
             None => {
-                let size = SceneSize::of(&mesh, accessors)?;
+                let size = SceneSize::new(&mesh, accessors)?;
                 known.insert(mesh.index(), size);
                 size
             }
@@ -120,7 +120,7 @@ pub(crate) fn check(
 }
 
 impl SceneSize {
-    fn of(mesh: &Mesh, accessors: &Accessors) -> Result<Self, GltfError> {
+    fn new(mesh: &Mesh, accessors: &Accessors) -> Result<Self, GltfError> {
         let mut size = Self::default();
         for primitive in mesh.primitives() {
             // Points and lines have no attributes.

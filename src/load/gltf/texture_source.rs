@@ -31,7 +31,7 @@ pub(super) fn texture(
     index: usize,
     notes: &RefCell<Notes>,
 ) -> Option<TextureSource> {
-    let members = Members::of(textures.get(index)?, format!("/textures/{index}"), notes)?;
+    let members = Members::new(textures.get(index)?, format!("/textures/{index}"), notes)?;
     let source = |members: &Members| members.index("source", "images", images);
     let extensions = members.inside("extensions");
     let extended = |name| source(&extensions.as_ref()?.inside(name)?);
@@ -47,7 +47,7 @@ pub(super) fn texture(
     }
     let sampler = members.index("sampler", "samplers", samplers.len());
     let sampling = sampler.and_then(|sampler| {
-        Members::of(&samplers[sampler], format!("/samplers/{sampler}"), notes).map(|members| sampling(&members))
+        Members::new(&samplers[sampler], format!("/samplers/{sampler}"), notes).map(|members| sampling(&members))
     });
     Some(TextureSource { images, sampling: sampling.unwrap_or_default() })
 }

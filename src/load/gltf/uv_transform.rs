@@ -19,7 +19,7 @@ impl UvTransform {
     const RANGE: [f32; 2] = [-1e18, 1e18];
 
     /// Reads a transform; none if it changes nothing.
-    pub(super) fn of(members: &Members) -> Option<Self> {
+    pub(super) fn new(members: &Members) -> Option<Self> {
         let transform = Self {
             offset: members.numbers("offset", [0.0; 2], Self::RANGE).into(),
             rotation: members.number("rotation", 0.0, Self::RANGE),

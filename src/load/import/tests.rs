@@ -163,7 +163,7 @@ fn a_unit_may_be_given_by_its_length() {
     assert_eq!(written, corners(Some(FileUnit::Named(LengthUnit::Inch))));
     assert_ne!(written, corners(None));
     for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY, 1e10, 1e-10] {
-        assert_eq!(FileUnit::of_metres(wrong), None, "{wrong}");
+        assert_eq!(FileUnit::from_metres(wrong), None, "{wrong}");
     }
 }
 

@@ -55,7 +55,7 @@ impl<'a> Piece<'a> {
 
     /// Returns its lines.
     pub(super) fn lines(&self) -> Lines<'a> {
-        Lines::of_part(self.bytes, self.end, self.above)
+        Lines::from_part(self.bytes, self.end, self.above)
     }
 }
 

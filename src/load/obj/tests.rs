@@ -8,7 +8,7 @@ use crate::selection::Selection;
 use geometry::progress::Progress;
 
 fn read(text: &str) -> LoadedMesh {
-    super::read(text.as_bytes().to_vec(), &ModelFile::of_test("cube", &Progress::new())).unwrap()
+    super::read(text.as_bytes().to_vec(), &ModelFile::from_test("cube", &Progress::new())).unwrap()
 }
 
 /// A cube of quads without normals.
@@ -58,7 +58,7 @@ fn a_fault_in_a_late_piece_has_its_line() {
     let lines = text.lines().count();
     let fault = |end: &str| {
         let bytes = (text.clone() + end).into_bytes();
-        let read = super::read(bytes, &ModelFile::of_test("", &Progress::new()));
+        let read = super::read(bytes, &ModelFile::from_test("", &Progress::new()));
         read.map(|loaded| loaded.warnings).map_err(|fault| fault.to_string())
     };
     assert!(fault("f 1 2 x\nf y\n").expect_err("no index").starts_with(&format!("line {}: \"x\"", lines + 1)));
@@ -86,7 +86,7 @@ fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
     let hiding = |hidden: &[&str]| {
         let hidden: Vec<String> = hidden.iter().map(|name| (*name).to_owned()).collect();
         let selected = Selection { hidden: &hidden, ..Selection::default() };
-        super::read(faces.as_bytes().to_vec(), &ModelFile { selected, ..ModelFile::of_test("", &Progress::new()) })
+        super::read(faces.as_bytes().to_vec(), &ModelFile { selected, ..ModelFile::from_test("", &Progress::new()) })
     };
     let parts = |loaded: &LoadedMesh| -> Vec<(String, u32, bool)> {
         loaded.parts.iter().map(|part| (part.name.clone(), part.triangles, part.is_hidden)).collect()
@@ -183,7 +183,7 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     assert!(matches!(
-        super::read(b"v 0 0 0\n".to_vec(), &ModelFile::of_test("", &progress)),
+        super::read(b"v 0 0 0\n".to_vec(), &ModelFile::from_test("", &progress)),
         Err(ReadError::Cancelled(_))
     ));
 }
@@ -262,7 +262,8 @@ fn triangles_that_are_taken_together_are_those_that_are_taken_one_by_one() {
     for selection in [Selection::default(), Selection { hidden: &hidden, ..Selection::default() }] {
         let read = |text: &String| {
             let bytes = text.as_bytes().to_vec();
-            super::read(bytes, &ModelFile { selected: selection, ..ModelFile::of_test("", &Progress::new()) }).unwrap()
+            super::read(bytes, &ModelFile { selected: selection, ..ModelFile::from_test("", &Progress::new()) })
+                .unwrap()
         };
         let [together, one_by_one] = [&together, &one_by_one].map(read);
         assert_eq!(together.mesh.triangles, one_by_one.mesh.triangles);

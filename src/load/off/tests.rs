@@ -4,11 +4,11 @@ use super::*;
 use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
 
 fn read(text: &str) -> LoadedMesh {
-    super::read(text.as_bytes().to_vec(), &ModelFile::of_test("cube", &Progress::new())).unwrap()
+    super::read(text.as_bytes().to_vec(), &ModelFile::from_test("cube", &Progress::new())).unwrap()
 }
 
 fn refused(text: &str) -> String {
-    super::read(text.as_bytes().to_vec(), &ModelFile::of_test("", &Progress::new())).unwrap_err().to_string()
+    super::read(text.as_bytes().to_vec(), &ModelFile::from_test("", &Progress::new())).unwrap_err().to_string()
 }
 
 /// A cube of six squares, with lines before, between and behind its vertices and faces.
@@ -50,7 +50,7 @@ fn the_numbers_may_stand_in_the_first_line_or_without_a_keyword() {
 
 #[test]
 fn keywords_say_what_a_vertex_has() {
-    let kind = |keyword: &[u8]| VertexKind::of(keyword);
+    let kind = |keyword: &[u8]| VertexKind::new(keyword);
     let plain = VertexKind::default();
     assert_eq!(kind(b"OFF"), Some(plain));
     assert_eq!(kind(b"CNOFF"), Some(VertexKind { has_color: true, has_normal: true, ..plain }));
@@ -158,5 +158,5 @@ fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
     let text = cube().into_bytes();
-    assert!(matches!(super::read(text, &ModelFile::of_test("", &progress)), Err(ReadError::Cancelled(_))));
+    assert!(matches!(super::read(text, &ModelFile::from_test("", &progress)), Err(ReadError::Cancelled(_))));
 }

@@ -13,7 +13,7 @@ fn read(bytes: &[u8]) -> LoadedMesh {
 }
 
 fn read_in(folder: &Path, bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), &ModelFile { folder, ..ModelFile::of_test("cube", &Progress::new()) }).unwrap()
+    super::read(bytes.to_vec(), &ModelFile { folder, ..ModelFile::from_test("cube", &Progress::new()) }).unwrap()
 }
 
 /// Writes numbers in one of the encodings.
@@ -178,7 +178,7 @@ fn strips_alternate_begin_anew_and_are_stitched() {
 fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(super::read(cube(1, 6, 4), &ModelFile::of_test("", &progress)), Err(ReadError::Cancelled(_))));
+    assert!(matches!(super::read(cube(1, 6, 4), &ModelFile::from_test("", &progress)), Err(ReadError::Cancelled(_))));
 }
 
 #[test]

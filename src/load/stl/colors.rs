@@ -33,12 +33,13 @@ impl Colors {
     /// Finds out how a file has colours, from its header and the bits after each triangle. Returns none if it has none.
     ///
     /// Where a part has a colour and the bits of all triangles are 0, those were never written, and aren't black.
-    pub(super) fn of(header: &[u8], mut attributes: impl Iterator<Item = u16> + Clone) -> Option<Self> {
+    pub(super) fn new(header: &[u8], mut attributes: impl Iterator<Item = u16> + Clone) -> Option<Self> {
         if let Some(part) = part_color(header) {
-            let are_many = attributes.clone().any(|bits| bits & OWN_BIT == 0) && attributes.any(|bits| bits != 0);
+            let are_many =
+                attributes.clone().any(|bits| bits & FACET_COLOR_BIT == 0) && attributes.any(|bits| bits != 0);
             return Some(Self { dialect: ColorDialect::Magics(part), are_many });
         }
-        let are_many = attributes.any(|bits| bits & OWN_BIT != 0);
+        let are_many = attributes.any(|bits| bits & FACET_COLOR_BIT != 0);
         are_many.then_some(Self { dialect: ColorDialect::VisCam, are_many })
     }
 
@@ -52,7 +53,7 @@ impl Colors {
 
     /// The colour of a triangle with these bits: linear RGBA.
     pub(super) fn of_triangle(&self, bits: u16) -> Vec4 {
-        let is_set = bits & OWN_BIT != 0;
+        let is_set = bits & FACET_COLOR_BIT != 0;
         let [low, middle, high] = [0, 5, 10].map(|shift| widened(bits >> shift));
         let [r, g, b] = match self.dialect {
             ColorDialect::VisCam if is_set => [high, middle, low],
@@ -65,7 +66,7 @@ impl Colors {
 }
 
 /// The bit that says whether the other 15 are the triangle's colour.
-const OWN_BIT: u16 = 1 << 15;
+const FACET_COLOR_BIT: u16 = 1 << 15;
 
 /// Widens the lowest 5 bits to a byte.
 #[expect(clippy::cast_possible_truncation, reason = "at most 255")]
@@ -91,12 +92,12 @@ mod tests {
     #[test]
     fn both_dialects_have_the_order_of_their_bits() {
         let plain =
-            Colors::of(b"made by a test", [0x8000 | 31 << 10, 0, 0x7fff].into_iter()).expect("one has a colour");
+            Colors::new(b"made by a test", [0x8000 | 31 << 10, 0, 0x7fff].into_iter()).expect("one has a colour");
         assert_eq!(plain.of_triangle(0x8000 | 31 << 10), Vec4::new(1.0, 0.0, 0.0, 1.0));
         assert_eq!(plain.of_triangle(0x8000 | 31), Vec4::new(0.0, 0.0, 1.0, 1.0));
         assert_eq!(plain.of_triangle(31), Vec4::ONE, "it has none");
         let header = b"x COLOR=\xff\x00\x00\xff";
-        let magics = Colors::of(header, [31 << 10, 0x8000].into_iter()).expect("the part has a colour");
+        let magics = Colors::new(header, [31 << 10, 0x8000].into_iter()).expect("the part has a colour");
         assert_eq!(magics.of_triangle(31 << 10), Vec4::new(0.0, 0.0, 1.0, 1.0));
         assert_eq!(magics.of_triangle(0xffff), Vec4::new(1.0, 0.0, 0.0, 1.0), "that of the part");
         assert_eq!((magics.are_many, magics.of_all()), (true, [1.0; 4]));
@@ -106,11 +107,11 @@ mod tests {
     fn a_part_of_one_colour_has_no_colours_of_triangles() {
         let header = b"COLOR=\xff\xff\xff\xff,MATERIAL=\x00\xff\x00\xff\x01\x02\x03\xff\x01\x02\x03\xff";
         for attributes in [[0, 0], [0x8000, 0xffff]] {
-            let colors = Colors::of(header, attributes.into_iter()).expect("the part has a colour");
+            let colors = Colors::new(header, attributes.into_iter()).expect("the part has a colour");
             assert_eq!((colors.are_many, colors.of_all()), (false, [0.0, 1.0, 0.0, 1.0]), "the material comes first");
         }
-        assert_eq!(Colors::of(b"COLOR=\xff\xff", [7].into_iter()), None, "the header ends within it");
-        assert_eq!(Colors::of(b"", [7, 0x7fff].into_iter()), None);
+        assert_eq!(Colors::new(b"COLOR=\xff\xff", [7].into_iter()), None, "the header ends within it");
+        assert_eq!(Colors::new(b"", [7, 0x7fff].into_iter()), None);
     }
 
     #[test]

@@ -5,7 +5,7 @@ use crate::face_builder::tests::{POINTS, assert_cube, triangles};
 use crate::selection::Selection;
 
 fn read(bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), &ModelFile::of_test("cube", &Progress::new())).unwrap()
+    super::read(bytes.to_vec(), &ModelFile::from_test("cube", &Progress::new())).unwrap()
 }
 
 /// A cube with wrong normals.
@@ -73,8 +73,9 @@ fn solids_of_text_files_are_parts() {
     let hidden = ["one".to_owned()];
     let selected = Selection { hidden: &hidden, ..Selection::default() };
     let text = text() + FACET_WITHOUT_NAME;
-    let mesh = super::read(text.into_bytes(), &ModelFile { selected, ..ModelFile::of_test("cube", &Progress::new()) })
-        .expect("triangles");
+    let mesh =
+        super::read(text.into_bytes(), &ModelFile { selected, ..ModelFile::from_test("cube", &Progress::new()) })
+            .expect("triangles");
     let parts: Vec<_> = mesh.parts.iter().map(|part| (part.name.as_str(), part.triangles, part.is_hidden)).collect();
     assert_eq!(parts, [("one", 5, true), ("two", 7, false), ("solid 3", 1, false)]);
     assert_eq!(mesh.triangles.len(), 8);
@@ -122,7 +123,7 @@ fn cancelling_stops_the_work() {
     progress.cancel();
     for bytes in [text().into_bytes(), binary(b"")] {
         assert!(matches!(
-            super::read(bytes.to_vec(), &ModelFile::of_test("", &progress)),
+            super::read(bytes.to_vec(), &ModelFile::from_test("", &progress)),
             Err(ReadError::Cancelled(_))
         ));
     }

@@ -171,7 +171,7 @@ fn root(archive: &Archive, notes: &mut Notes) -> Result<String, ReadError> {
     if let Some(target) = target {
         return Ok(target);
     }
-    let known = archive.names().find(|name| Format::of_name(Path::new(name)).is_some());
+    let known = archive.names().find(|name| Format::from_name(Path::new(name)).is_some());
     let first = known.or(archive.names().find(|name| !name.ends_with('/'))).unwrap_or("none");
     Err(ReadError::NoModel { count: archive.len(), first: shown(first) })
 }

@@ -46,7 +46,7 @@ pub(super) struct Texture2d {
 
 impl Texture2d {
     /// Reads the element `texture2d`.
-    pub(super) fn of(element: &Element) -> Self {
+    pub(super) fn new(element: &Element) -> Self {
         let styles = [&b"tilestyleu"[..], b"tilestylev"].map(|name| element.text(name).unwrap_or_default());
         let wrap = |style: &String| match style.trim() {
             "mirror" => Wrap::Mirror,

@@ -12,7 +12,7 @@ use geometry::mesh::{Alpha, Sampling, Wrap};
 use geometry::progress::Progress;
 
 fn read(bytes: &[u8]) -> LoadedMesh {
-    super::read(bytes.to_vec(), &ModelFile::of_test("cube", &Progress::new())).unwrap()
+    super::read(bytes.to_vec(), &ModelFile::from_test("cube", &Progress::new())).unwrap()
 }
 
 /// The mesh of a cube.
@@ -276,7 +276,7 @@ fn a_beam_lattice_alone_is_said_with_what_helps() {
     let vertices = "<vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/></vertices>";
     let object = format!("<object id=\"1\"><mesh>{vertices}{beams}</mesh></object>");
     let file = package::package(&model(&object, "<item objectid=\"1\"/>"));
-    let read = super::read(file, &ModelFile::of_test("", &Progress::new()));
+    let read = super::read(file, &ModelFile::from_test("", &Progress::new()));
     let said = read.expect_err("it has no triangles").to_string();
     assert!(said.contains("1 objects with 0 triangles, 1 beam lattices (export them as meshes)"), "{said}");
 }
@@ -285,5 +285,5 @@ fn a_beam_lattice_alone_is_said_with_what_helps() {
 fn cancelling_stops_the_work() {
     let progress = Progress::new();
     progress.cancel();
-    assert!(matches!(super::read(cube(), &ModelFile::of_test("", &progress)), Err(ReadError::Cancelled(_))));
+    assert!(matches!(super::read(cube(), &ModelFile::from_test("", &progress)), Err(ReadError::Cancelled(_))));
 }

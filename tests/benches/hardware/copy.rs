@@ -28,7 +28,7 @@ impl Copies {
     pub(crate) fn measure(vulkan: &Rc<Vulkan>, bytes: u64, effort: Effort) -> Result<Self, VulkanError> {
         let (from, to) = (Buffer::on_device(vulkan, bytes)?, Buffer::on_device(vulkan, bytes)?);
         let rate = |took: Vec<Took>| {
-            let ms = Spread::of(took.iter().map(|took| took.gpu)).median;
+            let ms = Spread::from_times(took.iter().map(|took| took.gpu)).median;
             2.0 * bytes as f64 / (ms * 1e-3)
         };
         let command = rate(effort.repeat(|_| to.copy_from(&from))?);

@@ -61,7 +61,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    fn of(engine: &Engine) -> Self {
+    fn new(engine: &Engine) -> Self {
         let effort = Effort::on(engine);
         if engine.gpu.is_software() {
             let (triangles, size) = ([60_000, 20_000], [320, 180]);
@@ -92,7 +92,7 @@ fn main() -> ExitCode {
 }
 
 fn run(engine: &Engine) -> Result<(), BenchError> {
-    let scale = Scale::of(engine);
+    let scale = Scale::new(engine);
     let arguments: Vec<String> = std::env::args().skip(1).filter(|argument| !argument.starts_with("--")).collect();
     if let Some(("materials", files)) = arguments.split_first().map(|(part, files)| (part.as_str(), files)) {
         Report::begin(engine, &scale, None).materials(&materials::measure(engine, &scale, files)?);

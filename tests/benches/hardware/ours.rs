@@ -133,14 +133,14 @@ impl Subject {
             Ok::<_, GpuError>(start.elapsed().as_secs_f64() * 1e3)
         })?;
         engine.gpu.check()?;
-        let spread = |passes: &[&str]| Spread::of(runs.iter().map(|run| run.sum(passes)));
+        let spread = |passes: &[&str]| Spread::from_times(runs.iter().map(|run| run.sum(passes)));
         let passes = gpu::recorder::PASSES.map(|pass| PassTime { pass, ms: spread(&[pass]).median });
         let frame = [&TESSELLATING[..], &DRAWING].concat();
         Ok(OurTimes {
             tessellation: spread(&TESSELLATING),
             draw: spread(&DRAWING),
             frame: spread(&frame),
-            wall: Spread::of(wall.into_iter()),
+            wall: Spread::from_times(wall.into_iter()),
             passes: passes.into_iter().filter(|time| time.ms > 0.0).collect(),
         })
     }
@@ -159,7 +159,7 @@ impl Subject {
             engine.gpu.wait();
             Ok::<_, GpuError>(Run { passes: take_times(&engine.gpu, &mut timing) })
         })?;
-        Ok(Spread::of(runs.iter().map(|run| run.sum(&["draw"])).filter(|ms| *ms > 0.0)))
+        Ok(Spread::from_times(runs.iter().map(|run| run.sum(&["draw"])).filter(|ms| *ms > 0.0)))
     }
 
     /// The time of drawing what was emitted before, in ms.
@@ -173,7 +173,7 @@ impl Subject {
             engine.gpu.wait();
             Ok::<_, GpuError>(Run { passes: take_times(&engine.gpu, &mut timing) })
         })?;
-        Ok(Spread::of(runs.iter().map(|run| run.sum(&DRAWING)).filter(|ms| *ms > 0.0)))
+        Ok(Spread::from_times(runs.iter().map(|run| run.sum(&DRAWING)).filter(|ms| *ms > 0.0)))
     }
 
     /// The least number of bytes that our tessellation passes must move: their output; all data of the mesh that they read, once;

@@ -157,7 +157,7 @@ fn hashed(topology: &Topology, greatest: f32) -> Vec<HullFactors> {
     };
     let patch = |patch: &geometry::mesh::Patch| {
         let sides = patch.sides.map(|side| factor(topology.sides[side as usize].edge));
-        HullFactors::of_sides(Default::default(), sides, sides[0].max(sides[1]).max(sides[2]))
+        HullFactors::from_sides(Default::default(), sides, sides[0].max(sides[1]).max(sides[2]))
     };
     topology.patches.iter().map(patch).collect()
 }

@@ -91,7 +91,7 @@ fn time_peer(engine: &Engine, peer: &Peer, subject: &mut Subject, effort: Effort
         peer.pipeline(Kind { nets, partitioning, fronts_only, rasterises })
     };
     let time = |pipeline: &Pipeline| effort.repeat(|_| peer.draw(pipeline, &patches, &frame));
-    let gpu = |took: &[Took]| Spread::of(took.iter().map(|took| took.gpu));
+    let gpu = |took: &[Took]| Spread::from_times(took.iter().map(|took| took.gpu));
     let mut times = PeerTimes {
         tessellation: Spread::default(),
         frame: Spread::default(),
@@ -111,7 +111,7 @@ fn time_peer(engine: &Engine, peer: &Peer, subject: &mut Subject, effort: Effort
         }
         if is_first || gpu(&took).median < times.frame.median {
             times.frame = gpu(&took);
-            times.wall = Spread::of(took.iter().map(|took| took.wall));
+            times.wall = Spread::from_times(took.iter().map(|took| took.wall));
         }
         times.counted = peer.count(&whole, &patches, &frame)?;
         engine.draw(&mut subject.scene, &subject.target, &subject.camera, &subject.settings, &mut Timing::Off)?;

@@ -291,7 +291,7 @@ fn main() {
     let only = value("only=");
     let mut meshes = meshes::with_files(&files);
     meshes.retain(|(name, _)| only.is_none_or(|only| only.split(',').any(|only| name == only)));
-    let topologies: Vec<Arc<Topology>> = meshes.iter().map(|(_, mesh)| Arc::new(Topology::of(mesh))).collect();
+    let topologies: Vec<Arc<Topology>> = meshes.iter().map(|(_, mesh)| Arc::new(Topology::new(mesh))).collect();
     let on_device = arguments.iter().any(|argument| argument == "device=gpu");
     let searches = !on_device && !arguments.iter().any(|argument| argument == "search=no");
     let partitionings: &[Partitioning] = match searches {

@@ -62,7 +62,7 @@ struct Subject {
 
 impl Subject {
     fn new(name: String, mesh: Arc<Mesh>) -> Self {
-        let topology = Topology::of(&mesh);
+        let topology = Topology::new(&mesh);
         let places = Places::new(&mesh, &topology);
         Self { name, mesh, topology, places }
     }

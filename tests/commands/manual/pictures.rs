@@ -29,7 +29,7 @@ struct Picture {
 impl Picture {
     /// The page's pictures, each of which follows a comment `<!-- picture: pnaen ... -o NAME -->`, or
     /// `<!-- frames VALUE ..: pnaen ... {} ... -o NAME -->`.
-    fn of(page: &Page) -> Vec<Self> {
+    fn from_page(page: &Page) -> Vec<Self> {
         let lines: Vec<_> = page.text.lines().collect();
         let pairs = lines.windows(2).filter_map(|pair| Some((pair[0].strip_prefix("<!-- ")?, pair[1])));
         pairs.filter_map(|(comment, image)| Self::parse(page, comment, image)).collect()
@@ -149,7 +149,7 @@ fn read_frames(path: &Path) -> Vec<RgbImage> {
 }
 
 fn all() -> Vec<Picture> {
-    user_pages().iter().flat_map(Picture::of).collect()
+    user_pages().iter().flat_map(Picture::from_page).collect()
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn every_page_of_the_manual_has_a_picture_and_every_picture_a_command() {
     // Tests write these pages, which have no pictures.
     let written = ["docs/manual/keys.md", "docs/manual/tasks.md"];
     for page in user_pages().into_iter().filter(|page| written.iter().all(|name| page.name != *name)) {
-        assert!(!Picture::of(&page).is_empty(), "{} has no picture with a command", page.name);
+        assert!(!Picture::from_page(&page).is_empty(), "{} has no picture with a command", page.name);
     }
     let made: BTreeSet<_> = all().iter().map(|picture| picture.image.file_name().map(ToOwned::to_owned)).collect();
     let folder = std::fs::read_dir(root().join("docs/manual/images")).expect("a folder of pictures");

@@ -48,7 +48,7 @@ pub(super) fn width_in_units(mesh: &Mesh, topology: &Topology, width: f32) -> f6
 
 impl Cuts {
     /// Cuts all edges. `width` is in object units.
-    pub(super) fn of(mesh: &Mesh, topology: &Topology, fans: &Fans, width: f64) -> Self {
+    pub(super) fn new(mesh: &Mesh, topology: &Topology, fans: &Fans, width: f64) -> Self {
         let is_creased = |edge: &Edge| {
             let sides = topology.edge_sides(edge);
             let at = |side: &Side, end: usize| normal(mesh, topology, side, end);

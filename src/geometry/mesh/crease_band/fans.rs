@@ -20,7 +20,7 @@ pub(super) struct Fans {
 }
 
 impl Fans {
-    pub(super) fn of(mesh: &Mesh, topology: &Topology) -> Self {
+    pub(super) fn new(mesh: &Mesh, topology: &Topology) -> Self {
         let count = 3 * topology.patches.len();
         let parts = UnionFind::new(count);
         for edge in &topology.edges {

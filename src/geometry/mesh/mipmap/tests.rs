@@ -24,7 +24,7 @@ fn every_texel_counts_as_much_as_any_other() {
         let mut counted = vec![0.0; source as usize];
         let targets = (source / 2).max(1);
         for target in 0..targets {
-            let Taps { first, weights } = Taps::of(target, source);
+            let Taps { first, weights } = Taps::new(target, source);
             for (k, weight) in weights.into_iter().enumerate().filter(|(_, weight)| *weight > 0.0) {
                 counted[first as usize + k] += weight;
             }

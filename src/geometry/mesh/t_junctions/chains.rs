@@ -75,7 +75,7 @@ impl<'a> ChainSearch<'a> {
 
     /// Adds the points inside the first chain that is found beside an edge, if there is one.
     pub(super) fn find(&mut self, number: u32, edge: &Edge, points: &mut Vec<u32>) {
-        let Some(coarse) = CoarseEdge::of(self.topology, edge) else { return };
+        let Some(coarse) = CoarseEdge::new(self.topology, edge) else { return };
         if self.walk(number, &coarse) && self.is_no_leaf() {
             points.extend(self.path.iter().skip(1).map(|step| step.point));
         }
@@ -159,8 +159,8 @@ struct CoarseEdge {
 
 impl CoarseEdge {
     /// Returns none for an edge whose triangle is a sliver.
-    fn of(topology: &Topology, edge: &Edge) -> Option<Self> {
-        let (line, third) = (LineSegment::of(topology, edge), third(topology, edge));
+    fn new(topology: &Topology, edge: &Edge) -> Option<Self> {
+        let (line, third) = (LineSegment::from_edge(topology, edge), third(topology, edge));
         let up = line.across(topology.points[third as usize].as_dvec3());
         let (length, height) = (line.length(), up.length());
         let patch = topology.sides[edge.first_side as usize].patch();

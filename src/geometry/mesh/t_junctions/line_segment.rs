@@ -12,7 +12,7 @@ pub(super) struct LineSegment {
 }
 
 impl LineSegment {
-    pub(super) fn of(topology: &Topology, edge: &Edge) -> Self {
+    pub(super) fn from_edge(topology: &Topology, edge: &Edge) -> Self {
         Self { ends: topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3()) }
     }
 

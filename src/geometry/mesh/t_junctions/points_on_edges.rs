@@ -30,7 +30,7 @@ pub(super) struct PointsOnEdges<'a> {
 
 impl<'a> PointsOnEdges<'a> {
     pub(super) fn new(topology: &'a Topology) -> Self {
-        let bounds = Bounds::of(topology.points.iter().copied());
+        let bounds = Bounds::new(topology.points.iter().copied());
         let tolerance = bounds.part(NEAR);
         let shortest = shortest(topology);
         let tree = BoundingBoxTree::new(boundary_points(topology, &shortest, tolerance));
@@ -39,7 +39,7 @@ impl<'a> PointsOnEdges<'a> {
 
     /// Adds the points that lie on an edge.
     pub(super) fn find(&self, edge: &Edge, points: &mut Vec<u32>) {
-        let line = LineSegment::of(self.topology, edge);
+        let line = LineSegment::from_edge(self.topology, edge);
         self.tree.near_segment(line.ends, self.tolerance, |place, point| {
             if self.is_inside(edge, &line, point, place) {
                 points.push(point);
@@ -71,7 +71,7 @@ impl<'a> PointsOnEdges<'a> {
 fn shortest(topology: &Topology) -> Vec<f64> {
     let mut shortest = vec![f64::INFINITY; topology.points.len()];
     for (_, edge) in open_edges(topology) {
-        let length = LineSegment::of(topology, edge).length();
+        let length = LineSegment::from_edge(topology, edge).length();
         topology
             .edge_points(edge)
             .into_iter()

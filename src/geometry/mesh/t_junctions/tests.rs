@@ -137,7 +137,8 @@ fn the_tolerance_itself_counts() {
     let (near, weld) = (on_edges.tolerance, on_edges.welds[5]);
     assert!((near - 1.5e-5).abs() < 1e-9 && (weld - 1.5e-2).abs() < 1e-6);
     let edge = &topology.edges[0];
-    let inside = |x: f64, y: f64| on_edges.is_inside(edge, &LineSegment::of(&topology, edge), 3, DVec3::new(x, y, 0.0));
+    let inside =
+        |x: f64, y: f64| on_edges.is_inside(edge, &LineSegment::from_edge(&topology, edge), 3, DVec3::new(x, y, 0.0));
     assert!(inside(0.5, near) && !inside(0.5, near.next_up()));
     assert!(!inside(weld, 0.0) && inside(weld.next_up(), 0.0));
 }
@@ -225,7 +226,7 @@ fn slow(topology: &Topology) -> Vec<(u32, u32)> {
         let mut points: Vec<u32> = open().flat_map(|(_, other)| topology.edge_points(other)).collect();
         points.sort_unstable();
         points.dedup();
-        let line = LineSegment::of(topology, edge);
+        let line = LineSegment::from_edge(topology, edge);
         points.retain(|&point| on_edges.is_inside(edge, &line, point, at(point)));
         found.extend(points.into_iter().map(|point| (i, point)));
     }

@@ -12,21 +12,21 @@ fn bounds_are_widened_by_what_displacement_may_move() {
     let near = |own: [f32; 5], expected: [f32; 5]| {
         assert!(own.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{own:?}, not {expected:?}");
     };
-    let flat = LodView { reach: 0.1, ..VIEW };
+    let flat = VIEW.with_reach(0.1);
     near(spread(&flat, vec3(0.3, -0.2, 0.5)), [0.2, -0.3, 0.4, -0.1, 1.0]);
     // With perspective, a point at a depth of 2 may come as near as 1.6: it moves by 0.4 across, and by as much of its
     // place as it comes nearer.
     let mut clip_from_object = Mat4::IDENTITY;
     clip_from_object.z_axis = Vec4::new(0.0, 0.0, 0.0, 1.0);
     clip_from_object.w_axis = Vec4::new(0.0, 0.0, 0.01, 0.0);
-    let perspective = LodView { clip_from_object, reach: 0.4, ..VIEW };
+    let perspective = LodView { clip_from_object, ..VIEW.with_reach(0.4) };
     let (across, up) = ((0.4 + 0.5 * 0.4) / 1.6, 0.4 / 1.6);
     near(spread(&perspective, vec3(1.0, 0.0, 2.0)), [0.5 - across, -up, 0.5 + across, up, 1.6]);
 }
 
 #[test]
 fn heights_need_segments_for_their_detail_and_for_their_turning() {
-    let view = LodView { reach: 0.5, ..VIEW };
+    let view = VIEW.with_reach(0.5);
     let bounds = ScreenBounds { nearest: 1.0, least: Vec2::ZERO, greatest: Vec2::ZERO };
     let mut detail = [0.5; MAX_LEVELS];
     (detail[0], detail[1], detail[2]) = (0.0, 0.001, 0.01);

@@ -65,8 +65,8 @@ fn what_edges_were_asked_for_and_got_is_what_lod_by_error_gives_them() {
             let errors = explained.errors.expect("nothing is culled");
             assert!(errors.largest() <= TOLERANCE, "{what}");
             assert!(errors.rows.is_some() == (triangle_count(used) > 1 && !explained.is_flat), "{what}");
-            assert!(explained.own_least.triangles >= 1, "{what}");
-            assert!(!is_enough(BEYOND_LAST) && is_enough(explained.own_least.inside), "{what}");
+            assert!(explained.minimum.triangles >= 1, "{what}");
+            assert!(!is_enough(BEYOND_LAST) && is_enough(explained.minimum.inside), "{what}");
         }
     }
     let expected = [DecidedBy::Curve, DecidedBy::Own, DecidedBy::Other, DecidedBy::Both];
@@ -84,7 +84,7 @@ fn patches_beside_no_other_have_their_own_least_if_edges_count_once() {
     // A patch whose neighbours ask for no more than it does, and which wouldn't ask for anything else by itself.
     let (mesh, topology, inputs) = shape(Shape::Torus, Tessellation::default());
     let out = tessellate(&mesh, &topology, &inputs, None);
-    let least = own_least_triangles(&mesh, &topology, &inputs);
+    let least = minimum_triangles(&mesh, &topology, &inputs);
     let has: Vec<_> = out.patch_factors.iter().map(|&factors| triangle_count(factors)).collect();
     assert_eq!(least.len(), has.len());
     assert!(least.iter().zip(&has).any(|(least, has)| least == has));
@@ -96,8 +96,8 @@ fn patches_beside_no_other_have_their_own_least_if_edges_count_once() {
     );
     for patch in [0, 7, 100] {
         let explained = explain_patch(&mesh, &topology, &inputs, patch, out.patch_factors[patch as usize]);
-        assert_eq!(explained.own_least.triangles, least[patch as usize]);
-        let OwnLeast { sides: [a, b, c], inside, triangles } = explained.own_least;
+        assert_eq!(explained.minimum.triangles, least[patch as usize]);
+        let Minimum { sides: [a, b, c], inside, triangles } = explained.minimum;
         let partitioning = inputs.tessellation.partitioning;
         assert_eq!(triangle_count(process(partitioning, [b, c, a], inside)), triangles);
     }
@@ -116,8 +116,8 @@ fn other_lods_have_an_own_least_and_errors_and_no_requests() {
         assert!(explained.errors.is_some_and(|errors| errors.largest() > 0.0));
         assert_eq!(explained.errors.and_then(|errors| errors.rows).is_none(), lod == Lod::Uniform);
         let whole = Tessellation { partitioning: Partitioning::Integer, ..by_error.tessellation };
-        let expected = own_least_triangles(&mesh, &topology, &Inputs::new(&whole, by_error.view));
-        assert_eq!(explained.own_least.triangles, expected[3], "{lod:?}");
+        let expected = minimum_triangles(&mesh, &topology, &Inputs::new(&whole, by_error.view));
+        assert_eq!(explained.minimum.triangles, expected[3], "{lod:?}");
     }
 }
 
@@ -148,7 +148,7 @@ fn nothing_is_said_about_triangles_that_are_not_emitted() {
     let (mesh, topology, inputs) = shape(Shape::Torus, Tessellation::default());
     let explained = explain_patch(&mesh, &topology, &inputs, 0, PatchFactors::default());
     assert_eq!(explained.errors, None);
-    assert!(explained.own_least.triangles > 0);
+    assert!(explained.minimum.triangles > 0);
 }
 
 #[test]
@@ -178,7 +178,7 @@ fn what_is_drawn_within_the_tolerance_is_never_fewer_than_the_least() {
         for (kind, tolerance) in [(Shape::Torus, 0.2), (Shape::CubeSmooth, 0.2)] {
             let (mesh, topology, inputs) = shape(kind, Tessellation { partitioning, ..Tessellation::default() });
             let inputs = Inputs { tessellation: Tessellation { tolerance, ..inputs.tessellation }, ..inputs };
-            let searched = own_least_triangles(&mesh, &topology, &inputs);
+            let searched = minimum_triangles(&mesh, &topology, &inputs);
             let out = tessellate(&mesh, &topology, &inputs, None);
             for patch in (0..topology.patches.len() as u32).step_by(5) {
                 let used = out.patch_factors[patch as usize];
@@ -186,7 +186,7 @@ fn what_is_drawn_within_the_tolerance_is_never_fewer_than_the_least() {
                 if explained.errors.is_none_or(|errors| errors.largest() > explained.tolerance) {
                     continue;
                 }
-                let (least, drawn) = (explained.own_least.triangles, triangle_count(used));
+                let (least, drawn) = (explained.minimum.triangles, triangle_count(used));
                 assert!(least <= drawn, "{kind:?} {partitioning:?}, patch {patch}: {explained:?}, {drawn} are drawn");
                 assert!(least <= searched[patch as usize]);
                 found_more += usize::from(searched[patch as usize] > drawn);

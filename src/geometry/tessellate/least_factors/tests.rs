@@ -11,18 +11,23 @@ fn asked_factors(
     least: [f32; 3],
     inside: f32,
     inner: f32,
-) -> Chosen {
-    fewest_triangles(patch, tolerance, partitioning, &Sought { least, inside, inner, wanted: Wanted::Asked })
+) -> ChosenFactors {
+    fewest_triangles(patch, tolerance, partitioning, &FactorSearch { least, inside, inner, wanted: SearchGoal::Asked })
 }
 
-fn own_least_factors(
+fn minimum_factors(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
     least: [f32; 3],
     inside: f32,
-) -> Chosen {
-    fewest_triangles(patch, tolerance, partitioning, &Sought { least, inside, inner: 0.0, wanted: Wanted::Own })
+) -> ChosenFactors {
+    fewest_triangles(
+        patch,
+        tolerance,
+        partitioning,
+        &FactorSearch { least, inside, inner: 0.0, wanted: SearchGoal::Own },
+    )
 }
 
 fn least_inside_factor(
@@ -32,7 +37,7 @@ fn least_inside_factor(
     edges: [f32; 3],
     (inside, inner): (f32, f32),
 ) -> f32 {
-    let sought = Sought { least: edges, inside, inner, wanted: Wanted::Given };
+    let sought = FactorSearch { least: edges, inside, inner, wanted: SearchGoal::Given };
     fewest_triangles(patch, tolerance, partitioning, &sought).inside
 }
 use crate::tessellate::ControlNet;
@@ -96,7 +101,7 @@ fn flat_patches_ask_for_the_least_factors() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        let Chosen { edges, inside: chosen, .. } = asked_factors(&patch, 0.01, partitioning, least, 1.0, 0.0);
+        let ChosenFactors { edges, inside: chosen, .. } = asked_factors(&patch, 0.01, partitioning, least, 1.0, 0.0);
         assert_eq!(edges, least, "{partitioning:?}");
         let inside = least_inside_factor(&patch, 0.01, partitioning, least, (1.0, 0.0));
         let expected = if partitioning == Partitioning::FractionalEven { 2.0 } else { 1.0 };
@@ -109,7 +114,7 @@ fn heights_inside_and_factors_of_edges_are_kept() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
     let edges = [3.0, 1.0, 7.0];
     let asked = asked_factors(&patch, 0.01, Partitioning::Integer, edges, 5.0, 0.0);
-    assert_eq!(asked, Chosen { edges, inside: 5.0, inner: 5.0 });
+    assert_eq!(asked, ChosenFactors { edges, inside: 5.0, inner: 5.0 });
     assert_eq!(least_inside_factor(&patch, 0.01, Partitioning::Integer, edges, (5.0, 0.0)), 5.0);
 }
 
@@ -118,10 +123,10 @@ fn an_inside_factor_above_64_says_that_none_is_enough() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.1; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        let none = Chosen { edges: least, inside: BEYOND_LAST, inner: 0.0 };
+        let none = ChosenFactors { edges: least, inside: BEYOND_LAST, inner: 0.0 };
         let inside = |edges, tolerance| least_inside_factor(&patch, tolerance, partitioning, edges, (1.0, 0.0));
         assert_eq!(asked_factors(&patch, 1e-6, partitioning, least, 1.0, 0.0), none, "{partitioning:?}");
-        assert_eq!(own_least_factors(&patch, 1e-6, partitioning, least, 1.0), none, "{partitioning:?}");
+        assert_eq!(minimum_factors(&patch, 1e-6, partitioning, least, 1.0), none, "{partitioning:?}");
         assert_eq!(inside(least, 1e-6), BEYOND_LAST, "{partitioning:?}");
         assert_eq!(inside([BEYOND_LAST; 3], 1.0), BEYOND_LAST);
     }
@@ -190,7 +195,7 @@ proptest! {
             prop_assert_eq!((again.edges, again.inside), (asked.edges, asked.inside));
         }
         if let Some(fewest) = fewest(&patch, tolerance, partitioning, 1.0) {
-            let own = own_least_factors(&patch, tolerance, partitioning, least, 1.0);
+            let own = minimum_factors(&patch, tolerance, partitioning, least, 1.0);
             prop_assert!(own.inside <= 64.0);
             prop_assert_eq!(count(own.edges, own.inside, 1.0), fewest, "{:?}", own);
         }

@@ -5,16 +5,16 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
-    fewest_rows(patch, tolerance, &Sought { least, inside, inner: 0.0, wanted: Wanted::Asked })
+fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> ChosenFactors {
+    fewest_rows(patch, tolerance, &FactorSearch { least, inside, inner: 0.0, wanted: SearchGoal::Asked })
 }
 
-fn own_least_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> Chosen {
-    fewest_rows(patch, tolerance, &Sought { least, inside, inner: 0.0, wanted: Wanted::Own })
+fn minimum_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> ChosenFactors {
+    fewest_rows(patch, tolerance, &FactorSearch { least, inside, inner: 0.0, wanted: SearchGoal::Own })
 }
 
 fn rows_beside(patch: &SeenPatch, tolerance: f32, edges: [f32; 3], inside: f32) -> f32 {
-    fewest_rows(patch, tolerance, &Sought { least: edges, inside, inner: 0.0, wanted: Wanted::Given }).inside
+    fewest_rows(patch, tolerance, &FactorSearch { least: edges, inside, inner: 0.0, wanted: SearchGoal::Given }).inside
 }
 use crate::tessellate::factors::{ROW_BASE_STEP, row_count, row_width, segments, triangle_count};
 use crate::tessellate::piece_error::seen_patch;
@@ -64,7 +64,7 @@ fn a_patch_that_is_bent_in_one_direction_has_no_points_inside() {
         let mut along = [0.0; 3];
         along[k] = 1.0;
         let patch = bent(along, 0.2);
-        let Chosen { edges, inside, .. } = asked_rows(&patch, 0.1, [1.0; 3], 1.0);
+        let ChosenFactors { edges, inside, .. } = asked_rows(&patch, 0.1, [1.0; 3], 1.0);
         let factors = process(Partitioning::Rows, edges, inside);
         assert_eq!(point_count(factors), outer_count(factors), "{edges:?} {inside}");
         assert_eq!(edges[k], 1.0, "{edges:?}");
@@ -80,12 +80,12 @@ fn a_patch_that_is_bent_in_one_direction_has_no_points_inside() {
 #[test]
 fn a_patch_that_one_triangle_shows_is_one_triangle() {
     let patch = seen_patch(&VIEW, &lifted([0.0; 7]));
-    let one = Chosen { edges: [1.0; 3], inside: (ROW_BASE_STEP + 1) as f32, inner: 0.0 };
+    let one = ChosenFactors { edges: [1.0; 3], inside: (ROW_BASE_STEP + 1) as f32, inner: 0.0 };
     assert_eq!(asked_rows(&patch, 0.01, [1.0; 3], 1.0), one);
-    assert_eq!(own_least_rows(&patch, 0.01, [1.0; 3], 1.0), one);
+    assert_eq!(minimum_rows(&patch, 0.01, [1.0; 3], 1.0), one);
     assert_eq!(rows_beside(&patch, 0.01, [1.0; 3], 1.0), one.inside);
     // Heights may need more rows than the surface does.
-    let factors = |chosen: Chosen| process(Partitioning::Rows, chosen.edges, chosen.inside);
+    let factors = |chosen: ChosenFactors| process(Partitioning::Rows, chosen.edges, chosen.inside);
     let raised = factors(asked_rows(&patch, 0.01, [1.0; 3], 5.0));
     assert_eq!((row_count(raised), row_width(raised)), (5, 5));
     let beside = process(Partitioning::Rows, [7.0, 3.0, 2.0], rows_beside(&patch, 0.01, [7.0, 3.0, 2.0], 1.0));
@@ -95,7 +95,7 @@ fn a_patch_that_one_triangle_shows_is_one_triangle() {
 #[test]
 fn what_no_rows_suffice_for_says_so() {
     let patch = seen_patch(&VIEW, &lifted([0.1, -0.1, 0.1, 0.2, -0.1, 0.1, 0.3]));
-    let none = |least| Chosen { edges: least, inside: BEYOND_LAST, inner: 0.0 };
+    let none = |least| ChosenFactors { edges: least, inside: BEYOND_LAST, inner: 0.0 };
     assert_eq!(asked_rows(&patch, 1e-6, [2.0, 3.0, 1.0], 1.0), none([2.0, 3.0, 1.0]));
     assert_eq!(asked_rows(&patch, 0.5, [127.5, 1.0, 1.0], 1.0), none([127.5, 1.0, 1.0]));
     assert_eq!(rows_beside(&patch, 1e-6, [127.0; 3], 1.0), BEYOND_LAST);
@@ -115,7 +115,7 @@ fn patches_that_are_near_get_more_rows_than_rings_have_segments() {
 
 #[test]
 fn patches_ask_again_if_they_have_many_more_points_inside_than_they_chose() {
-    let chosen = Chosen { edges: [8.0; 3], inside: (ROW_BASE_STEP + 8) as f32, inner: 0.0 };
+    let chosen = ChosenFactors { edges: [8.0; 3], inside: (ROW_BASE_STEP + 8) as f32, inner: 0.0 };
     let again = |edges, inside| rows_ask_again(&chosen, edges, inside);
     assert!(!again([8.0; 3], chosen.inside) && !again([10.0, 8.0, 8.0], chosen.inside));
     assert!(again([8.0, 12.0, 12.0], chosen.inside) && again([8.0; 3], BEYOND_LAST));
@@ -153,7 +153,7 @@ fn diagonals_follow_the_direction_in_which_a_patch_bends_less() {
         let mut edges = [12.0; 3];
         edges[base] = 3.0;
         let error = |flips: bool| {
-            let tried = Tried { base, flips, rows: 12.0, width: 3.0, segments: 3.0, fewer: [0.0; 2], lessened: 0 };
+            let tried = TriedRows { base, flips, rows: 12.0, width: 3.0, segments: 3.0, fewer: [0.0; 2], lessened: 0 };
             let errors =
                 part_errors(&patch, 1e9, process(Partitioning::Rows, edges, inside_of_rows(&tried)), [true; 4]);
             errors.into_iter().fold(0.0, f32::max)
@@ -197,7 +197,7 @@ proptest! {
         prop_assert!(asked.edges.iter().zip(least).all(|(&own, least)| own >= least), "{asked:?}");
         let beside = rows_beside(&patch, tolerance, least, 1.0);
         prop_assert!(beside == BEYOND_LAST || within(&patch, tolerance, least, beside), "{beside}");
-        let own = own_least_rows(&patch, tolerance, [1.0; 3], 1.0);
+        let own = minimum_rows(&patch, tolerance, [1.0; 3], 1.0);
         prop_assert!(within(&patch, tolerance, own.edges, own.inside), "{own:?}");
     }
 }

@@ -162,7 +162,7 @@ proptest! {
     #[test]
     fn displacement_is_allowed_for((net, at) in any_patch(-4.0..-2.0), x in -1.0f32..1.0, y in -1.0f32..1.0, z in -1.0f32..1.0) {
         // The error as it would be seen if displacement moved all of the patch at once.
-        let view = LodView { reach: 0.2, ..view(true) };
+        let view = view(true).with_reach(0.2);
         let patch = seen_patch(&view, &net);
         let by = vec3(x, y, z).normalize_or_zero() * 0.19;
         let moved = ControlNet { corners: net.corners.map(|p| p + by), edges: net.edges.map(|p| p + by), center: net.center + by };

@@ -46,7 +46,7 @@ pub(super) struct UvSets {
 }
 
 impl UvSets {
-    pub(super) fn of(material: &Material) -> Self {
+    pub(super) fn new(material: &Material) -> Self {
         // Without an image of the base colour, corners have the first set themselves.
         let own_is_first = material.texture.is_none();
         let uses = |set: usize| {

@@ -56,12 +56,12 @@ fn square_truth(half: f32) -> Truth {
         uv: Vec2::ZERO,
     };
     let mesh = Mesh { corners: (0..4).map(corner).collect(), triangles: triangles.into(), ..Mesh::default() };
-    Truth::of_mesh(&mesh).unwrap()
+    Truth::from_mesh(&mesh).unwrap()
 }
 
 #[test]
 fn the_icosahedron_is_a_fifth_of_the_radius_off_the_sphere() {
-    let truth = Truth::of_shape(Shape::Icosahedron).unwrap();
+    let truth = Truth::from_shape(Shape::Icosahedron).unwrap();
     let accuracy = measured(&truth, &as_it_is(&Shape::Icosahedron.build()), 20_000);
     let inradius = ((5.0 + 2.0 * 5.0_f64.sqrt()) / 15.0).sqrt();
     // Corners are f32 numbers, and no sample lies exactly opposite a face's middle.
@@ -120,7 +120,7 @@ fn missing_parts_count_from_the_reference_surface() {
 
 #[test]
 fn a_shifted_sphere_is_off_by_the_shift() {
-    let truth = Truth::of_shape(Shape::Icosphere).unwrap();
+    let truth = Truth::from_shape(Shape::Icosphere).unwrap();
     let mut out = as_it_is(&Shape::Icosphere.build_at(4));
     out.vertices.iter_mut().for_each(|vertex| vertex.position[0] += 0.01);
     let accuracy = measured(&truth, &out, 5000);
@@ -175,7 +175,7 @@ fn nothing_emitted_gives_no_result_and_nan_is_left_out() {
 
 #[test]
 fn results_depend_neither_on_threads_nor_on_chunks() {
-    let truth = Truth::of_shape(Shape::Bicubic).unwrap();
+    let truth = Truth::from_shape(Shape::Bicubic).unwrap();
     let out = emitted(&Shape::Bicubic.build(), Surface::PnAen, 4.0);
     let measure = |threads, chunks: usize| {
         let mut measurement = AccuracyMeasurement::new(&truth, None, AccuracyOptions { samples: 3000, threads });
@@ -199,7 +199,7 @@ fn results_depend_neither_on_threads_nor_on_chunks() {
 fn distances_fall_with_the_level() {
     for (surface, orders) in [(Surface::Flat, 1.7..2.3), (Surface::PnAen, 2.7..4.6)] {
         for shape in [Shape::Icosphere, Shape::Ellipsoid, Shape::Torus] {
-            let truth = Truth::of_shape(shape).unwrap();
+            let truth = Truth::from_shape(shape).unwrap();
             let rms = [1, 2].map(|level| {
                 let factor = if surface == Surface::Flat { 1.0 } else { 8.0 };
                 let accuracy = measured(&truth, &emitted(&shape.build_at(level), surface, factor), 4000);
@@ -236,7 +236,7 @@ fn emitted_triangles(triangles: &[[[f32; 3]; 3]]) -> (Vec<Vertex>, Vec<[u32; 3]>
 }
 
 fn compared(truth: &[[[f32; 3]; 3]], emitted: &[[[f32; 3]; 3]], samples: usize) -> Accuracy {
-    let truth = Truth::of_mesh(&mesh_of(truth)).unwrap();
+    let truth = Truth::from_mesh(&mesh_of(truth)).unwrap();
     let (vertices, triangles) = emitted_triangles(emitted);
     // Seen from above, 150 px are a unit.
     let from_above = Mat4::from_rotation_x(std::f32::consts::FRAC_PI_2);
@@ -289,7 +289,7 @@ fn a_place_on_an_edge_counts_wherever_it_lies() {
 #[test]
 fn a_low_poly_mesh_is_as_far_from_a_scan_as_the_farthest_vertex_of_the_scan() {
     let scan = Shape::Torus.build_at(3);
-    let (truth, out) = (Truth::of_mesh(&scan).unwrap(), as_it_is(&Shape::Torus.build()));
+    let (truth, out) = (Truth::from_mesh(&scan).unwrap(), as_it_is(&Shape::Torus.build()));
     let corners = |triangle: &[u32; 3]| triangle.map(|i| Vec3::from(out.vertices[i as usize].position));
     let tree = crate::truth::Triangles::new(out.triangles.iter().map(corners)).unwrap();
     let distance = |corner: &geometry::mesh::Corner| {
@@ -325,7 +325,7 @@ fn sampling_says_how_many_points_there_are_and_how_far_apart() {
 
 #[test]
 fn triangles_that_are_not_kept_are_measured_by_samples_alone() {
-    let (truth, out) = (Truth::of_shape(Shape::Torus).unwrap(), emitted(&Shape::Torus.build(), Surface::Flat, 2.0));
+    let (truth, out) = (Truth::from_shape(Shape::Torus).unwrap(), emitted(&Shape::Torus.build(), Surface::Flat, 2.0));
     let measure = |most_kept, chunks: usize| {
         let mut measurement =
             AccuracyMeasurement { most_kept, ..AccuracyMeasurement::new(&truth, None, options(3000)) };
@@ -348,7 +348,7 @@ fn triangles_that_are_not_kept_are_measured_by_samples_alone() {
 #[test]
 fn the_border_of_an_exact_surface_counts() {
     // The border of the saddle is farthest from flat triangles that end inside of it.
-    let truth = Truth::of_shape(Shape::Saddle).unwrap();
+    let truth = Truth::from_shape(Shape::Saddle).unwrap();
     let mut out = as_it_is(&Shape::Saddle.build_at(5));
     let half = f64::from(geometry::mesh::shapes::sheets::SADDLE_HALF);
     out.vertices.iter_mut().for_each(|vertex| {

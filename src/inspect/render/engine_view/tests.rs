@@ -58,7 +58,7 @@ fn in_range(zero_to_one: DVec4, w: DVec4, depth: DepthRange) -> DVec4 {
 fn mesh() -> (Mesh, Topology, Bounds) {
     let mesh = Shape::Torus.build();
     let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
-    let bounds = Bounds::of(topology.points.iter().copied());
+    let bounds = Bounds::new(topology.points.iter().copied());
     (mesh, topology, bounds)
 }
 
@@ -92,7 +92,7 @@ proptest! {
         let screen = viewport.max_element();
         for (depth, y) in CONVENTIONS {
             let matrix = scaled_matrix(&camera, viewport, &bounds, (depth, y), factor);
-            let seen = Camera::of_matrix(&matrix, &bounds);
+            let seen = Camera::from_matrix(&matrix, &bounds);
             prop_assert!(seen.is_ok(), "{depth:?} {y:?}: {seen:?}");
             let Ok(seen) = seen else { continue };
             let clip = seen.clip_from_object(viewport, &bounds);
@@ -127,7 +127,7 @@ proptest! {
         let matrix = engine_matrix(&camera, viewport, &bounds, DepthRange::ZeroToOne, ClipY::Up);
         let mirror = DMat4::from_diagonal(dvec4(-1.0, 1.0, 1.0, 1.0));
         let mirrored = ViewProjection { clip_from_object: mirror * matrix.clip_from_object, ..matrix };
-        let [seen, mirrored] = [matrix, mirrored].map(|matrix| Camera::of_matrix(&matrix, &bounds).expect("a view"));
+        let [seen, mirrored] = [matrix, mirrored].map(|matrix| Camera::from_matrix(&matrix, &bounds).expect("a view"));
         prop_assert!(mirrored.rows.is_some_and(|rows| rows.is_mirrored));
         for &point in &topology.points {
             let [a, b] = [seen, mirrored].map(|own| project(own.clip_from_object(viewport, &bounds), viewport, point));
@@ -161,7 +161,7 @@ fn a_view_from_beside_its_middle_is_kept_as_it_is() {
     let mut shift = DMat4::IDENTITY;
     shift.w_axis = dvec4(0.25, -0.5, 0.0, 1.0);
     let shifted = ViewProjection { clip_from_object: shift * matrix.clip_from_object, ..matrix };
-    let seen = Camera::of_matrix(&shifted, &bounds).expect("a view");
+    let seen = Camera::from_matrix(&shifted, &bounds).expect("a view");
     assert!(seen.eye().distance(camera.eye()) < 1e-5 * camera.distance);
     for &point in &topology.points {
         let [a, b] = [camera, seen].map(|own| project(own.clip_from_object(viewport, &bounds), viewport, point));

@@ -104,7 +104,7 @@ fn a_sheen_shows_along_outlines_and_backwards_in_both_directions() {
 /// of the light: the mean difference, relative to the mean brightness. The page about materials states these: 27 to 8 %.
 #[test]
 fn a_sphere_with_sheen_is_near_its_integral() {
-    let (studio, coarse, to_eye) = (Studio::new(), CubeMap::of(32, studio_light), Vec3::Z);
+    let (studio, coarse, to_eye) = (Studio::new(), CubeMap::new(32, studio_light), Vec3::Z);
     let lights: Vec<_> = coarse.lights().collect();
     for (roughness, most) in [(0.3, 0.28), (0.5, 0.165), (0.7, 0.11), (1.0, 0.085)] {
         let (mut off, mut sum) = (0.0, 0.0);

@@ -21,7 +21,7 @@ pub(super) struct Studio {
 
 impl Studio {
     pub(super) fn new() -> Self {
-        let source = CubeMap::of(128, studio_light);
+        let source = CubeMap::new(128, studio_light);
         Self { filtered: prefiltered(&source), irradiance: irradiance(&source), source }
     }
 

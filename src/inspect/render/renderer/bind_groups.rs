@@ -74,7 +74,7 @@ impl Renderer {
 
     pub(super) fn measured_group(&self, scene: &Scene, chunk: Option<usize>) -> wgpu::BindGroup {
         let known = scene.known_deviation().zip(chunk).and_then(|(deviation, chunk)| deviation.chunks.get(chunk));
-        let least = scene.tessellator.own_least();
+        let least = scene.tessellator.minimum();
         let bound = [known, least].map(|known| known.unwrap_or(&self.unknown).as_entire_binding());
         bind_group(&self.gpu, "measured", &self.pipelines.measured_layout, (0..).zip(bound))
     }

@@ -202,7 +202,7 @@ fn draws(
         _ => settings.used_normals_at(mesh),
     };
     let shown = if triangles == Triangles::Source { undisplaced(settings) } else { *settings };
-    let shading = Shading::Lit(Needs::of(mesh, material, &shown, kind));
+    let shading = Shading::Lit(Needs::new(mesh, material, &shown, kind));
     let faces = own_faces(settings, material).unwrap_or(Faces::Both);
     let draw = |&layer: &LayerDraw| {
         let own = SurfaceDraw { triangles, faces, normals: normals(layer), shading, layer: Some(layer) };

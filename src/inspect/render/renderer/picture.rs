@@ -111,7 +111,7 @@ impl Renderer {
         if let Some(chunk) = step.chunk() {
             drawn.tessellator.emit(recorder, chunk)?;
             if settings.overlays.colors.source() == ColorSource::MinimumTriangles {
-                drawn.tessellator.record_own_least(recorder)?;
+                drawn.tessellator.record_minimum(recorder)?;
             }
         }
         if let Step::Layer(layer) = step {

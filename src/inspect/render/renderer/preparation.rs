@@ -29,7 +29,7 @@ impl Renderer {
             self.matcaps.group(&self.gpu, &self.materials, settings.matcap)?;
         }
         if settings.overlays.colors.source() == ColorSource::MinimumTriangles {
-            scene.tessellator.prepare_own_least(settings.tessellation.partitioning)?;
+            scene.tessellator.prepare_minimum(settings.tessellation.partitioning)?;
         }
         let mut draws = self.surface_draws(scene, settings, false);
         draws.extend(layer_draws(settings, scene.tessellator.mesh(), self.kind(false)));

@@ -86,8 +86,8 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
         _ => format!("{} to {}", at(least, near), at(most, far)),
     };
     let name = surface.name();
-    let against =
-        Range::of(&ratios).map_or_else(String::new, |range| format!(" It is {}.", closer(&range, ratios.len())));
+    let against = Range::from_ratios(&ratios)
+        .map_or_else(String::new, |range| format!(" It is {}.", closer(&range, ratios.len())));
     let on = reached.len();
     Some(format!(
         "However fine, `{name}` comes no closer than {range}, on {on} of {}: {}.{against}",

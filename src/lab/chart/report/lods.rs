@@ -40,7 +40,7 @@ pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Savin
             }
         }
     }
-    Some(Saving { times: Range::of(&ratios)?, count: ratios.len(), alone })
+    Some(Saving { times: Range::from_ratios(&ratios)?, count: ratios.len(), alone })
 }
 
 /// Whether a row is the coarsest of its method.
@@ -65,7 +65,7 @@ pub(super) struct Range {
 
 impl Range {
     /// Returns `None` if there are no ratios.
-    pub(super) fn of(ratios: &[f64]) -> Option<Self> {
+    pub(super) fn from_ratios(ratios: &[f64]) -> Option<Self> {
         let least = ratios.iter().copied().reduce(f64::min)?;
         let most = ratios.iter().copied().fold(least, f64::max);
         let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f64>() / ratios.len() as f64).exp();

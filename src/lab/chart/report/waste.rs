@@ -25,7 +25,7 @@ pub(super) fn wastes(parts: &[Part]) -> Vec<Waste> {
         };
         let rows = parts.iter().flat_map(|part| part.subject.rows.iter().filter_map(move |row| times(part, row)));
         let all: Vec<f64> = rows.collect();
-        Some(Waste { method, count: all.len(), times: Range::of(&all)? })
+        Some(Waste { method, count: all.len(), times: Range::from_ratios(&all)? })
     };
     let mut wastes: Vec<Waste> = methods.into_iter().filter_map(of).collect();
     wastes.sort_by(|a, b| a.times.mean.total_cmp(&b.times.mean));

@@ -78,7 +78,7 @@ fn nodes_and_layers_that_are_off_are_hidden_unless_they_are_asked_for() {
     let import = Import { show_hidden: true, ..Import::default() };
     let progress = Progress::new();
     let selected = Selection { import, ..Selection::default() };
-    let file = ModelFile { selected, ..ModelFile::of_test("test", &progress) };
+    let file = ModelFile { selected, ..ModelFile::from_test("test", &progress) };
     let all = read_here(text(&layered()), &file).expect("no fault");
     assert_eq!(all.triangles.len(), 3);
     assert!(all.warnings.iter().all(|warning| !warning.contains("hides")), "{:?}", all.warnings);

@@ -192,7 +192,7 @@ fn images_are_looked_for_beside_the_model_and_nowhere_else() {
     let read = |path: &str| {
         let bytes = text(&textured_square(Err(path)));
         let progress = Progress::new();
-        let file = ModelFile { folder: &inner, ..ModelFile::of_test("test", &progress) };
+        let file = ModelFile { folder: &inner, ..ModelFile::from_test("test", &progress) };
         let read = read_here(bytes, &file).expect("a mesh");
         (read.materials[0].texture.is_some(), read.warnings.join("\n"), read.files.len())
     };
@@ -217,7 +217,7 @@ fn images_that_do_not_fit_are_halved() {
         let bytes = text(&textured_square(Ok(png.get_ref())));
         let limits = Limits { memory, ..Limits::default() };
         let progress = Progress::new();
-        let file = ModelFile { limits, ..ModelFile::of_test("test", &progress) };
+        let file = ModelFile { limits, ..ModelFile::from_test("test", &progress) };
         let read = read_here(bytes, &file).expect("a mesh, whatever its textures are");
         (read.materials[0].texture.as_ref().map(|texture| texture.size), read.warnings.join("\n"))
     };
@@ -259,11 +259,11 @@ fn a_load_can_be_cancelled_and_runs_within_its_memory() {
     let bytes = text(&smoothed_prism());
     let progress = Progress::new();
     progress.cancel();
-    let cancelled = read_on_a_thread(bytes.clone(), &ModelFile::of_test("test", &progress));
+    let cancelled = read_on_a_thread(bytes.clone(), &ModelFile::from_test("test", &progress));
     assert!(matches!(cancelled, Err(ReadError::Cancelled(_))), "{cancelled:?}");
     let limits = Limits { memory: 0, ..Limits::default() };
     let progress = Progress::new();
-    let refused = read_here(bytes, &ModelFile { limits, ..ModelFile::of_test("test", &progress) });
+    let refused = read_here(bytes, &ModelFile { limits, ..ModelFile::from_test("test", &progress) });
     let said = refused.map(|_| ()).expect_err("a parser needs more than that").to_string();
     assert!(
         said.contains(" of memory, but files of this size may take only ") && said.contains("--max-memory"),

@@ -272,7 +272,7 @@ fn corners_that_differ_in_colour_alone_do_not_tear() {
     ]);
     let split = draft.read().unwrap();
     assert_eq!((plain.corners.len(), split.corners.len(), split.triangles.len()), (4, 6, 2));
-    let [a, b] = [&plain.mesh, &split.mesh].map(Topology::of);
+    let [a, b] = [&plain.mesh, &split.mesh].map(Topology::new);
     assert_eq!((a.points.clone(), a.edge_counts()), (b.points.clone(), b.edge_counts()));
     assert_eq!(b.edge_counts().smooth, 1);
 }
@@ -346,7 +346,7 @@ fn corners_with_two_tangents_are_split_but_do_not_tear() {
             assert_eq!((tangent.x > 0.0, sign), (left, if left { 1.0 } else { -1.0 }), "{detail:?}");
         }
     }
-    let topology = Topology::of(&mesh);
+    let topology = Topology::new(&mesh);
     assert_eq!((topology.points.len(), topology.edge_counts().boundary), (6, 6));
     assert_eq!((topology.edge_counts().smooth, topology.edge_counts().split), (3, 0));
 }

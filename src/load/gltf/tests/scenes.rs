@@ -86,7 +86,7 @@ fn a_scene_that_is_not_there_is_an_error_with_the_names() {
     let said = error.to_string();
     assert!(said.ends_with("three.gltf has no scene 3; choose one of hall, scene 1, 0"), "{said}");
     let said = load("shape:torus".parse().expect("a shape"), "0").expect_err("it has none").to_string();
-    assert!(said.ends_with("has no scene 0; it has no scenes, so leave --scene away"), "{said}");
+    assert!(said.ends_with("has no scene 0; it has no scenes, so omit --scene"), "{said}");
 }
 
 #[test]

@@ -85,6 +85,6 @@ fn a_variant_that_is_not_there_is_an_error_with_the_names() {
     assert!(said.ends_with("lamp.gltf has no material variant Night; choose one of day, night, variant 2"), "{said}");
     for source in [Source::Vase, "shape:torus".parse().expect("a shape")] {
         let said = load(source, "day").expect_err("it has none").to_string();
-        assert!(said.ends_with("has no material variant day; it has no variants, so leave --variant away"), "{said}");
+        assert!(said.ends_with("has no material variant day; it has no variants, so omit --variant"), "{said}");
     }
 }

@@ -19,7 +19,7 @@ pub(super) fn read_code(bits: &mut Bits) -> Option<PrefixCode> {
     for &place in ORDER.get(..used)? {
         lengths[place] = bits.take(3) as u8;
     }
-    let of_lengths = PrefixCode::of(&lengths)?;
+    let of_lengths = PrefixCode::new(&lengths)?;
     let mut lengths = Vec::with_capacity(count);
     while lengths.len() < count {
         let (length, times) = match of_lengths.symbol(bits)? {
@@ -34,5 +34,5 @@ pub(super) fn read_code(bits: &mut Bits) -> Option<PrefixCode> {
     if lengths.len() > count || bits.is_past_end() {
         return None;
     }
-    PrefixCode::of(&lengths)
+    PrefixCode::new(&lengths)
 }

@@ -18,7 +18,7 @@ pub(super) struct PrefixCode {
 impl PrefixCode {
     /// Makes the code in which each symbol's code has this length, 0 for symbols without one; none if there is no such code. A single
     /// symbol's code is followed by others that stand for nothing.
-    pub(super) fn of(lengths: &[u8]) -> Option<Self> {
+    pub(super) fn new(lengths: &[u8]) -> Option<Self> {
         let mut counts = [0; LONGEST + 1];
         let mut symbols: Vec<_> = (0..lengths.len() as u16).filter(|&symbol| lengths[symbol as usize] > 0).collect();
         symbols.sort_by_key(|&symbol| lengths[symbol as usize]);
@@ -56,7 +56,7 @@ mod tests {
     #[test]
     fn short_codes_come_first() {
         // a: 10, b: 0, c: 110, d: 111; the first bit of a code is the lowest.
-        let code = PrefixCode::of(&[2, 1, 3, 3]).expect("a complete code");
+        let code = PrefixCode::new(&[2, 1, 3, 3]).expect("a complete code");
         let mut bits = Bits::new(&[0b1110_1101, 0b10]);
         let symbols: Vec<_> = (0..4).map(|_| code.symbol(&mut bits)).collect();
         assert_eq!(symbols, [Some(0), Some(2), Some(3), Some(1)]);
@@ -64,9 +64,9 @@ mod tests {
 
     #[test]
     fn codes_that_are_not_complete_are_refused() {
-        let is_refused = |lengths: &[u8]| PrefixCode::of(lengths).is_none();
+        let is_refused = |lengths: &[u8]| PrefixCode::new(lengths).is_none();
         assert!(is_refused(&[1, 2]) && is_refused(&[1, 1, 1]) && is_refused(&[0]));
-        let one = PrefixCode::of(&[0, 1]).expect("one symbol needs no other");
+        let one = PrefixCode::new(&[0, 1]).expect("one symbol needs no other");
         assert_eq!([0, 1].map(|byte| one.symbol(&mut Bits::new(&[byte]))), [Some(1), None]);
         assert_eq!(PrefixCode::default().symbol(&mut Bits::new(&[0])), None);
     }

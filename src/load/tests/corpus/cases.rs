@@ -23,7 +23,7 @@ enum Source {
 /// entries of its `changes.json`. None if there is no such folder.
 pub(crate) fn cases(folder: &str) -> Vec<Case> {
     let here = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
-    let is_case = |name: &str| Format::of_name(Path::new(name)).is_some() || is_environment(Path::new(name));
+    let is_case = |name: &str| Format::from_name(Path::new(name)).is_some() || is_environment(Path::new(name));
     let mut cases = Vec::new();
     for entry in std::fs::read_dir(&here).into_iter().flatten() {
         let file = entry.expect("a file of the corpus").path();

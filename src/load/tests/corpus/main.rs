@@ -98,7 +98,7 @@ fn answered_in_time(path: String, bytes: Vec<u8>) -> Answer {
 
 fn answer(path: &str, bytes: Vec<u8>) -> Answer {
     let (limits, progress) = (Limits::default(), Progress::new());
-    let Some(format) = Format::of_name(Path::new(path)) else {
+    let Some(format) = Format::from_name(Path::new(path)) else {
         let panorama = EnvironmentFile::read(&bytes, &limits, &progress);
         let file = panorama.map_err(|fault| (kind(&fault), fault.to_string()))?;
         let [width, height] = file.size();

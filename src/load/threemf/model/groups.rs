@@ -19,7 +19,7 @@ impl ModelReader<'_> {
     }
 
     pub(super) fn texture(&mut self, element: &Element) -> Result<(), ReadError> {
-        let (id, texture) = (self.id(element, "texture2d")?, Texture2d::of(element));
+        let (id, texture) = (self.id(element, "texture2d")?, Texture2d::new(element));
         self.budget.hold(PER_ENTRY + 2 * texture.path.len() as u64)?;
         self.part.textures.entry(id).or_insert(texture);
         Ok(())

@@ -9,7 +9,7 @@ use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 use super::{Fault, FaultKind};
-use gpu::own_functions::{OWN_PREFIX, OwnPurpose};
+use gpu::user_functions::{USER_PREFIX, UserPurpose};
 use gpu::wgsl_tokens::{Token, declared, tokens};
 
 /// The most tokens of a statement: compilers recurse into expressions.
@@ -42,7 +42,7 @@ pub(super) fn line_of(text: &str, at: usize) -> usize {
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(text: &'a str, purpose: &OwnPurpose) -> Result<Self, Fault> {
+    pub(super) fn new(text: &'a str, purpose: &UserPurpose) -> Result<Self, Fault> {
         let tokens = tokens(text);
         let closed_by = brackets(text, &tokens)?;
         check_names(text, &tokens, purpose)?;
@@ -110,7 +110,7 @@ impl<'a> Source<'a> {
     ///
     /// # Errors
     /// A call is too much work even if every loop ends after its first turn.
-    pub(super) fn bounded(&self, purpose: &OwnPurpose) -> Result<String, Fault> {
+    pub(super) fn bounded(&self, purpose: &UserPurpose) -> Result<String, Fault> {
         let mut known = HashMap::new();
         for name in purpose.functions.iter().map(|function| function.name) {
             let work = self.functions.get(name).map_or(0, |own| self.work(own.body.clone(), &mut known));
@@ -130,7 +130,7 @@ impl<'a> Source<'a> {
             let (work, result) = (work.max(LEAST_WORK_OF_TURN), self.result_around(at));
             out += &self.text[copied..inside];
             // A loop may have no other end than a return, and then nothing follows it.
-            out += &format!(" if {OWN_PREFIX}spend({work}u) {{ return {result}; }} ");
+            out += &format!(" if {USER_PREFIX}spend({work}u) {{ return {result}; }} ");
             copied = inside;
         }
         Ok(out + &self.text[copied..])
@@ -162,11 +162,11 @@ fn brackets(text: &str, tokens: &[Token]) -> Result<HashMap<usize, usize>, Fault
 }
 
 /// Names that the module's own part declares, or needs from WGSL itself, where a file may declare them anew.
-fn check_names(text: &str, tokens: &[Token], purpose: &OwnPurpose) -> Result<(), Fault> {
+fn check_names(text: &str, tokens: &[Token], purpose: &UserPurpose) -> Result<(), Fault> {
     let fault = |token: &Token, kind: fn(String) -> FaultKind| {
         Err(Fault { line: line_of(text, token.at), kind: kind(token.text.to_owned()) })
     };
-    if let Some(token) = tokens.iter().find(|token| token.text.starts_with(OWN_PREFIX)) {
+    if let Some(token) = tokens.iter().find(|token| token.text.starts_with(USER_PREFIX)) {
         return fault(token, FaultKind::Prefix);
     }
     let needed: HashSet<String> = purpose.needed_names();

@@ -9,9 +9,9 @@ use naga::{AddressSpace, Block, Function, Module, Span, Statement, TypeInner, Wi
 
 use super::bounded::{Source, line_of};
 use super::{Fault, FaultKind, type_faults};
-use gpu::own_functions::{OWN_PREFIX, OwnFunction, OwnPurpose};
-use gpu::own_lod::LOD_PURPOSE;
-use gpu::own_surface::SURFACE_PURPOSE;
+use gpu::user_functions::{USER_PREFIX, UserFunction, UserPurpose};
+use gpu::user_lod::LOD_PURPOSE;
+use gpu::user_surface::SURFACE_PURPOSE;
 
 /// How deep blocks may be nested: compilers recurse into them.
 pub(super) const MOST_DEPTH: usize = 64;
@@ -19,16 +19,16 @@ pub(super) const MOST_DEPTH: usize = 64;
 pub(super) const MOST_MEMORY: u64 = 16_384;
 
 /// Checks a user's text. Returns which of the purpose's functions it has.
-pub(super) fn check(text: &str, source: &Source, purpose: &OwnPurpose) -> Result<Vec<bool>, Fault> {
+pub(super) fn check(text: &str, source: &Source, purpose: &UserPurpose) -> Result<Vec<bool>, Fault> {
     check_purpose(source, purpose)?;
     let whole = format!("{text}\n{}", shaders::text(purpose.contract));
-    let module = parse_str(&whole).map_err(|error| of_parser(text, &error))?;
+    let module = parse_str(&whole).map_err(|error| parser_fault(text, &error))?;
     check_globals(text, &module)?;
     let mut has = Vec::new();
     for function in purpose.functions {
         let is_there = check_signature(&module, source, function)?;
         if has.is_empty() && !is_there {
-            let OwnFunction { name, signature, .. } = *function;
+            let UserFunction { name, signature, .. } = *function;
             return Err(Fault { line: 1, kind: FaultKind::NoFunction { name, signature } });
         }
         has.push(is_there);
@@ -42,8 +42,8 @@ pub(super) fn check(text: &str, source: &Source, purpose: &OwnPurpose) -> Result
 }
 
 /// Refuses a file that has the function of another purpose in place of this one's.
-fn check_purpose(source: &Source, purpose: &OwnPurpose) -> Result<(), Fault> {
-    let has = |own: &OwnPurpose| own.functions.first().is_some_and(|function| source.has(function.name));
+fn check_purpose(source: &Source, purpose: &UserPurpose) -> Result<(), Fault> {
+    let has = |own: &UserPurpose| own.functions.first().is_some_and(|function| source.has(function.name));
     let other = [&LOD_PURPOSE, &SURFACE_PURPOSE].into_iter().find(|other| has(other));
     match other.and_then(|other| Some((other, other.functions.first()?.name))) {
         Some((other, function)) if !has(purpose) => {
@@ -55,11 +55,11 @@ fn check_purpose(source: &Source, purpose: &OwnPurpose) -> Result<(), Fault> {
 }
 
 /// Holds bounded functions to it that every loop of theirs is bounded.
-pub(super) fn check_loops(functions: &str, purpose: &OwnPurpose) -> Result<(), Fault> {
-    let spend = format!("fn {OWN_PREFIX}spend(work: u32) -> bool {{ return false; }}");
+pub(super) fn check_loops(functions: &str, purpose: &UserPurpose) -> Result<(), Fault> {
+    let spend = format!("fn {USER_PREFIX}spend(work: u32) -> bool {{ return false; }}");
     let whole = format!("{functions}\n{}\n{spend}", shaders::text(purpose.contract));
-    let module = parse_str(&whole).map_err(|error| of_parser(functions, &error))?;
-    let spend = module.functions.iter().find(|(_, own)| own.name.as_deref() == Some(&format!("{OWN_PREFIX}spend")));
+    let module = parse_str(&whole).map_err(|error| parser_fault(functions, &error))?;
+    let spend = module.functions.iter().find(|(_, own)| own.name.as_deref() == Some(&format!("{USER_PREFIX}spend")));
     let calls_spend = |statement: &Statement| matches!(statement, Statement::Call { function, .. } if Some(*function) == spend.map(|(handle, _)| handle));
     for (_, function) in module.functions.iter() {
         if let Some(at) = unbounded(&function.body, &calls_spend) {
@@ -88,13 +88,13 @@ fn has_itself(block: &Block, is_bound: &impl Fn(&Statement) -> bool) -> bool {
 
 /// Parses and validates the whole module, whose first lines are those of the user's text.
 pub(super) fn check_module(text: &str, whole: &str) -> Result<(), Fault> {
-    let module = parse_str(whole).map_err(|error| of_parser(text, &error))?;
+    let module = parse_str(whole).map_err(|error| parser_fault(text, &error))?;
     validate(text, &module)
 }
 
 fn validate(text: &str, module: &Module) -> Result<(), Fault> {
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::default());
-    validator.validate(module).map(|_| ()).map_err(|error| of_validator(text, &error))
+    validator.validate(module).map(|_| ()).map_err(|error| validator_fault(text, &error))
 }
 
 /// The line of a span; the last one of the user's text for what lies behind it.
@@ -102,7 +102,7 @@ fn line_of_span(text: &str, span: Span) -> usize {
     line_of(text, span.to_range().map_or(0, |range| range.start))
 }
 
-fn of_parser(text: &str, error: &ParseError) -> Fault {
+fn parser_fault(text: &str, error: &ParseError) -> Fault {
     let own = |span: &Span| span.to_range().is_some_and(|range| range.start < text.len());
     let labels: Vec<_> = error.labels().collect();
     // Of a name that is declared twice, one may be ours.
@@ -115,7 +115,7 @@ fn of_parser(text: &str, error: &ParseError) -> Fault {
     Fault { line, kind: FaultKind::Language(said) }
 }
 
-fn of_validator(text: &str, error: &WithSpan<ValidationError>) -> Fault {
+fn validator_fault(text: &str, error: &WithSpan<ValidationError>) -> Fault {
     let spans = error.spans().map(|(span, _)| *span).filter(Span::is_defined);
     // The innermost statement or expression is named last.
     let line = spans.last().map_or(1, |span| line_of_span(text, span));
@@ -149,7 +149,7 @@ fn check_globals(text: &str, module: &Module) -> Result<(), Fault> {
 }
 
 /// Whether there is this function. Its parameters and its result must have their types.
-fn check_signature(module: &Module, source: &Source, wanted: &OwnFunction) -> Result<bool, Fault> {
+fn check_signature(module: &Module, source: &Source, wanted: &UserFunction) -> Result<bool, Fault> {
     let found = module.functions.iter().find(|(_, function)| function.name.as_deref() == Some(wanted.name));
     let Some((_, function)) = found else { return Ok(false) };
     let takes = function.arguments.len() == wanted.parameters.len()

@@ -9,7 +9,7 @@ use geometry::mesh::weld::weld_alike;
 use geometry::tessellate::{FIXED_ONE, PatchFactors, Tessellated, Vertex, point_count, triangle_count, unpack_normal};
 
 /// Our tessellation, patch by patch.
-pub(super) struct OwnMesh<'a> {
+pub(super) struct OurMesh<'a> {
     tessellated: &'a Tessellated,
     /// For each vertex the number of its point. Vertices that can't be told apart have the same.
     points: Vec<u32>,
@@ -18,7 +18,7 @@ pub(super) struct OwnMesh<'a> {
 }
 
 /// What we emit for one patch.
-pub(super) struct OwnPatch {
+pub(super) struct OurPatch {
     pub positions: Vec<DVec3>,
     pub normals: Vec<DVec3>,
     /// The weights of the patch's corners 0 and 1.
@@ -29,7 +29,7 @@ pub(super) struct OwnPatch {
     pub firsts: Vec<u32>,
 }
 
-impl OwnPatch {
+impl OurPatch {
     /// How far positions move at most for a change of a weight, in object units: over the longest way along a triangle's side.
     pub(super) fn stretch(&self) -> f64 {
         let of_side = |[a, b]: [u32; 2]| {
@@ -47,7 +47,7 @@ pub(super) fn is_thin([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-impl<'a> OwnMesh<'a> {
+impl<'a> OurMesh<'a> {
     /// Positions within `tolerance` object units can't be told apart.
     pub(super) fn new(tessellated: &'a Tessellated, tolerance: f64) -> Self {
         let vertices = &tessellated.vertices;
@@ -84,7 +84,7 @@ impl<'a> OwnMesh<'a> {
         self.starts[patch as usize][of]..self.starts[patch as usize + 1][of]
     }
 
-    pub(super) fn patch(&self, patch: u32) -> OwnPatch {
+    pub(super) fn patch(&self, patch: u32) -> OurPatch {
         let vertices = &self.tessellated.vertices[self.range(patch, 0)];
         let base = self.range(patch, 0).start as u32;
         let positions: Vec<DVec3> = vertices.iter().map(|vertex| Vec3::from(vertex.position).as_dvec3()).collect();
@@ -93,7 +93,7 @@ impl<'a> OwnMesh<'a> {
         let firsts: Vec<u32> = (0..).zip(&self.points[self.range(patch, 0)]).map(first).collect();
         let own = self.tessellated.triangles[self.range(patch, 1)].iter();
         let triangles = own.map(|triangle| triangle.map(|vertex| firsts[(vertex - base) as usize]));
-        OwnPatch {
+        OurPatch {
             normals: vertices.iter().map(|vertex| unpack_normal(vertex.normal).as_dvec3()).collect(),
             weights: vertices
                 .iter()

@@ -7,25 +7,25 @@ use std::sync::mpsc::{Sender, TryRecvError, channel};
 use std::time::{Duration, SystemTime};
 
 use super::background_job::{caught, spawn};
-use super::beside::{absolute_path, file_name, new_generation};
+use super::companion_files::{absolute_path, file_name, new_generation};
 use super::job_list::Work;
 use crate::app::App;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use geometry::tessellate::{Lod, Surface, Tessellation};
-use gpu::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader, Tessellator};
+use gpu::{GpuError, LodShader, SurfaceShader, Tessellator, UserReport, UserShader};
 use inspect::engine::Engine;
-use inspect::own_shader::read_own_shader;
 use inspect::settings::Settings;
+use inspect::user_shader::read_user_shader;
 
 /// A file whose functions take the place of a setting.
-pub(crate) trait Replacing: OwnShader {
+pub(crate) trait UserShaderSlot: UserShader {
     type Setting: Copy;
 
     const WORK: Work;
 
     /// The setting while functions take its place. Nothing depends on it then.
-    const MEANWHILE: Self::Setting;
+    const PLACEHOLDER: Self::Setting;
 
     fn setting(tessellation: &mut Tessellation) -> &mut Self::Setting;
 
@@ -40,18 +40,18 @@ pub(crate) trait Replacing: OwnShader {
     fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError>;
 
     /// What it reported of the picture that was counted.
-    fn report(tessellator: &Tessellator) -> Option<OwnReport>;
+    fn report(tessellator: &Tessellator) -> Option<UserReport>;
 
     /// The number of the version that the document's scene has; 0 for none.
     fn shown(app: &App) -> u64;
 }
 
-impl Replacing for LodShader {
+impl UserShaderSlot for LodShader {
     type Setting = Lod;
 
     const WORK: Work = Work::LodShader;
 
-    const MEANWHILE: Lod = Lod::Uniform;
+    const PLACEHOLDER: Lod = Lod::Uniform;
 
     fn setting(tessellation: &mut Tessellation) -> &mut Lod {
         &mut tessellation.lod
@@ -66,11 +66,11 @@ impl Replacing for LodShader {
     }
 
     fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
-        engine.pipelines.own_lod(shader).prepare(&engine.gpu)
+        engine.pipelines.user_lod(shader).prepare(&engine.gpu)
     }
 
-    fn report(tessellator: &Tessellator) -> Option<OwnReport> {
-        tessellator.own_lod_report()
+    fn report(tessellator: &Tessellator) -> Option<UserReport> {
+        tessellator.user_lod_report()
     }
 
     fn shown(app: &App) -> u64 {
@@ -78,12 +78,12 @@ impl Replacing for LodShader {
     }
 }
 
-impl Replacing for SurfaceShader {
+impl UserShaderSlot for SurfaceShader {
     type Setting = Surface;
 
     const WORK: Work = Work::SurfaceShader;
 
-    const MEANWHILE: Surface = Surface::OF_USER_SHADER;
+    const PLACEHOLDER: Surface = Surface::OF_USER_SHADER;
 
     fn setting(tessellation: &mut Tessellation) -> &mut Surface {
         &mut tessellation.surface
@@ -98,11 +98,11 @@ impl Replacing for SurfaceShader {
     }
 
     fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
-        engine.pipelines.own_surface(shader).prepare(&engine.gpu)
+        engine.pipelines.user_surface(shader).prepare(&engine.gpu)
     }
 
-    fn report(tessellator: &Tessellator) -> Option<OwnReport> {
-        tessellator.own_surface_report()
+    fn report(tessellator: &Tessellator) -> Option<UserReport> {
+        tessellator.user_surface_report()
     }
 
     fn shown(app: &App) -> u64 {
@@ -114,7 +114,7 @@ impl Replacing for SurfaceShader {
 type Version<S> = (Arc<S>, u64);
 
 /// The file that is open, and what was made of it.
-pub(crate) struct OpenShader<S: Replacing> {
+pub(crate) struct OpenShader<S: UserShaderSlot> {
     pub path: PathBuf,
     /// The last version that can be used; none if none could.
     shader: Option<Version<S>>,
@@ -126,7 +126,7 @@ pub(crate) struct OpenShader<S: Replacing> {
     replaced: S::Setting,
 }
 
-impl<S: Replacing> OpenShader<S> {
+impl<S: UserShaderSlot> OpenShader<S> {
     pub(crate) fn name(&self) -> String {
         file_name(&self.path)
     }
@@ -159,7 +159,7 @@ fn stamp(path: &Path) -> Option<(Option<SystemTime>, u64)> {
 }
 
 /// Reads and compiles the file, and again after every change, until nobody wants it any more.
-fn watch<S: Replacing>(
+fn watch<S: UserShaderSlot>(
     engine: &Engine,
     context: &egui::Context,
     path: &Path,
@@ -184,8 +184,8 @@ fn watch<S: Replacing>(
 }
 
 /// Reads the file, and lets the driver compile it.
-fn read<S: Replacing>(engine: &Engine, path: &Path) -> Read<S> {
-    let shader = read_own_shader(path).map_err(|error| error.to_string())?;
+fn read<S: UserShaderSlot>(engine: &Engine, path: &Path) -> Read<S> {
+    let shader = read_user_shader(path).map_err(|error| error.to_string())?;
     S::prepare(engine, &shader).map_err(|error| error.to_string())?;
     Ok(shader)
 }
@@ -202,7 +202,7 @@ impl App {
         self.open_shader::<SurfaceShader>(context, path);
     }
 
-    fn open_shader<S: Replacing>(&mut self, context: &egui::Context, path: PathBuf) {
+    fn open_shader<S: UserShaderSlot>(&mut self, context: &egui::Context, path: PathBuf) {
         self.forget_shader::<S>();
         let replaced = *S::setting(&mut self.settings.tessellation);
         *S::slot(self) =
@@ -211,7 +211,7 @@ impl App {
     }
 
     /// Reads the file, even if it hasn't changed, and watches it for this window.
-    pub(in crate::app) fn watch_shader<S: Replacing>(&mut self, context: &egui::Context) {
+    pub(in crate::app) fn watch_shader<S: UserShaderSlot>(&mut self, context: &egui::Context) {
         let Some(path) = S::open_in(self).map(|open| open.path.clone()) else { return };
         let (sender, versions) = channel();
         let progress = Progress::default();
@@ -235,7 +235,7 @@ impl App {
     }
 
     /// The file that is open, also if none of its versions can be used.
-    pub(in crate::app) fn open_shader_file<S: Replacing>(&self) -> Option<&Path> {
+    pub(in crate::app) fn open_shader_file<S: UserShaderSlot>(&self) -> Option<&Path> {
         S::open_in(self).map(|open| &*open.path)
     }
 
@@ -248,7 +248,7 @@ impl App {
         self.settings.with(own)
     }
 
-    fn put_back<S: Replacing>(&self, tessellation: &mut Tessellation) {
+    fn put_back<S: UserShaderSlot>(&self, tessellation: &mut Tessellation) {
         if let Some(open) = S::open_in(self).filter(|open| open.is_used()) {
             *S::setting(tessellation) = open.replaced;
         }
@@ -265,7 +265,7 @@ impl App {
     }
 
     /// Closes the file, so that the setting holds again.
-    pub(in crate::app) fn forget_shader<S: Replacing>(&mut self) {
+    pub(in crate::app) fn forget_shader<S: UserShaderSlot>(&mut self) {
         let mut own = self.settings.tessellation;
         self.put_back::<S>(&mut own);
         self.settings.tessellation = own;
@@ -274,15 +274,15 @@ impl App {
     }
 
     /// Puts functions in the place of a setting that was set while they are used.
-    pub(in crate::app) fn replace_again<S: Replacing>(&mut self) {
+    pub(in crate::app) fn replace_again<S: UserShaderSlot>(&mut self) {
         let own = *S::setting(&mut self.settings.tessellation);
         let Some(open) = S::slot(self).as_mut().filter(|open| open.is_used()) else { return };
         open.replaced = own;
-        *S::setting(&mut self.settings.tessellation) = S::MEANWHILE;
+        *S::setting(&mut self.settings.tessellation) = S::PLACEHOLDER;
     }
 
     /// Takes a new version of the file; none if its watch has ended.
-    fn take_version<S: Replacing>(&mut self, version: Option<Read<S>>) {
+    fn take_version<S: UserShaderSlot>(&mut self, version: Option<Read<S>>) {
         let own = *S::setting(&mut self.settings.tessellation);
         let Some(open) = S::slot(self) else { return };
         let was_used = open.is_used();
@@ -304,7 +304,7 @@ impl App {
         if open.is_used() && !was_used {
             // It may have been set while the file was read.
             open.replaced = own;
-            *S::setting(&mut self.settings.tessellation) = S::MEANWHILE;
+            *S::setting(&mut self.settings.tessellation) = S::PLACEHOLDER;
         }
     }
 
@@ -320,13 +320,13 @@ impl App {
     }
 
     /// Goes back to the version before, if loops of the present one took too long for the picture that was counted.
-    pub(in crate::app) fn stop_slow_shader<S: Replacing>(&mut self) {
+    pub(in crate::app) fn stop_slow_shader<S: UserShaderSlot>(&mut self) {
         let Some(document) = &self.document else { return };
         let (report, shown) = (S::report(&document.scene.tessellator), S::shown(self));
         let Some(open) = S::slot(self) else { return };
         let is_shown = open.shader.as_ref().is_some_and(|(_, generation)| *generation == shown);
         if is_shown && report.is_some_and(|report| report.stopped > 0) {
-            open.error = Some(GpuError::OwnStopped(S::purpose().name).to_string());
+            open.error = Some(GpuError::UserShaderTimedOut(S::purpose().name).to_string());
             open.shader = open.before.take();
             if open.shader.is_none() {
                 let replaced = open.replaced;
@@ -337,13 +337,13 @@ impl App {
 
     /// What is said about factors of the functions that aren't numbers, if there are any in the picture.
     pub(in crate::app) fn not_numbers_said(&self) -> Option<String> {
-        let report = self.document.as_ref()?.scene.tessellator.own_lod_report()?;
+        let report = self.document.as_ref()?.scene.tessellator.user_lod_report()?;
         inspect::shot::not_numbers_said(report.not_numbers)
     }
 
     /// What is said about sides whose control points aren't numbers, if there are any in the picture.
     pub(in crate::app) fn straight_sides_said(&self) -> Option<String> {
-        let report = self.document.as_ref()?.scene.tessellator.own_surface_report()?;
+        let report = self.document.as_ref()?.scene.tessellator.user_surface_report()?;
         inspect::shot::straight_sides_said(report.not_numbers)
     }
 }

@@ -1,5 +1,5 @@
 // Factors that functions of the user's own compute in place of LOD. They are written where those of a file would be. In the
-// module that runs, the names of all files but lod_contract.wgsl begin with pnaen_ (src/gpu/own_functions.rs), so that they are none
+// module that runs, the names of all files but lod_contract.wgsl begin with pnaen_ (src/gpu/user_functions.rs), so that they are none
 // of the user's.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
@@ -9,8 +9,8 @@
 @group(0) @binding(4) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(5) var<storage, read> corner_attributes: array<Corner>;
 // For every patch the bits of the factors of its edges, in the order of the convention, and of the one inside.
-@group(0) @binding(8) var<storage, read_write> own_factors: array<u32>;
-@group(0) @binding(9) var<storage, read_write> report: OwnReport;
+@group(0) @binding(8) var<storage, read_write> user_factors: array<u32>;
+@group(0) @binding(9) var<storage, read_write> report: UserReport;
 
 fn own_triangle(patch_index: u32) -> Triangle {
     let net = load_net(patch_index);
@@ -40,14 +40,14 @@ fn factor_of_side(side: u32) -> u32 {
 }
 
 @compute @workgroup_size(1)
-fn own_start_main() {
+fn user_start_main() {
     clear_report();
 }
 
 // The factor of every side. One invocation for each, so that all sides run the same code: compilers may round differently in
 // copies of it.
 @compute @workgroup_size(256)
-fn own_edges_main(invocation: Invocation) {
+fn user_edges_main(invocation: Invocation) {
     let index = grid_index(invocation);
     if index >= 3u * params.patch_count || has_stopped() {
         return;
@@ -65,27 +65,27 @@ fn own_edges_main(invocation: Invocation) {
         triangle.normals[next],
         side,
     );
-    own_factors[4u * patch_index + factor_of_side(side)] = bitcast<u32>(edge_factor(edge, triangle, own_view()));
+    user_factors[4u * patch_index + factor_of_side(side)] = bitcast<u32>(edge_factor(edge, triangle, own_view()));
 }
 
 // The inside factor of every patch.
 @compute @workgroup_size(256)
-fn own_insides_main(invocation: Invocation) {
+fn user_insides_main(invocation: Invocation) {
     let index = grid_index(invocation);
     if index >= params.patch_count || has_stopped() {
         return;
     }
     let of_sides = vec3<f32>(
-        bitcast<f32>(own_factors[4u * index + factor_of_side(0u)]),
-        bitcast<f32>(own_factors[4u * index + factor_of_side(1u)]),
-        bitcast<f32>(own_factors[4u * index + factor_of_side(2u)]),
+        bitcast<f32>(user_factors[4u * index + factor_of_side(0u)]),
+        bitcast<f32>(user_factors[4u * index + factor_of_side(1u)]),
+        bitcast<f32>(user_factors[4u * index + factor_of_side(2u)]),
     );
-    own_factors[4u * index + 3u] = bitcast<u32>(inside_factor(own_triangle(index), of_sides, own_view()));
+    user_factors[4u * index + 3u] = bitcast<u32>(inside_factor(own_triangle(index), of_sides, own_view()));
 }
 
 // Counts factors that are NaN. If there was too much work, makes every factor 1.
 @compute @workgroup_size(256)
-fn own_finish_main(invocation: Invocation) {
+fn user_finish_main(invocation: Invocation) {
     let index = grid_index(invocation);
     if index >= params.patch_count {
         return;
@@ -94,9 +94,9 @@ fn own_finish_main(invocation: Invocation) {
     var not_numbers = 0u;
     for (var i = 4u * index; i < 4u * index + 4u; i++) {
         if is_void {
-            own_factors[i] = bitcast<u32>(1.0);
+            user_factors[i] = bitcast<u32>(1.0);
         }
-        not_numbers += u32((own_factors[i] & 0x7fffffffu) > 0x7f800000u);
+        not_numbers += u32((user_factors[i] & 0x7fffffffu) > 0x7f800000u);
     }
     if not_numbers > 0u {
         atomicAdd(&report.not_numbers, not_numbers);

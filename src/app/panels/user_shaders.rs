@@ -3,7 +3,7 @@
 use egui::RichText;
 
 use crate::app::App;
-use crate::app::jobs::own_shader_job::Replacing;
+use crate::app::jobs::user_shader_job::UserShaderSlot;
 use gpu::{LodShader, SurfaceShader};
 
 /// What the rows of a file say.
@@ -19,7 +19,7 @@ struct Texts {
 const OF_LOD: Texts = Texts {
     label: "LOD shader",
     hover: "Functions of this file compute factors in place of LOD.",
-    stays: "LOD stays.",
+    stays: "The LOD is still used.",
     close: "Close the shader",
     close_hover: "Closes the LOD shader. LOD computes factors again.",
 };
@@ -50,7 +50,7 @@ impl App {
         self.uses_surface_shader()
     }
 
-    fn shader_rows<S: Replacing>(&mut self, ui: &mut egui::Ui, texts: &Texts) {
+    fn shader_rows<S: UserShaderSlot>(&mut self, ui: &mut egui::Ui, texts: &Texts) {
         let Some(open) = S::open_in(self) else { return };
         ui.label(texts.label).on_hover_text(texts.hover);
         ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());

@@ -1,6 +1,6 @@
 // Control points that a function of the user's own computes for every side, in place of those of a surface. Every side has a curve
 // of its own, so that nothing hides where two sides disagree. In the module that runs, the names of all files but
-// surface_contract.wgsl begin with pnaen_ (src/gpu/own_functions.rs), so that they are none of the user's.
+// surface_contract.wgsl begin with pnaen_ (src/gpu/user_functions.rs), so that they are none of the user's.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -11,9 +11,9 @@
 @group(0) @binding(4) var<storage, read> curve_sides: array<vec2<u32>>;
 @group(0) @binding(5) var<storage, read> patches: array<Patch>;
 @group(0) @binding(6) var<storage, read_write> curve_nets: array<CurveNet>;
-@group(0) @binding(9) var<storage, read_write> report: OwnReport;
+@group(0) @binding(9) var<storage, read_write> report: UserReport;
 
-fn own_surface_triangle(patch_index: u32) -> SurfaceTriangle {
+fn user_surface_triangle(patch_index: u32) -> SurfaceTriangle {
     let own = patches[patch_index];
     let positions = array<vec3<f32>, 3>(
         points[own.points[0]].xyz,
@@ -29,14 +29,14 @@ fn own_surface_triangle(patch_index: u32) -> SurfaceTriangle {
 }
 
 @compute @workgroup_size(1)
-fn own_surface_start_main() {
+fn user_surface_start_main() {
     clear_report();
 }
 
 // The control points of every side. One invocation for each, so that all sides run the same code: compilers may round differently in
 // copies of it.
 @compute @workgroup_size(256)
-fn own_surface_points_main(invocation: Invocation) {
+fn user_surface_points_main(invocation: Invocation) {
     let index = grid_index(invocation);
     if index >= 3u * params.patch_count || has_stopped() {
         return;
@@ -51,7 +51,7 @@ fn own_surface_points_main(invocation: Invocation) {
     if runs_against {
         across = across.yx;
     }
-    var triangle = own_surface_triangle(patch_index);
+    var triangle = user_surface_triangle(patch_index);
     let edge = SurfaceEdge(
         triangle.corners[side],
         triangle.corners[next],
@@ -78,7 +78,7 @@ fn has_numbers(point: vec3<f32>) -> bool {
 
 // Makes a side straight if its control points aren't numbers, and counts it. If there was too much work, makes all sides straight.
 @compute @workgroup_size(256)
-fn own_surface_finish_main(invocation: Invocation) {
+fn user_surface_finish_main(invocation: Invocation) {
     let index = grid_index(invocation);
     if index >= params.curve_count {
         return;

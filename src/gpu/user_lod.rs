@@ -2,47 +2,52 @@
 
 use std::sync::Arc;
 
-use super::own_functions::{OwnFunction, OwnPurpose, OwnShader, OwnText};
+use super::user_functions::{UserFunction, UserPurpose, UserShader, UserText};
 use super::wgsl::WgslModule;
 use geometry::tessellate::HullFactors;
 
-pub static LOD_PURPOSE: OwnPurpose = OwnPurpose {
+pub static LOD_PURPOSE: UserPurpose = UserPurpose {
     name: "LOD shader",
     contract: "lod_contract",
     functions: &[
-        OwnFunction {
+        UserFunction {
             name: "edge_factor",
             parameters: &["Edge", "Triangle", "View"],
             result: "f32",
             signature: "fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32",
-            stand_in: "own_edge_factor",
+            stand_in: "user_edge_factor",
         },
-        OwnFunction {
+        UserFunction {
             name: "inside_factor",
             parameters: &["Triangle", "vec3", "View"],
             result: "f32",
             signature: "fn inside_factor(triangle: Triangle, factors: vec3<f32>, view: View) -> f32",
-            stand_in: "own_inside_factor",
+            stand_in: "user_inside_factor",
         },
     ],
-    module: WgslModule("pass_own_lod"),
-    entry_points: &["pnaen_own_start_main", "pnaen_own_edges_main", "pnaen_own_insides_main", "pnaen_own_finish_main"],
+    module: WgslModule("pass_user_lod"),
+    entry_points: &[
+        "pnaen_user_start_main",
+        "pnaen_user_edges_main",
+        "pnaen_user_insides_main",
+        "pnaen_user_finish_main",
+    ],
 };
 
 /// Functions of the user's own for factors.
 #[derive(Debug, PartialEq, Eq)]
-pub struct LodShader(OwnText);
+pub struct LodShader(UserText);
 
-impl OwnShader for LodShader {
-    fn purpose() -> &'static OwnPurpose {
+impl UserShader for LodShader {
+    fn purpose() -> &'static UserPurpose {
         &LOD_PURPOSE
     }
 
-    fn new(own: OwnText) -> Self {
+    fn new(own: UserText) -> Self {
         Self(own)
     }
 
-    fn own(&self) -> &OwnText {
+    fn own(&self) -> &UserText {
         &self.0
     }
 }

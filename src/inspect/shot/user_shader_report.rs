@@ -17,7 +17,7 @@ use gpu::GpuError;
 ///
 /// # Errors
 /// The device was lost.
-pub fn report_own_lod(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
+pub fn report_user_lod(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
     if let Some(agreement) = agreement(engine, scene)? {
         let lines = agreement_lines(scene.tessellator.topology(), &agreement);
         report(&lines, not_numbers_said(lod_not_numbers(scene)));
@@ -30,8 +30,8 @@ pub fn report_own_lod(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
 ///
 /// # Errors
 /// The device was lost.
-pub fn report_own_surface(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
-    if let Some(agreement) = engine.own_points_agreement(scene)? {
+pub fn report_user_surface(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
+    if let Some(agreement) = engine.user_points_agreement(scene)? {
         let topology = scene.tessellator.topology();
         let counts = [agreement.edges.len() as u64, agreement.edges_compared];
         let texts = agreement.edges.iter().map(|edge| edge_text(topology, edge));
@@ -74,20 +74,20 @@ pub fn straight_sides_said(count: u32) -> Option<String> {
 }
 
 fn lod_not_numbers(scene: &Scene) -> u32 {
-    scene.tessellator.own_lod_report().map_or(0, |report| report.not_numbers)
+    scene.tessellator.user_lod_report().map_or(0, |report| report.not_numbers)
 }
 
 fn surface_not_numbers(scene: &Scene) -> u32 {
-    scene.tessellator.own_surface_report().map_or(0, |report| report.not_numbers)
+    scene.tessellator.user_surface_report().map_or(0, |report| report.not_numbers)
 }
 
 /// How the factors of an LOD shader agree; none without one.
 fn agreement(engine: &Engine, scene: &Scene) -> Result<Option<Agreement>, GpuError> {
-    if scene.tessellator.own_factors().is_none() {
+    if scene.tessellator.user_factors().is_none() {
         return Ok(None);
     }
-    let factors = engine.own_factors(scene)?;
-    Ok(Some(Agreement::of(scene.tessellator.topology(), &factors, scene.tessellator.convention())))
+    let factors = engine.user_factors(scene)?;
+    Ok(Some(Agreement::new(scene.tessellator.topology(), &factors, scene.tessellator.convention())))
 }
 
 fn edge_text(topology: &Topology, edge: &PointsDisagreement) -> String {
@@ -115,7 +115,7 @@ impl LodShaderStats {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn of(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
+    pub fn new(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
         let topology = scene.tessellator.topology();
         Ok(agreement(engine, scene)?.map(|Agreement { edges_compared, patches_culled, edges, .. }| Self {
             edges_compared,
@@ -154,14 +154,14 @@ impl SurfaceShaderStats {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn of(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
+    pub fn new(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
         let topology = scene.tessellator.topology();
         let edge = |&PointsDisagreement { edge, distance, triangles }: &PointsDisagreement| EdgePointsStats {
             points: end_points(topology, edge),
             triangles,
             distance,
         };
-        Ok(engine.own_points_agreement(scene)?.map(|agreement: PointsAgreement| Self {
+        Ok(engine.user_points_agreement(scene)?.map(|agreement: PointsAgreement| Self {
             edges_compared: agreement.edges_compared,
             edges_different: agreement.edges.len() as u64,
             max_distance: agreement.max_distance(),

@@ -4,17 +4,17 @@ use std::sync::Arc;
 
 use super::Tessellator;
 use crate::buffer::empty;
-use crate::{GpuError, LodShader, OwnReport, OwnShader, SurfaceShader};
+use crate::{GpuError, LodShader, SurfaceShader, UserReport, UserShader};
 use geometry::mesh::Sharing;
-use geometry::tessellate::{Inputs, Surface, Tessellation, own_sharing, sharing};
+use geometry::tessellate::{Inputs, Surface, Tessellation, sharing, user_sharing};
 
 /// A function that gives control points.
-pub(super) struct OwnSurface {
+pub(super) struct UserSurface {
     pub(super) shader: Arc<SurfaceShader>,
-    /// Where it reports, an [`OwnReport`].
+    /// Where it reports, an [`UserReport`].
     pub(super) report: wgpu::Buffer,
     /// What it reported last.
-    pub(super) last: Option<OwnReport>,
+    pub(super) last: Option<UserReport>,
 }
 
 impl Tessellator {
@@ -27,11 +27,11 @@ impl Tessellator {
         if self.surface_shader() == shader.as_ref() {
             return Ok(());
         }
-        let own = |shader| -> Result<OwnSurface, GpuError> {
-            let report = empty::<OwnReport>(&self.gpu, "surface report", 1)?;
-            Ok(OwnSurface { shader, report, last: None })
+        let own = |shader| -> Result<UserSurface, GpuError> {
+            let report = empty::<UserReport>(&self.gpu, "surface report", 1)?;
+            Ok(UserSurface { shader, report, last: None })
         };
-        self.own_surface = shader.map(own).transpose()?;
+        self.user_surface = shader.map(own).transpose()?;
         // Counts that are on their way belong to the surface before.
         self.pending = None;
         self.unbind();
@@ -41,33 +41,33 @@ impl Tessellator {
 
     /// The function that gives control points in place of the surface, if one does.
     pub fn surface_shader(&self) -> Option<&Arc<SurfaceShader>> {
-        self.own_surface.as_ref().map(|own| &own.shader)
+        self.user_surface.as_ref().map(|own| &own.shader)
     }
 
     /// What that function reported when the counts were last known.
-    pub fn own_surface_report(&self) -> Option<OwnReport> {
-        self.own_surface.as_ref()?.last.filter(|_| self.counts_done)
+    pub fn user_surface_report(&self) -> Option<UserReport> {
+        self.user_surface.as_ref()?.last.filter(|_| self.counts_done)
     }
 
     /// What a shader of the user's own is called whose loops took too long, if one's did when the counts were last known.
     pub fn stopped_shader(&self) -> Option<&'static str> {
         let reports = [
-            (SurfaceShader::purpose().name, self.own_surface_report()),
-            (LodShader::purpose().name, self.own_lod_report()),
+            (SurfaceShader::purpose().name, self.user_surface_report()),
+            (LodShader::purpose().name, self.user_lod_report()),
         ];
-        let is_stopped = |report: &Option<OwnReport>| report.is_some_and(|report| report.stopped > 0);
+        let is_stopped = |report: &Option<UserReport>| report.is_some_and(|report| report.stopped > 0);
         reports.iter().find(|(_, report)| is_stopped(report)).map(|(name, _)| *name)
     }
 
     /// These inputs with a surface that does what control points of the user's own ask for: a cubic one, which they may tear.
-    pub(super) fn with_own_surface(&self, inputs: &Inputs) -> Inputs {
-        let surface = if self.own_surface.is_some() { Surface::OF_USER_SHADER } else { inputs.tessellation.surface };
+    pub(super) fn with_user_surface(&self, inputs: &Inputs) -> Inputs {
+        let surface = if self.user_surface.is_some() { Surface::OF_USER_SHADER } else { inputs.tessellation.surface };
         Inputs { tessellation: Tessellation { surface, ..inputs.tessellation }, ..*inputs }
     }
 
     /// Which sides of an edge share its curve.
     pub(super) fn sharing(&self, inputs: &Inputs) -> Sharing {
         let own = inputs.tessellation;
-        if self.own_surface.is_some() { own_sharing(own.edges) } else { sharing(own.surface, own.edges) }
+        if self.user_surface.is_some() { user_sharing(own.edges) } else { sharing(own.surface, own.edges) }
     }
 }

@@ -1,4 +1,4 @@
-//! The own least of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error. Its passes
+//! The minimum triangle count of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error. Its passes
 //! run only if someone wants to see that.
 
 use super::bound_pass::{Step, Workgroups};
@@ -15,7 +15,7 @@ use super::{Gpu, GpuError};
 use geometry::tessellate::Partitioning;
 
 /// What the passes have of their own, beside one set of mesh buffers: when those are replaced, so must this be.
-pub(super) struct OwnLeast {
+pub(super) struct Minimum {
     /// Those of LOD by error, whichever LOD is used.
     params: wgpu::Buffer,
     /// What LOD by error needs, beside the factors that are in use: see [`super::MeshBuffers::edge_factors`].
@@ -27,7 +27,7 @@ pub(super) struct OwnLeast {
     done: Option<Params>,
 }
 
-impl OwnLeast {
+impl Minimum {
     /// Computes nothing yet.
     ///
     /// # Errors

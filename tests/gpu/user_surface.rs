@@ -9,9 +9,9 @@ use gpu::layout::CurveNet;
 use gpu::{Given, GpuError, LodShader, SurfaceShader, Timing, read_buffer};
 use inspect::engine::Loaded;
 use inspect::measure::Measured;
-use inspect::own_shader::compile;
 use inspect::render::{Camera, Scene};
 use inspect::settings::Settings;
+use inspect::user_shader::compile;
 
 use super::{engine, scene};
 
@@ -103,7 +103,7 @@ fn examples_crack_exactly_where_their_surfaces_do() {
         for (example, text) in EXAMPLES.iter().enumerate() {
             emitted(&mut scene, Some(text), &inputs);
             let own = measured(&mut scene).cracks;
-            let agreement = engine().own_points_agreement(&scene).expect("a readback").expect("a shader");
+            let agreement = engine().user_points_agreement(&scene).expect("a readback").expect("a shader");
             assert_eq!(agreement.edges_compared, own.edges_compared);
             if example != PN {
                 assert_eq!((own.edges.len(), agreement.edges.len()), (0, 0), "{shape:?} {example}");
@@ -205,7 +205,7 @@ fn what_is_not_symmetric_tears_where_it_says() {
     emitted(&mut scene, Some(&text), &inputs);
     let cracks = measured(&mut scene).cracks;
     assert_eq!(cracks.cracked().len() as u64, cracks.edges_compared, "every edge");
-    assert_eq!(engine().own_points_agreement(&scene).expect("a readback").expect("a shader").edges.len(), 384);
+    assert_eq!(engine().user_points_agreement(&scene).expect("a readback").expect("a shader").edges.len(), 384);
     assert!(cracks.different_factors == 0 && cracks.max_gap() > 1e-3, "{}", cracks.max_gap());
     // One side of one triangle alone, by a known distance.
     let text = straight_and(
@@ -219,7 +219,7 @@ fn what_is_not_symmetric_tears_where_it_says() {
     assert_eq!(widest.edge, loaded.topology.sides[side as usize].edge);
     // The Bernstein polynomial of that control point is 4/9 at most, at a third of the edge.
     assert!((0.09..=0.25 * 4.0 / 9.0 + 1e-6).contains(&widest.gap), "{}", widest.gap);
-    let agreement = engine().own_points_agreement(&scene).expect("a readback").expect("a shader");
+    let agreement = engine().user_points_agreement(&scene).expect("a readback").expect("a shader");
     assert!(agreement.edges[0].edge == widest.edge && (agreement.max_distance() - 0.25).abs() < 1e-6);
     assert!(agreement.edges[0].triangles.contains(&loaded.topology.patches[7].triangle));
 }
@@ -234,7 +234,7 @@ fn points_that_are_no_numbers_are_counted_and_their_sides_are_straight() {
     let infinite = "vec3<f32>(0.0, select(0.0, 3e38 * dot(triangle.normals[0], triangle.normals[0]) * 9.0, triangle.index == 9u), 0.0)";
     let text = straight_and(nan, infinite);
     let own = emitted(&mut scene, Some(&text), &inputs);
-    let report = scene.tessellator.own_surface_report().expect("it ran");
+    let report = scene.tessellator.user_surface_report().expect("it ran");
     assert_eq!((report.stopped, report.not_numbers), (0, 6), "three sides, and all of one triangle");
     assert!(own.vertices.iter().all(|vertex| vertex.position.iter().all(|x| x.is_finite())));
     let flat = inputs_with(&inputs, Surface::Flat);
@@ -242,7 +242,7 @@ fn points_that_are_no_numbers_are_counted_and_their_sides_are_straight() {
     assert!(apart(&own, &flat) < 1e-5, "all edges are straight");
     // A version without these counts none.
     emitted(&mut scene, Some(EXAMPLES[PN_AEN]), &inputs);
-    assert_eq!(scene.tessellator.own_surface_report().expect("it ran").not_numbers, 0);
+    assert_eq!(scene.tessellator.user_surface_report().expect("it ran").not_numbers, 0);
     assert_eq!(nets(&loaded, &scene).len(), loaded.topology.sides.len());
 }
 
@@ -262,7 +262,7 @@ fn loops_without_end_are_stopped_and_said() {
     ] {
         scene.tessellator.set_surface_shader(Some(shader(&text))).expect("small");
         let stopped = engine().count(&mut scene, &inputs, &mut Timing::Off);
-        assert!(matches!(stopped, Err(GpuError::OwnStopped("surface shader"))), "{text}: {stopped:?}");
+        assert!(matches!(stopped, Err(GpuError::UserShaderTimedOut("surface shader"))), "{text}: {stopped:?}");
         let own = engine().read_tessellated(&mut scene).expect("a readback");
         scene.tessellator.set_surface_shader(None).expect("small");
         let flat = emitted(&mut scene, None, &inputs_with(&inputs, Surface::Flat));
@@ -282,15 +282,15 @@ fn the_function_is_taken_back_and_shared_like_all_that_is_given() {
     let positions = |made: &Tessellated| made.vertices.iter().map(|vertex| vertex.position).collect::<Vec<_>>();
     let ours = emitted(&mut scene, None, &inputs);
     let own = emitted(&mut scene, Some(EXAMPLES[HARD_CREASES]), &inputs);
-    assert!(scene.tessellator.own_surface_report().is_some());
+    assert!(scene.tessellator.user_surface_report().is_some());
     // A scene beside it has it too, and the same bits.
-    let mut beside = scene.beside(1 << 22)().expect("small");
+    let mut beside = scene.sibling(1 << 22)().expect("small");
     engine().count(&mut beside, &inputs, &mut Timing::Off).expect("counts");
     let beside = engine().read_tessellated(&mut beside).expect("a readback");
     assert_eq!(positions(&beside), positions(&own));
     let again = emitted(&mut scene, None, &inputs);
-    assert!(positions(&again) == positions(&ours) && scene.tessellator.own_surface_report().is_none());
-    assert!(engine().own_points_agreement(&scene).expect("nothing to read").is_none());
+    assert!(positions(&again) == positions(&ours) && scene.tessellator.user_surface_report().is_none());
+    assert!(engine().user_points_agreement(&scene).expect("nothing to read").is_none());
 }
 
 #[test]
@@ -322,8 +322,8 @@ fn lod_and_factors_of_ones_own_follow_the_control_points() {
     let factors = |scene: &mut Scene, text: &str| {
         scene.tessellator.give(Some(Given::Shader(lod.clone()))).expect("small");
         emitted(scene, Some(text), &uniform);
-        assert!(scene.tessellator.own_lod_report().is_some() && scene.tessellator.own_surface_report().is_some());
-        engine().own_factors(scene).expect("a readback")
+        assert!(scene.tessellator.user_lod_report().is_some() && scene.tessellator.user_surface_report().is_some());
+        engine().user_factors(scene).expect("a readback")
     };
     let near = factors(&mut scene, &points("return EdgePoints(edge.a, edge.b);"));
     let far = factors(&mut scene, &points("return EdgePoints(edge.a * 0.5 + edge.b * 0.5, edge.b);"));

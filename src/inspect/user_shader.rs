@@ -12,8 +12,8 @@ use thiserror::Error;
 
 use geometry::names::shown_path;
 use geometry::progress::Progress;
-use gpu::OwnShader;
-use gpu::own_functions::OwnText;
+use gpu::UserShader;
+use gpu::user_functions::UserText;
 use load::files::{FileError, Limits, read_file};
 
 /// The most bytes of a file.
@@ -21,7 +21,7 @@ const MOST_BYTES: u64 = 1 << 16;
 
 /// Why a file can't be used.
 #[derive(Debug, Error)]
-pub enum OwnShaderError {
+pub enum UserShaderError {
     #[error(transparent)]
     File(FileError),
     #[error("{} has more than {MOST_BYTES} bytes, and such a file has a few thousand: leave out what they don't need", shown_path(.0))]
@@ -34,7 +34,7 @@ pub enum OwnShaderError {
     Unchecked { path: PathBuf, reason: String },
 }
 
-impl From<FileError> for OwnShaderError {
+impl From<FileError> for UserShaderError {
     fn from(error: FileError) -> Self {
         match error {
             FileError::TooLarge { path, .. } => Self::TooLarge(path),
@@ -95,19 +95,19 @@ pub enum FaultKind {
 ///
 /// # Errors
 /// It can't be read, or can't be used.
-pub fn read_own_shader<S: OwnShader>(path: &Path) -> Result<Arc<S>, OwnShaderError> {
+pub fn read_user_shader<S: UserShader>(path: &Path) -> Result<Arc<S>, UserShaderError> {
     let limits = Limits { file: MOST_BYTES, ..Limits::default() };
-    let bytes = read_file(path, &limits, |_| Ok::<_, OwnShaderError>(()), &Progress::new())?;
-    let text = String::from_utf8(bytes).map_err(|_| OwnShaderError::NotText(path.to_owned()))?;
+    let bytes = read_file(path, &limits, |_| Ok::<_, UserShaderError>(()), &Progress::new())?;
+    let text = String::from_utf8(bytes).map_err(|_| UserShaderError::NotText(path.to_owned()))?;
     // A byte order mark is no WGSL.
     let text = text.strip_prefix('\u{feff}').map_or(text.clone(), str::to_owned);
     // The parser recurses, as deep as a text of this size asks for.
     let parsing = std::thread::Builder::new().stack_size(STACK).spawn(move || compile::<S>(&text));
-    let unchecked = |reason: &str| OwnShaderError::Unchecked { path: path.to_owned(), reason: reason.to_owned() };
+    let unchecked = |reason: &str| UserShaderError::Unchecked { path: path.to_owned(), reason: reason.to_owned() };
     let parsed = parsing.map_err(|error| unchecked(&error.to_string()))?.join();
     match parsed.map_err(|_| unchecked("the compiler stopped unexpectedly; please report it, with the file"))? {
         Ok(shader) => Ok(Arc::new(shader)),
-        Err(fault) => Err(OwnShaderError::Fault { path: path.to_owned(), fault }),
+        Err(fault) => Err(UserShaderError::Fault { path: path.to_owned(), fault }),
     }
 }
 
@@ -118,13 +118,13 @@ const STACK: usize = 256 << 20;
 ///
 /// # Errors
 /// Where and why it can't be used.
-pub fn compile<S: OwnShader>(text: &str) -> Result<S, Fault> {
+pub fn compile<S: UserShader>(text: &str) -> Result<S, Fault> {
     let purpose = S::purpose();
     let source = bounded::Source::new(text, purpose)?;
     let has = checked::check(text, &source, purpose)?;
     let functions = source.bounded(purpose)?;
     checked::check_loops(&functions, purpose)?;
-    let shader = S::new(OwnText::new(functions, has));
+    let shader = S::new(UserText::new(functions, has));
     checked::check_module(text, &shader.module_text())?;
     Ok(shader)
 }

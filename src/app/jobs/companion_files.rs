@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::job_list::Work;
 use crate::app::App;
-use crate::commands::Beside;
+use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use gpu::{LodShader, SurfaceShader};
@@ -49,7 +49,7 @@ pub(crate) fn new_generation() -> u64 {
 impl App {
     /// Starts to read `what`, a source as messages name it. `take` gets what was read; until then, all stays as it is. `read` fails with
     /// a sentence, or without one if it was cancelled.
-    pub(super) fn read_beside<T: Send + 'static>(
+    pub(super) fn read_companion<T: Send + 'static>(
         &mut self,
         context: &egui::Context,
         work: Work,
@@ -72,38 +72,38 @@ impl App {
     }
 
     /// What is open, or being opened, beside the mesh.
-    pub(in crate::app) fn beside(&self, beside: Beside) -> Option<Source> {
-        let path = match beside {
-            Beside::Truth => return self.truth().cloned(),
-            Beside::Factors => self.factors_file(),
-            Beside::LodShader => self.open_shader_file::<LodShader>(),
-            Beside::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
-            Beside::Matcap => self.matcap_image(),
-            Beside::Environment => self.environment_file(),
+    pub(in crate::app) fn companion(&self, companion: CompanionFile) -> Option<Source> {
+        let path = match companion {
+            CompanionFile::Truth => return self.truth().cloned(),
+            CompanionFile::Factors => self.factors_file(),
+            CompanionFile::LodShader => self.open_shader_file::<LodShader>(),
+            CompanionFile::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
+            CompanionFile::Matcap => self.matcap_image(),
+            CompanionFile::Environment => self.environment_file(),
         };
         path.map(|path| Source::File(path.to_owned()))
     }
 
-    pub(in crate::app) fn close_beside(&mut self, beside: Beside) {
-        match beside {
-            Beside::Truth => self.forget_truth(),
-            Beside::Factors => self.forget_factors(),
-            Beside::LodShader => self.forget_shader::<LodShader>(),
-            Beside::SurfaceShader => self.forget_shader::<SurfaceShader>(),
-            Beside::Matcap => self.forget_matcap(),
-            Beside::Environment => self.close_environment(),
+    pub(in crate::app) fn close_companion(&mut self, companion: CompanionFile) {
+        match companion {
+            CompanionFile::Truth => self.forget_truth(),
+            CompanionFile::Factors => self.forget_factors(),
+            CompanionFile::LodShader => self.forget_shader::<LodShader>(),
+            CompanionFile::SurfaceShader => self.forget_shader::<SurfaceShader>(),
+            CompanionFile::Matcap => self.forget_matcap(),
+            CompanionFile::Environment => self.close_environment(),
         }
     }
 
     /// Starts to open a file beside the mesh, or a shape as the reference surface. Until it is read, what is open stays.
-    pub(in crate::app) fn open_beside(&mut self, context: &egui::Context, beside: Beside, source: Source) {
-        match (beside, source) {
-            (Beside::Truth, source) => self.open_truth(context, source),
-            (Beside::Factors, Source::File(path)) => self.open_factors(context, path),
-            (Beside::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
-            (Beside::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),
-            (Beside::Matcap, Source::File(path)) => self.open_matcap(context, path),
-            (Beside::Environment, Source::File(path)) => self.open_environment(context, path),
+    pub(in crate::app) fn open_companion(&mut self, context: &egui::Context, companion: CompanionFile, source: Source) {
+        match (companion, source) {
+            (CompanionFile::Truth, source) => self.open_truth(context, source),
+            (CompanionFile::Factors, Source::File(path)) => self.open_factors(context, path),
+            (CompanionFile::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
+            (CompanionFile::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),
+            (CompanionFile::Matcap, Source::File(path)) => self.open_matcap(context, path),
+            (CompanionFile::Environment, Source::File(path)) => self.open_environment(context, path),
             // Shapes are surfaces, and nothing else.
             _ => {}
         }

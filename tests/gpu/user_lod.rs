@@ -9,9 +9,9 @@ use geometry::tessellate::{
 use gpu::{Given, GpuError, LodShader, Timing};
 use inspect::engine::Loaded;
 use inspect::measure::{Agreement, Measured};
-use inspect::own_shader::compile;
 use inspect::render::{Camera, Scene};
 use inspect::settings::Settings;
+use inspect::user_shader::compile;
 
 use super::{engine, scene};
 
@@ -35,7 +35,7 @@ fn inputs(scene: &Scene, tessellation: Tessellation) -> Inputs {
 fn given(scene: &mut Scene, text: &str, inputs: &Inputs) -> Vec<HullFactors> {
     scene.tessellator.give(Some(Given::Shader(shader(text)))).expect("a small mesh");
     engine().count(scene, inputs, &mut Timing::Off).expect("counts");
-    engine().own_factors(scene).expect("a readback")
+    engine().user_factors(scene).expect("a readback")
 }
 
 /// What LOD gives on the CPU.
@@ -74,7 +74,7 @@ fn the_examples_give_the_factors_of_the_lods_that_they_are() {
                 let off = difference(&own, &of_lod(&loaded, &inputs, lod));
                 assert!(off < 2e-5, "{shape:?} {convention:?} {lod:?}: {off}");
                 assert!(own.iter().any(|patch| patch.edges[0] > 2.0), "{own:?}");
-                let agreement = Agreement::of(&loaded.topology, &own, convention);
+                let agreement = Agreement::new(&loaded.topology, &own, convention);
                 assert_eq!(agreement.edges.len(), 0, "{shape:?} {convention:?} {lod:?}");
                 assert_eq!(measured(&mut scene).cracks.different_factors, 0);
             }
@@ -95,7 +95,7 @@ fn curvature_gives_flat_edges_one_segment_and_bent_ones_more() {
     assert!(bent.iter().all(|patch| patch.edges.iter().all(|factor| (1.0..=64.0).contains(factor))));
     assert!(bent.iter().filter(|patch| patch.edges.iter().any(|&factor| factor > 3.0)).count() > 100);
     assert!(bent.iter().all(|patch| patch.inside == patch.edges.into_iter().fold(0.0, f32::max) + 1.0));
-    assert_eq!(Agreement::of(&loaded.topology, &bent, Convention::D3d11).edges.len(), 0);
+    assert_eq!(Agreement::new(&loaded.topology, &bent, Convention::D3d11).edges.len(), 0);
 }
 
 #[test]
@@ -104,7 +104,7 @@ fn what_is_not_symmetric_tears_where_it_says() {
     let inputs = inputs(&scene, Tessellation::default());
     let of_start = edge("return 3.0 + 4.0 * distance(edge.a, view.eye) / view.radius - 4.0;");
     let own = given(&mut scene, &of_start, &inputs);
-    let agreement = Agreement::of(&loaded.topology, &own, Convention::D3d11);
+    let agreement = Agreement::new(&loaded.topology, &own, Convention::D3d11);
     assert!(agreement.edges.len() > 300, "{} edges", agreement.edges.len());
     let measured = measured(&mut scene);
     assert_eq!(measured.cracks.different_factors, agreement.edges.len() as u64, "each of them is a crack");
@@ -112,7 +112,7 @@ fn what_is_not_symmetric_tears_where_it_says() {
     // One triangle alone asks for more.
     let odd = edge("return select(4.0, 9.0, triangle.index == 7u && edge.side == 1u);");
     let own = given(&mut scene, &odd, &inputs);
-    let agreement = Agreement::of(&loaded.topology, &own, Convention::D3d11);
+    let agreement = Agreement::new(&loaded.topology, &own, Convention::D3d11);
     let side = loaded.topology.patches[7].sides[1];
     assert_eq!(agreement.edges.len(), 1);
     assert_eq!(agreement.edges[0].edge, loaded.topology.sides[side as usize].edge);
@@ -170,19 +170,18 @@ fn factors_follow_the_view_and_are_the_same_bits_again() {
     let text = include_str!("../../assets/lod/screen-length.wgsl");
     let far = inputs(&scene, Tessellation::default());
     let first = given(&mut scene, text, &far);
-    let near = Inputs {
-        view: geometry::tessellate::LodView { half_viewport: far.view.half_viewport * 2.0, ..far.view },
-        ..far
-    };
+    let near = Inputs { view: far.view.seen_through(far.view.clip_from_object, far.view.half_viewport * 2.0), ..far };
     engine().count(&mut scene, &near, &mut Timing::Off).expect("counts");
-    let second = engine().own_factors(&scene).expect("a readback");
+    let second = engine().user_factors(&scene).expect("a readback");
     assert!(difference(&first, &second) > 0.4, "the picture is twice as large");
     engine().count(&mut scene, &far, &mut Timing::Off).expect("counts");
-    assert_eq!(bits(&engine().own_factors(&scene).expect("a readback")), bits(&first));
+    assert_eq!(bits(&engine().user_factors(&scene).expect("a readback")), bits(&first));
     // Taken away, LOD is as before.
     scene.tessellator.give(None).expect("small");
     engine().count(&mut scene, &far, &mut Timing::Off).expect("counts");
-    assert!(engine().own_factors(&scene).expect("nothing").is_empty() && scene.tessellator.own_lod_report().is_none());
+    assert!(
+        engine().user_factors(&scene).expect("nothing").is_empty() && scene.tessellator.user_lod_report().is_none()
+    );
 }
 
 #[test]
@@ -206,8 +205,8 @@ fn loops_without_end_are_stopped_and_said() {
     ] {
         scene.tessellator.give(Some(Given::Shader(shader(&text)))).expect("small");
         let stopped = engine().count(&mut scene, &inputs, &mut Timing::Off);
-        assert!(matches!(stopped, Err(GpuError::OwnStopped("LOD shader"))), "{text}: {stopped:?}");
-        let own = engine().own_factors(&scene).expect("a readback");
+        assert!(matches!(stopped, Err(GpuError::UserShaderTimedOut("LOD shader"))), "{text}: {stopped:?}");
+        let own = engine().user_factors(&scene).expect("a readback");
         assert!(own.iter().all(|patch| patch.edges == [1.0; 3] && patch.inside == 1.0), "{text}");
     }
     // Loops of a hundred thousand turns are none of these.
@@ -226,12 +225,12 @@ fn factors_that_are_no_numbers_are_counted_and_cull_as_direct3d_says() {
     );
     let own = given(&mut scene, &text, &inputs);
     assert_eq!(own.iter().filter(|patch| patch.edges.iter().any(|factor| factor.is_nan())).count(), 3);
-    let report = scene.tessellator.own_lod_report().expect("it ran");
+    let report = scene.tessellator.user_lod_report().expect("it ran");
     assert!(report.stopped == 0 && (3..=6).contains(&report.not_numbers), "insides may be NaN as well: {report:?}");
     assert_eq!(measured(&mut scene).culled.by_factors, 3);
     let text = edge("return select(4.0, -1.0, triangle.index < 5u);");
     given(&mut scene, &text, &inputs);
-    assert_eq!(scene.tessellator.own_lod_report().expect("it ran").not_numbers, 0);
+    assert_eq!(scene.tessellator.user_lod_report().expect("it ran").not_numbers, 0);
     assert_eq!(measured(&mut scene).culled.by_factors, 5);
 }
 
@@ -267,12 +266,12 @@ fn sides_as_published_have_a_function_each_and_displacement_follows_the_factors(
     let own = given(&mut scene, text, &published);
     assert!(difference(&own, &of_lod(&loaded, &published, Lod::Distance)) < 2e-5);
     // A scene beside it has the same functions.
-    let mut beside = scene.beside(1 << 22)().expect("small");
+    let mut beside = scene.sibling(1 << 22)().expect("small");
     engine().count(&mut beside, &published, &mut Timing::Off).expect("counts");
-    assert_eq!(bits(&engine().own_factors(&beside).expect("a readback")), bits(&own));
+    assert_eq!(bits(&engine().user_factors(&beside).expect("a readback")), bits(&own));
     assert_eq!(beside.tessellator.totals(), scene.tessellator.totals());
     // LOD by error is measured without them, and they are there again.
     let compared = engine().triangles_by_error(&mut scene, &published, 0.5).expect("counts");
     assert!(compared.is_some());
-    assert_eq!(bits(&engine().own_factors(&scene).expect("a readback")), bits(&own));
+    assert_eq!(bits(&engine().user_factors(&scene).expect("a readback")), bits(&own));
 }

@@ -12,10 +12,10 @@ use super::wgsl_tokens::{declared, tokens};
 use super::{Gpu, GpuError};
 
 /// What stands before every name of this program in a module that has functions of the user's own.
-pub const OWN_PREFIX: &str = "pnaen_";
+pub const USER_PREFIX: &str = "pnaen_";
 
 /// A function that a user's file has, or may have.
-pub struct OwnFunction {
+pub struct UserFunction {
     pub name: &'static str,
     /// The names of its parameters' types; `vec3` is one of f32.
     pub parameters: &'static [&'static str],
@@ -28,22 +28,22 @@ pub struct OwnFunction {
 }
 
 /// What a user's file is for.
-pub struct OwnPurpose {
+pub struct UserPurpose {
     /// What such a file is called: "LOD shader".
     pub name: &'static str,
     /// The WGSL file with the structs that its functions get and give.
     pub contract: &'static str,
     /// The first one a file must have.
-    pub functions: &'static [OwnFunction],
+    pub functions: &'static [UserFunction],
     /// The passes that call them.
     pub module: WgslModule,
     /// The entry points of these passes, in the order in which they run.
     pub entry_points: &'static [&'static str],
 }
 
-/// The text of a user's file, checked and bounded, as `inspect::own_shader` makes it.
+/// The text of a user's file, checked and bounded, as `inspect::user_shader` makes it.
 #[derive(Debug, PartialEq, Eq)]
-pub struct OwnText {
+pub struct UserText {
     /// Every loop calls `pnaen_spend`.
     text: String,
     /// Which of the purpose's functions it has.
@@ -51,13 +51,13 @@ pub struct OwnText {
 }
 
 /// A user's file for one purpose.
-pub trait OwnShader: PartialEq + Send + Sync + Sized + 'static {
+pub trait UserShader: PartialEq + Send + Sync + Sized + 'static {
     /// Its purpose, which is always the same.
-    fn purpose() -> &'static OwnPurpose;
+    fn purpose() -> &'static UserPurpose;
 
-    fn new(own: OwnText) -> Self;
+    fn new(own: UserText) -> Self;
 
-    fn own(&self) -> &OwnText;
+    fn own(&self) -> &UserText;
 
     /// The text of the module that runs it. It begins with the user's file, so that lines are those of the file.
     fn module_text(&self) -> String {
@@ -65,14 +65,14 @@ pub trait OwnShader: PartialEq + Send + Sync + Sized + 'static {
     }
 }
 
-impl OwnText {
+impl UserText {
     pub fn new(text: String, has: Vec<bool>) -> Self {
         Self { text, has }
     }
 }
 
-impl OwnPurpose {
-    fn module_text(&self, own: &OwnText) -> String {
+impl UserPurpose {
+    fn module_text(&self, own: &UserText) -> String {
         let is_replaced = |file: &str| {
             let mut functions = self.functions.iter().zip(&own.has);
             functions.any(|(function, &has)| has && function.stand_in == file)
@@ -89,7 +89,7 @@ impl OwnPurpose {
         let (mut out, mut copied) = (String::with_capacity(text.len() * 5 / 4), 0);
         for token in all.iter().filter(|token| names.contains(token.text) && !self.has_function(token.text)) {
             out += &text[copied..token.at];
-            out += OWN_PREFIX;
+            out += USER_PREFIX;
             copied = token.at;
         }
         out + &text[copied..]
@@ -103,7 +103,7 @@ impl OwnPurpose {
     /// of the module needs. WGSL lets a file declare those anew.
     pub fn needed_names(&self) -> HashSet<String> {
         // The function that a file must have is never replaced.
-        let text = self.module_text(&OwnText::new(String::new(), vec![true]));
+        let text = self.module_text(&UserText::new(String::new(), vec![true]));
         let all = tokens(&text);
         let scalars = ["bool", "f32", "i32", "u32"].into_iter().map(str::to_owned);
         let used = all.windows(2).filter(|pair| pair[0].is_word() && ["(", "<"].contains(&pair[1].text));
@@ -116,7 +116,7 @@ impl OwnPurpose {
 /// What is known after functions of the user's own ran for all patches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
 #[repr(C)]
-pub struct OwnReport {
+pub struct UserReport {
     work: u32,
     /// 1 if their loops took too long. None of their results counts then.
     pub stopped: u32,
@@ -125,12 +125,12 @@ pub struct OwnReport {
 }
 
 /// The pipelines of a user's file, one for each of the purpose's entry points.
-pub struct OwnPipelines(pub(super) Vec<ComputePipeline>);
+pub struct UserPipelines(pub(super) Vec<ComputePipeline>);
 
-impl OwnPipelines {
+impl UserPipelines {
     /// Compiles nothing yet.
-    fn new<S: OwnShader>(shader: &S) -> Self {
-        let module = Arc::new(ShaderModule::of_text(S::purpose().module.0, shader.module_text()));
+    fn new<S: UserShader>(shader: &S) -> Self {
+        let module = Arc::new(ShaderModule::from_text(S::purpose().module.0, shader.module_text()));
         Self(S::purpose().entry_points.iter().map(|entry_point| ComputePipeline::new(&module, entry_point)).collect())
     }
 
@@ -144,7 +144,7 @@ impl OwnPipelines {
 }
 
 /// The pipelines of users' files for one purpose that were asked for last.
-pub(super) struct RecentPipelines<S>(Mutex<Vec<(Arc<S>, Arc<OwnPipelines>)>>);
+pub(super) struct RecentPipelines<S>(Mutex<Vec<(Arc<S>, Arc<UserPipelines>)>>);
 
 /// For how many files pipelines are kept: those that are shown, and those that replace them.
 const KEPT: usize = 2;
@@ -155,15 +155,15 @@ impl<S> Default for RecentPipelines<S> {
     }
 }
 
-impl<S: OwnShader> RecentPipelines<S> {
+impl<S: UserShader> RecentPipelines<S> {
     /// The pipelines of a file. Those of the same text are the same.
-    pub(super) fn of(&self, shader: &Arc<S>) -> Arc<OwnPipelines> {
+    pub(super) fn of(&self, shader: &Arc<S>) -> Arc<UserPipelines> {
         // What is behind the lock is whole even if a thread panicked while it held it.
         let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let place = kept.iter().position(|(known, _)| known == shader);
         let found = match place {
             Some(place) => kept.remove(place),
-            None => (shader.clone(), Arc::new(OwnPipelines::new(&**shader))),
+            None => (shader.clone(), Arc::new(UserPipelines::new(&**shader))),
         };
         let pipelines = found.1.clone();
         kept.truncate(KEPT - 1);
@@ -174,7 +174,7 @@ impl<S: OwnShader> RecentPipelines<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::own_lod::LOD_PURPOSE;
+    use super::super::user_lod::LOD_PURPOSE;
 
     #[test]
     fn names_of_ours_get_a_prefix_and_the_rest_stays() {

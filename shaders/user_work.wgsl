@@ -1,7 +1,7 @@
 // Bounds the work of loops in functions of the user's own. The module declares the buffer `report`.
 
 // What is known of a run of all passes that call them.
-struct OwnReport {
+struct UserReport {
     // The work of all loops, in pieces.
     work: atomic<u32>,
     // 1 if there was too much, so that no result counts.

@@ -1,5 +1,5 @@
 use super::*;
-use gpu::own_lod::LOD_PURPOSE;
+use gpu::user_lod::LOD_PURPOSE;
 use gpu::{LodShader, SurfaceShader};
 
 /// What every file must have.
@@ -17,12 +17,12 @@ fn fault(text: &str) -> (usize, String) {
 
 #[test]
 fn the_examples_can_be_used() {
-    fn use_all<S: OwnShader>(folder: &str) {
+    fn use_all<S: UserShader>(folder: &str) {
         let folder = assets::path(folder);
         let mut count = 0;
         for entry in std::fs::read_dir(folder).expect("the examples' folder") {
             let path = entry.expect("an entry").path();
-            read_own_shader::<S>(&path).unwrap_or_else(|error| panic!("{error}"));
+            read_user_shader::<S>(&path).unwrap_or_else(|error| panic!("{error}"));
             count += 1;
         }
         assert!(count >= 3, "{count} examples");
@@ -106,7 +106,7 @@ fn what_the_language_does_not_allow_is_said_at_its_line() {
     }
     // What only fragment shaders have is found where the program calls the function.
     let (_, said) = fault(&EDGE.replace("2.0", "dpdx(view.radius)"));
-    assert!(said.contains("pnaen_own_edges_main"), "{said}");
+    assert!(said.contains("pnaen_user_edges_main"), "{said}");
 }
 
 #[test]
@@ -250,16 +250,16 @@ fn files_that_are_no_such_texts_are_named() {
     let path = folder.path().join("lod.wgsl");
     let said = |bytes: &[u8]| {
         std::fs::write(&path, bytes).expect("a writable temporary folder");
-        read_own_shader::<LodShader>(&path).expect_err("it can't be used").to_string()
+        read_user_shader::<LodShader>(&path).expect_err("it can't be used").to_string()
     };
     assert!(said(&vec![b' '; 65_537]).contains("lod.wgsl has more than 65536 bytes"));
     assert!(said(b"\xff\xfe// \x00").contains("isn't a text in UTF-8"));
     assert!(said(b"fn 3x()").contains("lod.wgsl, line 1: "));
     let marked = format!("\u{feff}{EDGE}");
     std::fs::write(&path, marked).expect("a writable temporary folder");
-    assert!(read_own_shader::<LodShader>(&path).is_ok(), "a byte order mark is left out");
-    let gone = read_own_shader::<LodShader>(&folder.path().join("no.wgsl")).expect_err("there is none").to_string();
+    assert!(read_user_shader::<LodShader>(&path).is_ok(), "a byte order mark is left out");
+    let gone = read_user_shader::<LodShader>(&folder.path().join("no.wgsl")).expect_err("there is none").to_string();
     assert!(gone.contains("no.wgsl can't be read: there is no such file"), "{gone}");
-    let this = read_own_shader::<LodShader>(folder.path()).expect_err("a folder").to_string();
+    let this = read_user_shader::<LodShader>(folder.path()).expect_err("a folder").to_string();
     assert!(this.contains("file"), "{this}");
 }

@@ -1,4 +1,0 @@
-// Stands for the user's own function where pass_own_lod.wgsl is checked without one.
-fn edge_factor(edge: Edge, triangle: Triangle, view: View) -> f32 {
-    return 1.0;
-}
