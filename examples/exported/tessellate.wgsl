@@ -467,8 +467,8 @@ fn regular_triangle(outer: u32, n: u32, t: u32) -> vec3<u32> {
     return select(vec3<u32>(third, o, i), odd_triangle, odd);
 }
 
-const UNIT: f32 = 1.0 / 65536.0;
 const SURFACE_PN_AEN: u32 = 2u;
+const UNIT: f32 = 1.0 / 65536.0;
 
 // Returns the point at `t` (16.16 fixed point) on the edge from `a` to `b` with control points `ab` (near a) and `ba`
 // (near b), in object units. The arguments must be in the edge's own direction: then all sides do the same arithmetic
