@@ -5,7 +5,7 @@
 // The part of the tolerance that bounds may use up. The rest is for rounding.
 const BOUND_SHARE: f32 = 0.999;
 
-// A factor that is asked for if none is enough.
+// A factor that is requested if none is enough.
 const BEYOND_LAST: f32 = 127.5;
 
 // Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number, a
@@ -228,11 +228,11 @@ struct Chosen {
     inner: f32,
 }
 
-// What the factors of a patch's edges are that are looked for: what the patch asks its edges for, what it would have if no
-// neighbour asked for anything, or what its edges have, beside which only the inside is looked for.
-const WANTED_ASKED: u32 = 0u;
-const WANTED_OWN: u32 = 1u;
-const WANTED_GIVEN: u32 = 2u;
+// What the factors of a patch's edges are that are looked for: what the patch requests factors of its edges for, what it would have if no
+// neighbour requested anything, or what its edges have, beside which only the inside is looked for.
+const GOAL_REQUESTS: u32 = 0u;
+const GOAL_MINIMUM: u32 = 1u;
+const GOAL_GIVEN: u32 = 2u;
 
 // What a patch looks for.
 struct Sought {
@@ -292,7 +292,7 @@ fn next_step(partitioning: u32, inside: f32, inner: f32, error: f32, tolerance: 
 fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning: u32, sought: Sought) -> Chosen {
     let within = BOUND_SHARE * tolerance;
     let slides = may_slide(seen, within);
-    let segment = select(1.0, 2.0, sought.wanted == WANTED_ASKED);
+    let segment = select(1.0, 2.0, sought.wanted == GOAL_REQUESTS);
     var best = Chosen(sought.least, BEYOND_LAST, sought.inner);
     var fewest = 3.4e38;
     // Written so that each function is called in one place only: drivers compile a copy for each call.
@@ -308,7 +308,7 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
             continue;
         }
         let fails = errors > vec4<f32>(within);
-        if sought.wanted == WANTED_GIVEN {
+        if sought.wanted == GOAL_GIVEN {
             edges = select(edges, vec3<f32>(BEYOND_LAST), fails.xyz);
         } else {
             for (var k = 0u; k < 3u; k++) {
@@ -341,9 +341,9 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
     return best;
 }
 
-// Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger than
+// Returns whether a patch requests factors of its edges again: beside what other patches requested, its inside factor is much larger than
 // the one that it has chosen.
-fn asks_again(chosen: f32, inside: f32) -> bool {
+fn requests_again(chosen: f32, inside: f32) -> bool {
     return inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0;
 }
 

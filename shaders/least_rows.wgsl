@@ -63,17 +63,17 @@ struct Tried {
     lessened: u32,
 }
 
-// As how many triangles a segment of an edge counts where a patch asks for it.
-const ASKED_SEGMENT: f32 = 1.75;
+// As how many triangles a segment of an edge counts where a patch requests it.
+const REQUESTED_SEGMENT: f32 = 1.75;
 
 // Returns as how many triangles a segment of an edge counts.
 fn segment_cost(sought: Sought) -> f32 {
-    return select(1.0, ASKED_SEGMENT, sought.wanted == WANTED_ASKED);
+    return select(1.0, REQUESTED_SEGMENT, sought.wanted == GOAL_REQUESTS);
 }
 
 // Returns whether the edges have their factors, so that only base and width are chosen.
 fn is_given(sought: Sought) -> bool {
-    return sought.wanted == WANTED_GIVEN;
+    return sought.wanted == GOAL_GIVEN;
 }
 
 // Returns the least number of rows beside a base.
@@ -142,7 +142,7 @@ fn grown_rows(sought: Sought, tried: Tried, expected: Expected, error: f32, tole
     let ratio = select(100.0, root, root < 100.0);
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
-    // Beyond what second derivatives ask for, more segments rarely help.
+    // Beyond what second derivatives request, more segments rarely help.
     let part = select(0.125, select(0.25, 0.0, tried.width < 1.5 * expected.width), is_given(sought));
     let more_rows = next_number(tried.rows, part, 0.8 * ratio * tried.rows);
     let more_width = next_number(tried.width, part, 0.8 * ratio * tried.width);
@@ -291,8 +291,8 @@ fn points_inside(edges: vec3<f32>, inside: f32) -> f32 {
     return f32(point_count(factors) - outer_count(factors));
 }
 
-// Returns whether a patch asks its edges again: beside what other patches asked for, it has many more points inside than with
+// Returns whether a patch requests factors of its edges again: beside what other patches requested, it has many more points inside than with
 // what it has chosen.
-fn rows_ask_again(chosen: f32, points: f32) -> bool {
+fn rows_request_again(chosen: f32, points: f32) -> bool {
     return points > 1.1 * chosen + 2.0;
 }

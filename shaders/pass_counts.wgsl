@@ -6,7 +6,7 @@
 @group(0) @binding(2) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
 @group(0) @binding(4) var<storage, read> curve_nets: array<CurveNet>;
-// Of edges; under LOD by error then what pass_asked.wgsl says, the inside factors of patches among it.
+// Of edges; under LOD by error then what pass_requests.wgsl says, the inside factors of patches among it.
 @group(0) @binding(5) var<storage, read> edge_factors: array<f32>;
 @group(0) @binding(6) var<storage, read_write> patch_factors: array<PatchFactors>;
 @group(0) @binding(7) var<storage, read_write> offsets: array<vec2<u32>>;

@@ -187,12 +187,12 @@ fn displace_main(invocation: Invocation) {
     let segments = f32(inside_value(patch_factors[patch_index - slab.first_patch])) * UNIT;
     let at = spot(uv.x, uv.y);
     let own = own_lookup(patch_index, uv.x, uv.y, at, segments);
-    var asked = own;
+    var requested = own;
     if params.displacement != DISPLACEMENT_PER_PATCH {
-        asked = shared_lookup(own, at);
+        requested = shared_lookup(own, at);
     }
     let direction = direction_at(patch_index, uv.x, uv.y, at);
-    let offset = offset_at(asked);
+    let offset = offset_at(requested);
     let normal = unpack_normal(vertex.normal);
     var raised: vec3<f32>;
     if params.normals == NORMALS_SURFACE {
@@ -202,7 +202,7 @@ fn displace_main(invocation: Invocation) {
         let along_v = rise.tangents[1] + direction * rise.slopes.y;
         raised = facing_or(array<vec3<f32>, 2>(along_u, along_v), normal);
     } else {
-        raised = raised_normal(uphill_at(asked), normal);
+        raised = raised_normal(uphill_at(requested), normal);
     }
     let p = vec3<f32>(vertex.x, vertex.y, vertex.z) + direction * offset;
     vertex_halves[index] = vertex_place(p, pack_normal(raised));

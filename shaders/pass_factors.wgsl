@@ -1,6 +1,6 @@
 // LOD's factor of every edge. An edge whose sides don't all share one curve takes the largest factor of its curves. (As
 // published, every side has a factor of its own, that of its one curve.) LOD by error has the least factor that an edge may
-// get instead; pass_asked.wgsl goes on from there.
+// get instead; pass_requests.wgsl goes on from there.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;

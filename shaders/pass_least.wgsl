@@ -20,7 +20,7 @@ fn least_triangles_main(invocation: Invocation) {
     let inside = heights_inside(index);
     var own = whole_segments(params.partitioning, inside);
     if params.surface != SURFACE_FLAT {
-        let sought = Sought(least, inside, 0.0, WANTED_OWN);
+        let sought = Sought(least, inside, 0.0, GOAL_MINIMUM);
         own = without_search(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, sought);
     }
     least_triangles[index] = select(triangles_of(least, own), 0u, own == 0.0);
@@ -38,7 +38,7 @@ fn search_least_triangles_main(invocation: Invocation) {
         var seen = load_seen(index);
         let least = first_least(&seen, edges_of(index, params.factor_count));
         let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
-        let sought = Sought(least, inside, 0.0, WANTED_OWN);
+        let sought = Sought(least, inside, 0.0, GOAL_MINIMUM);
         var own: Chosen;
         if SEARCHES_ROWS == 1u {
             own = fewest_rows(&seen, surface_tolerance(), sought);

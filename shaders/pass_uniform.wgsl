@@ -1,4 +1,4 @@
-// LOD by error: if one factor for all edges keeps the tolerance with fewer triangles than what patches have asked for, all edges
+// LOD by error: if one factor for all edges keeps the tolerance with fewer triangles than what patches have requested, all edges
 // get the least such factor.
 
 // The counters: the low word of the number of all triangles, beside which is the high one; and the first of two words with a

@@ -19,7 +19,7 @@ fn load_seen(patch_index: u32) -> SeenPatch {
     return seen;
 }
 
-// Returns the factors that a patch asks for at least, of the edges U == 0, V == 0 and W == 0: `least`. Where points may slide
+// Returns the factors that a patch requests at least, of the edges U == 0, V == 0 and W == 0: `least`. Where points may slide
 // along an edge, what the edge needs at the same places doesn't count.
 fn first_least(seen: ptr<function, SeenPatch>, least: vec3<f32>) -> vec3<f32> {
     if may_slide(seen, params.tolerance) {

@@ -149,7 +149,7 @@ fn without_a_file_dialog_a_path_is_typed() {
 type Asked = (&'static str, Option<&'static str>);
 
 fn without_a_dialog() {
-    let (start, mut is_asked) = (Instant::now(), false);
+    let (start, mut is_requested) = (Instant::now(), false);
     let said: Rc<RefCell<Vec<Asked>>> = Rc::default();
     let seen = said.clone();
     let watch = move |app: &mut App, context: &egui::Context| {
@@ -163,7 +163,7 @@ fn without_a_dialog() {
                 picture("0-no-dialog.png");
                 context.send_viewport_cmd(egui::ViewportCommand::Close);
             }
-        } else if app.pictures() > 0 && !std::mem::replace(&mut is_asked, true) {
+        } else if app.pictures() > 0 && !std::mem::replace(&mut is_requested, true) {
             let press =
                 |key, modifiers| egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
             let keys = [press(egui::Key::O, egui::Modifiers::COMMAND), press(egui::Key::W, egui::Modifiers::NONE)];

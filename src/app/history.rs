@@ -135,7 +135,7 @@ impl App {
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
-            step.companions[CompanionFile::Truth as usize] = None;
+            step.companions[CompanionFile::ReferenceShape as usize] = None;
             step.companions[CompanionFile::Factors as usize] = None;
         });
     }
@@ -191,7 +191,7 @@ impl App {
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
         let Some(Undoable { settings, preparation, companions: files }) = step else { return };
-        [Work::Truth, Work::Matcap, Work::Light].into_iter().for_each(|work| self.jobs.stop(work));
+        [Work::ReferenceShape, Work::Matcap, Work::Light].into_iter().for_each(|work| self.jobs.stop(work));
         if self.given.is_none() {
             self.jobs.stop(Work::Factors);
         }

@@ -38,7 +38,7 @@ use jobs::companion_files::OpenFile;
 use jobs::environment_job::Light;
 use jobs::given_factors::GivenFactors;
 use jobs::job_list::{Jobs, Work};
-use jobs::truth::ChosenTruth;
+use jobs::reference_shape::ChosenReferenceShape;
 use jobs::user_shader_job::OpenShader;
 use painting::{Painting, panel_frame};
 use panels::Panels;
@@ -63,7 +63,7 @@ pub struct App {
     /// The mesh that is open; none before the first one is loaded.
     document: Option<Document>,
     /// The reference surface that was chosen for the mesh, if one was.
-    truth: Option<ChosenTruth>,
+    reference_shape: Option<ChosenReferenceShape>,
     /// Factors of a file in place of those of LOD, if there are any.
     given: Option<OpenFile<GivenFactors>>,
     /// The file with functions of the user's own in place of LOD, if one is open.
@@ -115,7 +115,7 @@ impl App {
             takes_back: false,
             view_history: ViewHistory::default(),
             document: None,
-            truth: None,
+            reference_shape: None,
             given: None,
             lod_shader: None,
             surface_shader: None,

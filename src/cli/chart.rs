@@ -21,10 +21,10 @@ use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
 use inspect::engine::{Engine, Loaded};
 use inspect::export::ending;
 use inspect::measure::AccuracyOptions;
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::Target;
 use inspect::settings::options::{FACTOR, PIXELS, TOLERANCE};
 use inspect::settings::{ARENA_BYTES, Settings};
-use inspect::truth::Truth;
 use lab::chart::report::{LeftOut, Part, TABLE};
 use lab::chart::{Bench, Effort, LodKind, Plan, Setting, Subject, bitmap, columns, has_converged, svg};
 use load::Source;
@@ -32,14 +32,14 @@ use load::files::file_reason;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf files, or shapes made in code such as shape:torus, or
+    /// Mesh files, or shapes made in code such as shape:torus, or
     /// shape:torus@2 (finer); with --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]
     pub files: Vec<Source>,
     /// Reference surface that errors are measured against: a mesh, such as the high-poly original, or a shape. By default
     /// the exact surface of a shape; other meshes have none. Takes one mesh only
-    #[arg(long, value_name = "FILE", value_parser = options::source())]
-    pub truth: Option<Source>,
+    #[arg(long = "reference-surface", value_name = "FILE", value_parser = options::source())]
+    pub reference_shape: Option<Source>,
     #[command(flatten)]
     pub weld: WeldOption,
     /// Surfaces to try
@@ -107,7 +107,10 @@ fn picture() -> impl TypedValueParser<Value = PathBuf> {
 
 impl Args {
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
-        refuse(self.truth.is_some() && self.files.len() != 1, "--truth takes one mesh: chart the others on their own")?;
+        refuse(
+            self.reference_shape.is_some() && self.files.len() != 1,
+            "--reference-surface takes one mesh: chart the others on their own",
+        )?;
         let settings = self.plan().settings();
         refuse(settings.is_empty(), "subtriangulation has uniform LOD only: add uniform to --lods")?;
         Ok(settings)
@@ -135,34 +138,35 @@ impl Args {
         Effort { accuracy, most_triangles: self.max_triangles, ..Effort::default() }
     }
 
-    /// The reference surface of a mesh, and its name: that of `--truth`, or else the exact surface of a shape.
-    fn truth_of(&self, mesh: &Source) -> Result<Option<(Truth, String)>, CliError> {
-        let asked = self.truth.as_ref();
-        let exact = asked.unwrap_or(mesh).shape().and_then(Truth::from_shape);
+    /// The reference surface of a mesh, and its name: that of `--reference-surface`, or else the exact surface of a shape.
+    fn reference_shape_of(&self, mesh: &Source) -> Result<Option<(ReferenceShape, String)>, CliError> {
+        let asked = self.reference_shape.as_ref();
+        let exact = asked.unwrap_or(mesh).shape().and_then(ReferenceShape::from_shape);
         let Some(source) = asked.filter(|_| exact.is_none()) else {
             return Ok(exact.map(|exact| (exact, "the exact surface".to_owned())));
         };
-        let none = || CliError::NoTruth { file: source.to_string() };
-        let truth =
-            Truth::load(source, self.weld.import.0, &self.weld.limit.limits(), &Progress::new())?.ok_or_else(none)?;
-        Ok(Some((truth, source.title())))
+        let none = || CliError::NoReferenceShape { file: source.to_string() };
+        let reference_shape =
+            ReferenceShape::load(source, self.weld.import.0, &self.weld.limit.limits(), &Progress::new())?
+                .ok_or_else(none)?;
+        Ok(Some((reference_shape, source.title())))
     }
 }
 
 /// A mesh to be charted.
 struct Loading {
     loaded: Loaded,
-    truth: Option<(Truth, String)>,
+    reference_shape: Option<(ReferenceShape, String)>,
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let settings = args.settings()?;
-    let read = args.files.iter().chain(&args.truth).map(file_of);
+    let read = args.files.iter().chain(&args.reference_shape).map(file_of);
     keep_apart(read, [args.output.as_deref(), args.csv.as_deref()])?;
     let load_one = |source: &Source| {
         let written = [args.output.as_deref(), args.csv.as_deref()];
         let loaded = load_apart(source, &args.weld.preparation(), &written)?;
-        Ok(Loading { truth: args.truth_of(source)?, loaded })
+        Ok(Loading { reference_shape: args.reference_shape_of(source)?, loaded })
     };
     let sources = args.meshes();
     let meshes: Vec<Loading> = sources.iter().map(load_one).collect::<Result<_, CliError>>()?;
@@ -213,7 +217,7 @@ struct Session {
 impl Session {
     /// Tries all settings on a mesh, until Ctrl-C is pressed.
     fn subject(&mut self, args: &Args, mesh: &Loading, settings: &[Setting]) -> Result<(Subject, LeftOut), CliError> {
-        let Loading { loaded, truth } = mesh;
+        let Loading { loaded, reference_shape } = mesh;
         let title = loaded.source.title();
         let scene = self.engine.scene(loaded, ARENA_BYTES)?;
         let mut view = SurfaceOptions { size: args.size, ..SurfaceOptions::default() };
@@ -224,7 +228,7 @@ impl Session {
             camera: view.view.camera(&view, &loaded.mesh, None, &scene.bounds)?,
             scene,
             target: &self.target,
-            truth: truth.as_ref().map(|(truth, _)| truth),
+            reference_shape: reference_shape.as_ref().map(|(reference_shape, _)| reference_shape),
             base: Settings::from(Tessellation::default()),
             effort: args.effort(),
         };
@@ -259,9 +263,9 @@ impl Session {
             );
             super::warn(&[said]);
         }
-        let truth = truth.as_ref().map(|(_, words)| words.clone());
+        let reference_shape = reference_shape.as_ref().map(|(_, words)| words.clone());
         let adapter = self.engine.gpu.info.name.clone();
-        Ok((Subject { title, truth, adapter, size: args.size.0, rows }, left_out))
+        Ok((Subject { title, reference_shape, adapter, size: args.size.0, rows }, left_out))
     }
 }
 

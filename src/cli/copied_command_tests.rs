@@ -51,7 +51,7 @@ fn shown<'a>(
         radius,
         size,
         animation: None,
-        truth: None,
+        reference_shape: None,
         factors: None,
         lod_shader: None,
         surface_shader: None,
@@ -82,7 +82,7 @@ fn options_with_default_values_are_left_out() {
 
 #[test]
 fn options_with_other_values_are_written() {
-    let (source, truth) = (Source::File("-x.glb".into()), Source::File("shape:y".into()));
+    let (source, reference_shape) = (Source::File("-x.glb".into()), Source::File("shape:y".into()));
     let limits = Limits { memory: 1 << 31, ..Limits::default() };
     let heights = Some(HeightSource::File("material".into()));
     let preparation = Preparation {
@@ -102,11 +102,14 @@ fn options_with_other_values_are_written() {
     });
     let target = Vec3::new(-1.5, 0.0, 1e-7);
     let camera = Camera { orthographic: true, target, field_of_view: 25.5, roll: -12.25, ..camera() };
-    let shown =
-        CopiedCommand { truth: Some(&truth), triangle: Some(7), ..shown(&source, &preparation, &settings, &camera) };
+    let shown = CopiedCommand {
+        reference_shape: Some(&reference_shape),
+        triangle: Some(7),
+        ..shown(&source, &preparation, &settings, &camera)
+    };
     let args = parsed(&shown.line());
     assert_eq!(args.file, Source::File("./-x.glb".into()));
-    assert_eq!(args.shot.truth.truth, Some(Source::File("./shape:y".into())));
+    assert_eq!(args.shot.reference_shape.reference_shape, Some(Source::File("./shape:y".into())));
     let heights = Some(HeightSource::File("./material".into()));
     assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
     assert_eq!((args.shot.select, args.shot.surface.view.orthographic), (Some(7), true));
@@ -119,7 +122,7 @@ fn options_with_other_values_are_written() {
         (args.shot.surface.animation.animation.as_deref(), args.shot.surface.animation.time),
         (Some("-run, fast"), 0.1)
     );
-    assert_eq!(args.shot.truth.truth, None, "an animation has no reference surface");
+    assert_eq!(args.shot.reference_shape.reference_shape, None, "an animation has no reference surface");
 }
 
 #[test]

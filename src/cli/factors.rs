@@ -20,9 +20,7 @@ use load::factors_file::to_csv;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
-    /// shape:torus@2 (finer)
-    #[arg(value_parser = super::options::source())]
+    #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// File to write, CSV (- for standard output). With --cameras, a folder, or a name with {} where each view's name goes
     #[arg(short, long, value_name = "OUT.csv")]

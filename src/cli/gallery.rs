@@ -13,7 +13,7 @@ use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code; without one, each exhibit has
+    /// A mesh file, or a shape made in code; without one, each exhibit has
     /// the shape that suits it
     #[arg(value_parser = super::options::source())]
     pub file: Option<Source>,

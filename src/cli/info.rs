@@ -9,9 +9,7 @@ use load::Source;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
-    /// shape:torus@2 (finer)
-    #[arg(value_parser = super::options::source())]
+    #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     #[command(flatten)]
     pub weld: WeldOption,

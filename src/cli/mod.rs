@@ -23,16 +23,16 @@ mod mesh_report;
 mod options;
 mod output_guard;
 #[cfg(test)]
-mod page;
+mod page_tests;
 mod posed;
 mod reference;
+mod reference_shape;
 mod render;
 mod shaders;
 mod shot_options;
 mod stability;
 mod surface_shader_option;
 mod tessellate;
-mod truth;
 mod turntable;
 mod view_files;
 
@@ -51,10 +51,10 @@ pub(crate) use lod_shader_option::LodShaderOption;
 use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
+pub(crate) use reference_shape::ReferenceSurfaceOption;
 pub use render::{preview, run_with as render_with};
 pub(crate) use surface_shader_option::SurfaceShaderOption;
 pub use tessellate::run_with as tessellate_with;
-pub(crate) use truth::TruthOption;
 
 use geometry::names::{on_one_line, shown};
 use geometry::progress::{Cancelled, Progress};
@@ -77,7 +77,7 @@ use load::{LoadError, MatcapError, Source};
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Mesh that the window opens: a .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such
+    /// Mesh that the window opens: a mesh file, or a shape made in code such
     /// as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = options::source())]
     pub file: Option<Source>,
@@ -110,6 +110,8 @@ pub enum Command {
     /// uv. Patches are the mesh's triangles in order, without degenerate ones; the JSON gives each patch's triangle.
     Adjacency(adjacency::Args),
     /// Write the shaders of a tessellation for other programs, in HLSL, GLSL or WGSL, with a page on how to run them
+    ///
+    /// Without --lod they have uniform LOD, since LOD by error can't be exported.
     Shaders(shaders::Args),
     /// Compare another program's tessellated mesh with ours
     ///
@@ -124,7 +126,7 @@ pub enum Command {
     Gallery(gallery::Args),
     /// Time every method at many settings, measure its error, and chart error against time and triangles
     ///
-    /// Errors are measured against a reference surface: a shape's exact surface, or the mesh of --truth. Without either, errors
+    /// Errors are measured against a reference surface: a shape's exact surface, or the mesh of --reference-surface. Without either, errors
     /// are distances in px on screen between the triangles and the surface that they approximate, and different surfaces are
     /// not compared with each other. Ctrl-C ends the command after the current setting: the CSV and the picture have what was
     /// done, and the exit code is 130. A second Ctrl-C ends it at once.
@@ -210,7 +212,7 @@ pub enum CliError {
     #[error("no picture is drawn, since coordinates are too large: omit -o, or scale the other program's output")]
     NothingToDraw,
     #[error("{file} can't be a reference surface: it has no triangles; choose another mesh")]
-    NoTruth { file: String },
+    NoReferenceShape { file: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
     NoAnimation { file: String, name: String, has: String },
     #[error("interrupted after {done} of {all} {what}: what was done is written")]

@@ -22,6 +22,7 @@ use inspect::settings::options::TOLERANCE_RANGE;
 use inspect::settings::{ARENA_BYTES, Settings};
 use load::HeightSource;
 use load::files::Limits;
+use load::format::known_extensions;
 
 pub(crate) use cameras::{CamerasOption, NamedView};
 use declared::GivenTessellation;
@@ -55,6 +56,11 @@ pub struct SurfaceOptions {
     pub size: Size,
     #[command(flatten)]
     pub view: ViewOptions,
+}
+
+/// What a command says of the mesh that it reads.
+pub(crate) fn mesh_help() -> String {
+    format!("A {} file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)", known_extensions())
 }
 
 /// The options of an empty command line.

@@ -18,9 +18,7 @@ use load::Source;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
-    /// shape:torus@2 (finer)
-    #[arg(value_parser = super::options::source())]
+    #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// Picture to write, a PNG file. With --cameras, a folder, or a name with {} where each view's name goes
     #[arg(short, long, value_name = "OUT.png", value_parser = options::picture())]

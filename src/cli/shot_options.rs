@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::options::{LodCameraOption, PictureOptions, whole_from};
 use super::{
-    CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, TruthOption, file_of,
+    CliError, FactorsOption, LodShaderOption, ReferenceSurfaceOption, SurfaceOptions, SurfaceShaderOption, file_of,
     file_of_heights, keep_apart, load_apart, refuse, warn,
 };
 use geometry::progress::Progress;
@@ -38,7 +38,7 @@ pub struct ShotOptions {
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
     #[command(flatten)]
-    pub truth: TruthOption,
+    pub reference_shape: ReferenceSurfaceOption,
     /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
     /// and blue
     #[arg(long, value_name = "TRIANGLE", value_parser = whole_from(0_u32))]
@@ -72,11 +72,11 @@ impl ShotOptions {
         let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
         refuse(has_file && !needs_file, "--environment is the light of --lighting environment: choose one light")?;
         refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
-        let truth = self.truth.truth.as_ref().and_then(file_of);
+        let reference_shape = self.reference_shape.reference_shape.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
         let shaders = [self.user_lod.lod_shader.as_deref(), self.user_surface.surface_shader.as_deref()];
-        let own = [file_of(file), truth, heights, factors, matcap, self.environment.as_deref()];
+        let own = [file_of(file), reference_shape, heights, factors, matcap, self.environment.as_deref()];
         keep_apart(own.into_iter().chain(shaders).chain(read.iter().copied()), written.iter().copied())
     }
 
@@ -105,7 +105,7 @@ impl ShotOptions {
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let is_shown = self.picture.0.overlays.colors.source() == ColorSource::ReferenceSurface;
-        let reference_surface = self.truth.reference_surface(&loaded, &self.surface, is_shown)?;
+        let reference_surface = self.reference_shape.reference_surface(&loaded, &self.surface, is_shown)?;
         if matches!(reference_surface, Some(ReferenceSurface::Limit)) {
             self.user_surface.check_deviation()?;
         }

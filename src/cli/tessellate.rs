@@ -20,16 +20,14 @@ use gpu::{Given, GpuError, SurfaceShader, Timing};
 use inspect::engine::{Engine, Loaded};
 use inspect::export::Exported;
 use inspect::gates::{Facts, GateKind, Judgement, judge};
-use inspect::measure::{AskedFactors, EmittedChunk, Measured, ScreenErrorMeasurement, Visitor};
+use inspect::measure::{EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor};
 use inspect::render::{Camera, Scene};
 use inspect::shot::{Shot, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
-    /// shape:torus@2 (finer)
-    #[arg(value_parser = super::options::source())]
+    #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// Mesh to write, a .glb or .obj file. With --cameras, a name with {} where each view's name goes
     #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::model())]
@@ -201,8 +199,8 @@ impl Ready<'_> {
         let (mesh, topology) = (&self.mesh.posed.mesh, &self.mesh.posed.topology);
         let Tessellation { edges, convention, .. } = inputs.tessellation;
         let measured = gates.fail_on.iter().any(|gate| gate.kind.needs_survey()).then(|| {
-            let of_lod = || AskedFactors::new(edges, convention, out.edge_factors.clone());
-            let asked = given.map_or_else(of_lod, |given| AskedFactors::given(convention, given));
+            let of_lod = || RequestedFactors::new(edges, convention, out.edge_factors.clone());
+            let asked = given.map_or_else(of_lod, |given| RequestedFactors::given(convention, given));
             Measured::new(mesh, topology, asked, out)
         });
         let above = gates.has(GateKind::AboveTolerance).then(|| {

@@ -15,9 +15,7 @@ use load::Source;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, or a shape made in code such as shape:cube-split, or
-    /// shape:torus@2 (finer)
-    #[arg(value_parser = super::options::source())]
+    #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// Folder for numbered PNG files, frame-0000.png and so on, which is made if it isn't there; or a .gif file
     #[arg(short, long, value_name = "DIR|OUT.gif", value_parser = OsStringValueParser::new().try_map(place))]

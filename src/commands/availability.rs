@@ -18,7 +18,7 @@ pub enum Need {
     /// No other file is being written.
     NoWriting,
     /// A reference surface that was chosen for the mesh.
-    Truth,
+    ReferenceShape,
     /// Factors of a file in place of LOD's.
     Factors,
     LodShader,
@@ -58,7 +58,7 @@ pub enum Need {
 
 impl Need {
     pub const ALL: [Self; 30] = every![Need:
-        Document, File, Picture, NoWriting, Truth, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
+        Document, File, Picture, NoWriting, ReferenceShape, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
         ViewAfter, Bookmarks, RoomForBookmarks, Selection, SelectedPatch, Heights, TextureCoordinates, NormalsAt, Factor, Lod, Culling,
         Split, Frozen, Deviation, MeasurableChart, Chart, Clips,
     ];
@@ -70,7 +70,7 @@ impl Need {
             Self::File => MADE_IN_CODE,
             Self::Picture => "Nothing is drawn yet.",
             Self::NoWriting => "Another file is being written.",
-            Self::Truth => "No reference surface was chosen.",
+            Self::ReferenceShape => "No reference surface was chosen.",
             Self::Factors => "No file of factors is open.",
             Self::LodShader => "No LOD shader is open.",
             Self::SurfaceShader => "No surface shader is open.",

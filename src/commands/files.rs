@@ -6,7 +6,7 @@ use geometry::names::every;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CompanionFile {
     /// The reference surface.
-    Truth,
+    ReferenceShape,
     Factors,
     LodShader,
     SurfaceShader,
@@ -16,7 +16,8 @@ pub enum CompanionFile {
 }
 
 impl CompanionFile {
-    pub const ALL: [Self; 6] = every![CompanionFile: Truth, Factors, LodShader, SurfaceShader, Matcap, Environment];
+    pub const ALL: [Self; 6] =
+        every![CompanionFile: ReferenceShape, Factors, LodShader, SurfaceShader, Matcap, Environment];
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -34,7 +34,8 @@ const SURFACE_SHADER: &str = "Opens a WGSL file with your own function for the c
 pub const ENVIRONMENT: &str =
     "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
 
-const TRUTH: &str = "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
+const REFERENCE_SURFACE: &str =
+    "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
 const PICTURE: &str = "Writes the picture as a PNG file, in any size, with or without background, overlays and legend.";
 const MESH: &str = "Writes the tessellated mesh as a .glb or .obj file, as it is emitted for this view.";
 
@@ -56,10 +57,10 @@ fn file() -> Vec<Command> {
             .keys([plain(Key::R)])
             .menu(File, 1)
             .needs(document),
-        beside(CompanionFile::Truth, "Reference surface…", TRUTH).menu(File, 2),
+        beside(CompanionFile::ReferenceShape, "Reference surface…", REFERENCE_SURFACE).menu(File, 2),
         close(
-            CompanionFile::Truth,
-            &[Need::Truth],
+            CompanionFile::ReferenceShape,
+            &[Need::ReferenceShape],
             "Forget reference surface",
             "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.",
         )

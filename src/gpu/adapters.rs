@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::GpuError;
 use geometry::names::shown;
 
-/// What is asked for.
+/// What is requested.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum AdapterChoice {
     /// The one that the system thinks the fastest.
@@ -19,7 +19,7 @@ pub enum AdapterChoice {
     Named(String),
 }
 
-/// Nothing was asked for.
+/// Nothing was requested.
 #[derive(Debug, PartialEq, Eq, Error)]
 #[error("it has no name: give part of one that `pnaen adapters` lists, or software")]
 pub struct NoName;
@@ -45,7 +45,7 @@ impl AdapterChoice {
         }
     }
 
-    /// The first of these that was asked for.
+    /// The first of these that was requested.
     ///
     /// # Errors
     /// There is none, or none at all.
@@ -54,7 +54,7 @@ impl AdapterChoice {
         self.place(&infos).map(|place| &adapters[place])
     }
 
-    /// The first of these that was asked for and is able to do something: to show a window, say.
+    /// The first of these that was requested and is able to do something: to show a window, say.
     ///
     /// # Errors
     /// There is none such, none that is able, or none at all.

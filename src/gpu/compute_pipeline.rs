@@ -198,7 +198,7 @@ impl ComputePipeline {
 mod tests {
     use super::*;
 
-    const PASS: Pass = Pass::new("pass_asked", "search_patches_main");
+    const PASS: Pass = Pass::new("pass_requests", "search_patches_main");
 
     #[test]
     fn a_pass_keeps_all_of_its_constants() {

@@ -24,7 +24,7 @@ pub struct Gpu {
     made: Arc<AtomicU64>,
 }
 
-/// What a device is asked for: WebGPU's default limits, but buffers and textures as large as the adapter has them, and
+/// What a device is requested: WebGPU's default limits, but buffers and textures as large as the adapter has them, and
 /// timestamps if the adapter has them. The timestamps of software drivers are wrong for compute passes, so they aren't used.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let has = adapter.limits();
@@ -136,7 +136,7 @@ impl Gpu {
         Self::on(&best_adapter()?)
     }
 
-    /// A device on the adapter that was asked for, without a window.
+    /// A device on the adapter that was requested, without a window.
     ///
     /// # Errors
     /// There is none such, or it gives no device.
@@ -172,7 +172,7 @@ impl Gpu {
         }
     }
 
-    /// Borrows the device of a host program. No error handlers are installed and no limits are asked for: what the device
+    /// Borrows the device of a host program. No error handlers are installed and no limits are requested: what the device
     /// refuses outside of [`Self::attempt`] reaches the host's own handlers.
     pub fn borrowed(device: &wgpu::Device, queue: &wgpu::Queue) -> Self {
         Self {

@@ -12,7 +12,7 @@ pub enum GpuError {
         "no graphics adapter was found: install a Vulkan driver (the software one is in Debian's mesa-vulkan-drivers)"
     )]
     NoAdapter,
-    /// No adapter has the name that was asked for.
+    /// No adapter has the name that was requested.
     #[error("no graphics adapter has \"{name}\" in its name: there are {has} (pnaen adapters)")]
     NoSuchAdapter { name: String, has: String },
     /// No adapter runs in software.

@@ -29,7 +29,7 @@ pub struct MeshBuffers {
     pub curve_nets: wgpu::Buffer,
     /// One factor for each edge; then room for what LOD by error needs, see `shaders/search_state.wgsl`.
     pub edge_factors: wgpu::Buffer,
-    /// The workgroups of the searches of LOD by error on a software driver, as indirect arguments: see `shaders/pass_asked.wgsl`.
+    /// The workgroups of the searches of LOD by error on a software driver, as indirect arguments: see `shaders/pass_requests.wgsl`.
     pub search_workgroups: wgpu::Buffer,
     /// What patches share where displacement must not tear them apart: see [`super::layout::Share`]. Empty without heights.
     pub shares: wgpu::Buffer,

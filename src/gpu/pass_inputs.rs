@@ -39,7 +39,7 @@ pub(super) struct PassInputs<'a> {
 pub(super) struct BoundPasses(Mutex<HashMap<Pass, BoundPass>>);
 
 impl<'a> PassInputs<'a> {
-    /// A pass, bound when it is first asked for.
+    /// A pass, bound when it is first requested.
     ///
     /// # Errors
     /// The pipeline can't be made: out of memory, or a lost device.

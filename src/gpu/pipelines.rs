@@ -50,7 +50,7 @@ pub(super) const EMIT_TRIANGLES: Pass = Pass::new("pass_emit", "emit_triangles_m
 pub(super) const DISPLACE: Pass = Pass::new("pass_displace", "displace_main");
 
 /// The pipelines of the passes, each made when it is first needed, and what they share. They belong to the device on which they
-/// are first asked for.
+/// are first requested.
 pub struct ComputePipelines {
     /// The sizes of workgroups that search: see [`Self::search`].
     groups: [u32; 3],

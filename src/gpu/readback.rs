@@ -13,7 +13,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// Bytes on their way to the host: a copy in a buffer that can be mapped.
 ///
 /// 1. [`Self::of_buffers`] or [`Self::of_texture`] records the copy.
-/// 2. Once the encoder was submitted, [`Self::request`] asks for the bytes.
+/// 2. Once the encoder was submitted, [`Self::request`] requests the bytes.
 /// 3. [`Self::poll`] tells whether they are here, without waiting; then [`Self::bytes`] gives them. Or [`Self::wait`] waits.
 pub struct Readback {
     staging: wgpu::Buffer,
@@ -69,7 +69,7 @@ impl Readback {
         Self { staging, layout, state: State::Recorded }
     }
 
-    /// Copies ranges of bytes of buffers in a submission of its own, and asks for them.
+    /// Copies ranges of bytes of buffers in a submission of its own, and requests them.
     pub fn start<'a>(gpu: &Gpu, parts: impl IntoIterator<Item = (&'a wgpu::Buffer, Range<u64>)>) -> Self {
         Self::submitted(gpu, |encoder| Self::from_buffers(gpu, encoder, parts))
     }
@@ -108,7 +108,7 @@ impl Readback {
         }
     }
 
-    /// The bytes, waiting for all that was submitted. They are asked for if they weren't yet.
+    /// The bytes, waiting for all that was submitted. They are requested if they weren't yet.
     ///
     /// # Errors
     /// The device was lost, or it has refused a command that nobody was told of yet.

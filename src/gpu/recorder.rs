@@ -1,4 +1,4 @@
-//! Records passes into one submission, and times them where that is asked for.
+//! Records passes into one submission, and times them where that is requested.
 
 use std::time::Instant;
 

@@ -1,4 +1,4 @@
-//! The passes of LOD by error in which patches look for factors: see `shaders/pass_asked.wgsl` and `shaders/pass_uniform.wgsl`.
+//! The passes of LOD by error in which patches look for factors: see `shaders/pass_requests.wgsl` and `shaders/pass_uniform.wgsl`.
 
 use super::bound_pass::Workgroups;
 use super::compute_pipeline::Pass;
@@ -6,9 +6,9 @@ use super::pass_inputs::PassInputs;
 use super::pipelines::{WORKGROUP, grid};
 use geometry::tessellate::rounds;
 
-const LIST_PATCHES: Pass = Pass::new("pass_asked", "list_patches_main");
-const COUNT_WORKGROUPS: Pass = Pass::new("pass_asked", "search_workgroups_main");
-const SEARCH_PATCHES: Pass = Pass::new("pass_asked", "search_patches_main");
+const LIST_PATCHES: Pass = Pass::new("pass_requests", "list_patches_main");
+const COUNT_WORKGROUPS: Pass = Pass::new("pass_requests", "search_workgroups_main");
+const SEARCH_PATCHES: Pass = Pass::new("pass_requests", "search_patches_main");
 const SUM_TRIANGLES: Pass = Pass::new("pass_uniform", "sum_triangles_main");
 const CANDIDATES: Pass = Pass::new("pass_uniform", "candidates_main");
 const SEARCH_UNIFORM_FACTOR: Pass = Pass::new("pass_uniform", "search_uniform_factor_main");

@@ -60,7 +60,7 @@ pub struct Tessellator {
     bound: BoundPasses,
     /// Those over each slab.
     slab_passes: Vec<BoundPasses>,
-    /// Made when it is first asked for.
+    /// Made when it is first requested.
     minimum: Option<Minimum>,
     /// None if the mesh has no heights.
     images: Option<HeightImages>,

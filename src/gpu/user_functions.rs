@@ -143,7 +143,7 @@ impl UserPipelines {
     }
 }
 
-/// The pipelines of users' files for one purpose that were asked for last.
+/// The pipelines of users' files for one purpose that were requested last.
 pub(super) struct RecentPipelines<S>(Mutex<Vec<(Arc<S>, Arc<UserPipelines>)>>);
 
 /// For how many files pipelines are kept: those that are shown, and those that replace them.

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use geometry::choice::choices;
+
 /// The extensions of files that can be read, in lower case, each with its format.
 pub const EXTENSIONS: [(&str, Format); 9] = [
     ("gltf", Format::Gltf),
@@ -26,20 +28,17 @@ pub(super) fn extension_of(path: &Path) -> Option<String> {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase())
 }
 
-/// The format that a file is read as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    /// `.gltf`, `.glb` or `.vrm`; the first bytes tell whether it is text or binary.
-    Gltf,
-    /// Text or binary; the first bytes tell which.
-    Fbx,
-    Obj,
-    Stl,
-    Ply,
-    /// Geomview's Object File Format.
-    Off,
-    /// The 3D Manufacturing Format.
-    ThreeMf,
+choices! {
+    /// The format that a file is read as.
+    pub enum Format {
+        Gltf => "gltf", "glTF", "`.gltf`, `.glb` or `.vrm`; the first bytes tell whether it is text or binary.";
+        Fbx => "fbx", "FBX", "Text or binary; the first bytes tell which.";
+        Obj => "obj", "OBJ", "Wavefront's format.";
+        Stl => "stl", "STL", "Text or binary; the size tells which.";
+        Ply => "ply", "PLY", "The Polygon File Format.";
+        Off => "off", "OFF", "Geomview's Object File Format.";
+        ThreeMf => "3mf", "3MF", "The 3D Manufacturing Format.";
+    }
 }
 
 impl Format {
@@ -47,18 +46,5 @@ impl Format {
     pub fn from_name(path: &Path) -> Option<Self> {
         let extension = extension_of(path)?;
         EXTENSIONS.into_iter().find(|(known, _)| extension == *known).map(|(_, format)| format)
-    }
-
-    /// The format's name in sentences.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Gltf => "glTF",
-            Self::Fbx => "FBX",
-            Self::Obj => "OBJ",
-            Self::Stl => "STL",
-            Self::Ply => "PLY",
-            Self::Off => "OFF",
-            Self::ThreeMf => "3MF",
-        }
     }
 }

@@ -90,7 +90,7 @@ impl HeightSource {
     /// Returns a name for the window: the file's name without its folder.
     pub fn title(&self) -> String {
         match self {
-            Self::Materials => "Material".to_owned(),
+            Self::Materials => "Base colour brightness".to_owned(),
             Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         }
     }

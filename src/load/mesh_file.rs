@@ -1,5 +1,6 @@
 //! Loads a mesh from a file, with the reader for its content, or for its extension if its content shows no format.
 
+use geometry::choice::Choice;
 use std::path::{Path, PathBuf};
 
 use super::content::{self, Content};
@@ -249,7 +250,7 @@ fn unknown(path: &Path, extension: &str) -> LoadError {
 
 /// A warning about a file whose content isn't what its name says.
 fn taken_for(format: Format, extension: &str) -> String {
-    let title = format.title();
+    let title = format.label();
     match extension {
         "" => format!("The file's name has no extension. Its content is {title}, so it was read as {title}."),
         extension => {
@@ -373,7 +374,7 @@ mod tests {
         let names = ["a.gltf", "a.fbx", "a.obj", "a.stl", "a.ply", "a.off", "a.3mf", "a.txt", "a.dae", "a"];
         for (format, bytes) in originals {
             for name in names {
-                let title = format.title();
+                let title = format.label();
                 let mesh = loaded(name, &bytes).unwrap_or_else(|error| panic!("{title} as {name}: {error}"));
                 let said = format!("content is {title}, so it was read as {title}.");
                 let is_said = mesh.warnings.first().is_some_and(|warning| warning.ends_with(&said));

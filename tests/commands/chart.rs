@@ -44,7 +44,7 @@ fn errors_are_measured_against_a_given_mesh_or_the_limit_surface() {
     assert!(px.parse::<f64>().is_ok_and(|px| px > 0.0) && by_error.parse::<u64>().is_ok_and(|by| by > 12), "{line}");
     let picture = image::open(&png).expect("a picture").to_rgb8();
     assert_eq!(picture.width(), 960);
-    let held = output(&[&options[..], &QUICK, &["--truth", "shape:cube-smooth"]].concat());
+    let held = output(&[&options[..], &QUICK, &["--reference-surface", "shape:cube-smooth"]].concat());
     assert!(error(&held, "pn-aen", "factor 1") < 1e-6, "factor 1 gives the mesh itself");
     assert!(error(&held, "pn-aen", "factor 4") > 0.01, "a cube is not round");
 }
@@ -81,19 +81,19 @@ fn wrong_usage_of_a_chart_names_the_option() {
         let said = failure(&[&["chart"], arguments].concat(), 2);
         assert!(said.contains(word), "{said}");
     };
-    usage(&["shape:torus", "shape:cone", "--truth", "shape:torus", "--csv", "-"], "one mesh");
+    usage(&["shape:torus", "shape:cone", "--reference-surface", "shape:torus", "--csv", "-"], "one mesh");
     usage(&["shape:torus", "--partitionings", "subtriangulation", "--lods", "error", "--csv", "-"], "subtriangulation");
     usage(&["shape:torus", "-o", "out.jpg"], ".svg or .png");
     usage(&["shape:torus"], "--output");
     usage(&["--csv", "-"], "FILES");
-    usage(&["--report", "out", "--truth", "shape:torus"], "one mesh");
+    usage(&["--report", "out", "--reference-surface", "shape:torus"], "one mesh");
     usage(&["shape:torus", "--csv", "-", "--factors", "0.5"], "1 to 64");
     usage(&["shape:torus", "--csv", "-", "--samples", "1"], "100 to");
     sentence(
         &["chart", "shape:torus", "--csv", "/nowhere/at/all.csv"],
         &["/nowhere/at/all.csv", "there is no folder /nowhere/at to write it in"],
     );
-    sentence(&["chart", "shape:torus", "--truth", "README.md", "--csv", "-"], &["README.md"]);
+    sentence(&["chart", "shape:torus", "--reference-surface", "README.md", "--csv", "-"], &["README.md"]);
 }
 
 #[test]

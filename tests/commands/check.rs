@@ -235,7 +235,10 @@ fn a_wrong_configuration_is_one_sentence_with_its_line() {
         ("[options]\nlegend = \"on\"", &["wrong.toml, line 2: ", "legend is a switch: expected true or false"]),
         ("[options]\nsize = [640]", &["wrong.toml, line 2: ", "WIDTHxHEIGHT"]),
         ("[cameras.a]\ncamera = [nan, 0]", &["wrong.toml, line 2: ", "AZIMUTH,ELEVATION"]),
-        ("[options]\n\ntruth = \"gone.glb\"", &["wrong.toml, line 3: ", "truth: there is no file", "gone.glb"]),
+        (
+            "[options]\n\nreference-surface = \"gone.glb\"",
+            &["wrong.toml, line 3: ", "reference-surface: there is no file", "gone.glb"],
+        ),
         (
             "[[files]]\npath = \"*.none\"\n[files.options]\nfactors = \"gone.csv\"",
             &["wrong.toml, line 4: ", "gone.csv"],

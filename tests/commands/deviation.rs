@@ -1,4 +1,4 @@
-//! `pnaen render --overlay deviation` and `--truth`: distances against closed forms, and errors.
+//! `pnaen render --overlay deviation` and `--reference-surface`: distances against closed forms, and errors.
 
 use serde_json::Value;
 
@@ -15,17 +15,17 @@ fn near(value: f64, expected: f64, tolerance: f64) -> bool {
 fn a_flat_icosahedron_is_a_fifth_of_its_radius_off_the_sphere() {
     let flat = ["shape:icosahedron", "--surface", "flat", "--factor", "1", "--overlay", "deviation,wireframe"];
     let stats = stats(&flat);
-    for max in ["/accuracy/to_truth/max", "/accuracy/from_truth/max", "/deviation/max"] {
+    for max in ["/accuracy/to_reference/max", "/accuracy/from_reference/max", "/deviation/max"] {
         assert!(near(number(&stats, max), GAP, 2e-6), "{max}: {stats}");
     }
     let diagonal = 2.0 * 3.0_f64.sqrt();
     assert!(near(number(&stats, "/accuracy/diagonal"), diagonal, 1e-9));
-    assert!(near(number(&stats, "/accuracy/to_truth/max_of_diagonal"), GAP / diagonal, 1e-6));
-    let rms = ["/accuracy/to_truth/rms", "/deviation/rms"].map(|rms| number(&stats, rms));
+    assert!(near(number(&stats, "/accuracy/to_reference/max_of_diagonal"), GAP / diagonal, 1e-6));
+    let rms = ["/accuracy/to_reference/rms", "/deviation/rms"].map(|rms| number(&stats, rms));
     assert!(near(rms[0], rms[1], 1e-3) && rms[0] < GAP && rms[0] > 0.5 * GAP, "{rms:?}");
     assert_eq!(stats["deviation"]["scale"], serde_json::json!([0.0025, 0.25]));
     assert!(number(&stats, "/accuracy/max_px") > 10.0 && number(&stats, "/accuracy/normals/max") < 0.1, "{stats}");
-    assert_eq!(stats["accuracy"]["truth"], "shape:icosahedron");
+    assert_eq!(stats["accuracy"]["reference_surface"], "shape:icosahedron");
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn both_halves_of_a_split_are_measured_and_share_a_scale() {
     // (4 - c) / 3 times the face's, where c is the cosine between two corners.
     let curved = 1.0 - (4.0 - 0.2_f64.sqrt()) / 3.0 * (1.0 - GAP);
     assert!(near(left, GAP, 2e-6) && near(right, curved, 3e-4), "{left} and {right}, not {GAP} and {curved}");
-    assert!(near(number(&both, "/left/accuracy/to_truth/max"), GAP, 2e-6), "{both}");
+    assert!(near(number(&both, "/left/accuracy/to_reference/max"), GAP, 2e-6), "{both}");
     assert_eq!((&both["left"]["surface"], &both["settings"]["surface"]), (&"flat".into(), &"pn-aen".into()));
     for scale in [&both["deviation"]["scale"], &both["left"]["deviation"]["scale"]] {
         assert_eq!(*scale, serde_json::json!([0.0025, 0.25]), "the scale of the larger deviation");
@@ -88,16 +88,16 @@ fn deviation_is_measured_against_a_given_mesh_or_the_limit_surface() {
     let folder = Folder::new();
     let high = folder.path("high.glb");
     output(&["tessellate", "shape:cube-smooth", "--surface", "pn", "--factor", "16", "-o", &high]);
-    let against = |truth: &[&str]| {
+    let against = |reference_shape: &[&str]| {
         let options = ["shape:cube-smooth", "--surface", "pn", "--factor", "4", "--overlay", "deviation"];
-        stats(&[&options[..], truth].concat())
+        stats(&[&options[..], reference_shape].concat())
     };
-    let (mesh, limit) = (against(&["--truth", &high]), against(&[]));
-    assert_eq!(mesh["accuracy"]["truth"], high.as_str());
+    let (mesh, limit) = (against(&["--reference-surface", &high]), against(&[]));
+    assert_eq!(mesh["accuracy"]["reference_surface"], high.as_str());
     assert_eq!(limit["accuracy"], Value::Null, "a limit surface gives no accuracy");
     let of_accuracy = |key: &str| number(&mesh, &format!("/accuracy/{key}"));
-    assert!(of_accuracy("to_truth/max") >= 0.9999 * number(&mesh, "/deviation/max"), "{mesh}");
-    for direction in ["to_truth", "from_truth"] {
+    assert!(of_accuracy("to_reference/max") >= 0.9999 * number(&mesh, "/deviation/max"), "{mesh}");
+    for direction in ["to_reference", "from_reference"] {
         let [samples, spacing] = ["samples", "spacing"].map(|key| of_accuracy(&format!("{direction}/{key}")));
         assert!(samples > 100_000.0 && spacing > 0.0 && spacing < 0.01 * of_accuracy("diagonal"), "{mesh}");
     }
@@ -110,18 +110,19 @@ fn deviation_is_measured_against_a_given_mesh_or_the_limit_surface() {
 fn accuracy_is_null_unless_asked_for_and_one_way_only_if_patches_are_left_out() {
     let plain = stats(&["shape:icosphere"]);
     assert_eq!((&plain["accuracy"], &plain["deviation"]), (&Value::Null, &Value::Null));
-    let culled = stats(&["shape:icosphere", "--cull-back-faces", "--truth", "shape:icosphere"]);
+    let culled = stats(&["shape:icosphere", "--cull-back-faces", "--reference-surface", "shape:icosphere"]);
     assert!(number(&culled, "/patches_facing_away") > 0.0);
-    assert_eq!(culled["accuracy"]["from_truth"], Value::Null);
-    assert!(number(&culled, "/accuracy/to_truth/max") > 0.0);
+    assert_eq!(culled["accuracy"]["from_reference"], Value::Null);
+    assert!(number(&culled, "/accuracy/to_reference/max") > 0.0);
 }
 
 #[test]
 fn a_reference_surface_that_cannot_be_read_is_named() {
     let folder = Folder::new();
     let out = folder.path("out.png");
-    let with = |truth: &'static str| {
-        ["render", "shape:torus", "-o", &out, "--size", "60x40", "--truth", truth].map(str::to_owned)
+    let with = |reference_shape: &'static str| {
+        ["render", "shape:torus", "-o", &out, "--size", "60x40", "--reference-surface", reference_shape]
+            .map(str::to_owned)
     };
     let missing = with("nowhere.glb");
     sentence(&missing.each_ref().map(String::as_str), &["nowhere.glb"]);

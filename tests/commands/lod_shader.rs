@@ -77,7 +77,7 @@ fn files_that_cannot_be_used_are_refused_with_their_line() {
     let endless = folder.path("endless.wgsl");
     let spin = "fn spin() -> f32 { var n = 1.0; while n > 0.0 { n += 1.0; if n > 9.0 { n = 1.0; } } return n; }";
     std::fs::write(&endless, format!("{spin}\n{}", EDGE.replace("BODY", "spin()"))).expect("a writable folder");
-    refused(&endless, &["the loops of the LOD shader took too long", "let them end sooner"]);
+    refused(&endless, &["the loops of the LOD shader took too long", "bound the loops more tightly"]);
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn files_that_cannot_be_used_are_refused_with_their_line() {
     let spin = "fn edge_points(edge: SurfaceEdge, triangle: SurfaceTriangle) -> EdgePoints {\n\
                 var p = edge.a; loop { p += edge.b; } return EdgePoints(p, p); }";
     std::fs::write(&endless, spin).expect("a writable folder");
-    refused(&endless, &["the loops of the surface shader took too long", "let them end sooner"]);
+    refused(&endless, &["the loops of the surface shader took too long", "bound the loops more tightly"]);
 }
 
 #[test]
@@ -146,7 +146,7 @@ fn what_cannot_be_combined_is_named() {
     assert!(render(&["--surface", "pn"]).contains("cannot be used with"));
     assert!(render(&["--alpha", "0.5"]).contains("--alpha needs"));
     assert!(render(&["--fail-on", "above-tolerance"]).contains("--fail-on above-tolerance measures on the CPU"));
-    assert!(render(&["--overlay", "deviation"]).contains("name another one with --truth"));
+    assert!(render(&["--overlay", "deviation"]).contains("name another one with --reference-surface"));
     let cpu = ["tessellate", "shape:cube-split", "-o", &mesh, "--surface-shader", PN, "--device", "cpu"];
     assert!(failure(&cpu, 2).contains("--surface-shader runs on the graphics adapter"));
     let exported = ["shaders", "--language", "hlsl", "-o", &folder.path("out"), "--surface-shader", PN];
@@ -156,6 +156,6 @@ fn what_cannot_be_combined_is_named() {
     let onto = ["tessellate", "shape:cube-split", "-o", &own, "--surface-shader", &own];
     assert!(failure(&onto, 1).contains("is read by the same command"));
     // A reference surface that is known does without the CPU's.
-    let compared = ["--overlay", "deviation", "--truth", "shape:icosphere", "--size", "64x48"];
+    let compared = ["--overlay", "deviation", "--reference-surface", "shape:icosphere", "--size", "64x48"];
     both(&[&["render", "shape:icosahedron", "-o", &picture, "--surface-shader", PN_AEN], &compared[..]].concat());
 }

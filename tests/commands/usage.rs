@@ -201,7 +201,7 @@ fn files_beyond_the_limit_are_refused() {
     sentence(&["info", vase, "--max-size", "10KiB"], &["vase.glb has ", "at most 10240 ", "--max-size"]);
     sentence(&["--max-size", "10KiB", vase], &["vase.glb has ", "at most 10240 "]);
     sentence(
-        &["render", "shape:torus", "--truth", vase, "--max-size", "1", "-o", "unwritten.png"],
+        &["render", "shape:torus", "--reference-surface", vase, "--max-size", "1", "-o", "unwritten.png"],
         &["vase.glb has ", "at most 1 "],
     );
     output(&["info", vase, "--max-size", "11 KiB"]);

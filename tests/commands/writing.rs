@@ -133,7 +133,7 @@ fn a_command_does_not_overwrite_its_input() {
         &["render", &mesh, "-o", &out, "--stats", &mesh],
         &["render", &mesh, "-o", &picture, "--height", &picture],
         &["render", &mesh, "-o", &out, "--factors", &factors, "--stats", &factors],
-        &["render", "shape:torus", "-o", &out, "--truth", &mesh, "--stats", &mesh],
+        &["render", "shape:torus", "-o", &out, "--reference-surface", &mesh, "--stats", &mesh],
         &["factors", &mesh, "-o", &mesh],
         &["chart", &mesh, "-o", &out, "--csv", &mesh],
     ];

@@ -8,7 +8,7 @@ use geometry::tessellate::{
 };
 use gpu::Timing;
 use inspect::engine::Loaded;
-use inspect::measure::{AskedFactors, EdgeSide, Measured};
+use inspect::measure::{EdgeSide, Measured, RequestedFactors};
 use inspect::render::{Camera, Scene};
 use inspect::settings::Settings;
 
@@ -38,8 +38,9 @@ fn adaptive() -> [Settings; 4] {
 
 fn on_cpu(loaded: &Loaded, inputs: &Inputs) -> (Tessellated, Measured) {
     let out = tessellate(&loaded.mesh, &loaded.topology, inputs, None);
-    let asked = AskedFactors::new(inputs.tessellation.edges, inputs.tessellation.convention, out.edge_factors.clone());
-    let measured = Measured::new(&loaded.mesh, &loaded.topology, asked, &out);
+    let requested =
+        RequestedFactors::new(inputs.tessellation.edges, inputs.tessellation.convention, out.edge_factors.clone());
+    let measured = Measured::new(&loaded.mesh, &loaded.topology, requested, &out);
     (out, measured)
 }
 
@@ -241,7 +242,7 @@ fn a_side_is_cut_by_the_factor_that_the_convention_puts_there() {
         let settings =
             Settings::from(Tessellation { convention, partitioning: Partitioning::Integer, ..Tessellation::default() });
         let out = tessellate_given(&loaded.mesh, &loaded.topology, &inputs(&loaded, &settings), &given);
-        let measured = Measured::new(&loaded.mesh, &loaded.topology, AskedFactors::given(convention, &given), &out);
+        let measured = Measured::new(&loaded.mesh, &loaded.topology, RequestedFactors::given(convention, &given), &out);
         for (index, patch) in (0..).zip(&loaded.topology.patches) {
             let found = patch.sides.map(|side| {
                 let edge = measured.outlines.edge(&loaded.topology, loaded.topology.sides[side as usize].edge);

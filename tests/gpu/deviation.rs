@@ -10,9 +10,9 @@ use gpu::Timing;
 use image::RgbaImage;
 use inspect::engine::Measurements;
 use inspect::measure::{DeviationField, DeviationTarget};
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, worst_lines};
 use inspect::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings, SplitSide};
-use inspect::truth::Truth;
 
 use crate::engine;
 use crate::pictures::{SIZE, differing};
@@ -43,8 +43,8 @@ fn drawn(
     let engine = engine();
     let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
     engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
-    let truth = Truth::from_shape(shape).expect("a shape that is sampled from a surface");
-    let field = deviation_from(scene, &DeviationTarget::Truth(Arc::new(truth)));
+    let reference_shape = ReferenceShape::from_shape(shape).expect("a shape that is sampled from a surface");
+    let field = deviation_from(scene, &DeviationTarget::ReferenceShape(Arc::new(reference_shape)));
     let scale = deviation_scale(field.worst().expect("something is emitted").value, scene.ulp());
     scene.set_deviation(&engine.gpu, Some((&field, scale)));
     engine.draw(scene, target, camera, settings, &mut Timing::Off).expect("a draw");
@@ -166,12 +166,12 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let right = settings(Surface::PnAen, 4.0);
     let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
-    let truth = Arc::new(Truth::from_shape(Shape::Icosahedron).expect("a sphere"));
+    let reference_shape = Arc::new(ReferenceShape::from_shape(Shape::Icosahedron).expect("a sphere"));
     let view = camera.lod_view(target.viewport(), &scene.bounds);
     let fields = SplitSide::BOTH.map(|half| {
         let (scene, settings) = scene.half_mut(half).zip(split.half(half)).expect("both halves");
         engine().count(scene, &settings.inputs(view), &mut Timing::Off).expect("counts");
-        deviation_from(scene, &DeviationTarget::Truth(truth.clone()))
+        deviation_from(scene, &DeviationTarget::ReferenceShape(reference_shape.clone()))
     });
     let scale = deviation_scale(fields[0].worst().expect("something is emitted").value, scene.ulp());
     let [right_hand, _, to_eye] = camera.axes();

@@ -398,7 +398,7 @@ fn a_noisy_image_refines_its_own_patches_alone() {
             assert!(both[index] == noisy[index], "{surface:?}: as many as under the noisy image alone");
         }
         let triangles = |all: &[PatchFactors]| all.iter().map(|&own| u64::from(triangle_count(own))).sum::<u64>();
-        let (noise_asks, slope_asks) = (triangles(&noisy), triangles(&smooth));
-        assert!(noise_asks > 2 * slope_asks, "{surface:?}: {noise_asks} and {slope_asks}");
+        let (noise_requests, slope_requests) = (triangles(&noisy), triangles(&smooth));
+        assert!(noise_requests > 2 * slope_requests, "{surface:?}: {noise_requests} and {slope_requests}");
     }
 }

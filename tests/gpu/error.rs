@@ -24,7 +24,7 @@ use crate::{engine, loaded, scene};
 
 const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 
-/// Whether anything asks for more segments than there are, so that no promise is made.
+/// Whether anything requests more segments than there are, so that no promise is made.
 fn is_capped(written: &[HullFactors], partitioning: Partitioning) -> bool {
     written.iter().any(|factors| factors.is_capped(partitioning))
 }
@@ -107,7 +107,7 @@ proptest! {
     }
 }
 
-/// Tessellates on the device; counts, then what was asked for.
+/// Tessellates on the device; counts, then what was requested.
 fn on_device(scene: &mut Scene, settings: &Settings, camera: &Camera) -> (Inputs, Tessellated) {
     let inputs = settings.inputs(camera.lod_view(VIEWPORT, &scene.bounds));
     engine().count(scene, &inputs, &mut Timing::Off).expect("counts");
@@ -158,7 +158,7 @@ fn shapes_on_the_device_are_within_the_tolerance_and_not_far_below() {
 /// few units in the last place.
 const ROUNDING: f32 = 1e-4;
 
-/// Whether two factors of an edge are the same: levels exactly; beyond the last, where they are asked for as they are, but
+/// Whether two factors of an edge are the same: levels exactly; beyond the last, where they are requested as they are, but
 /// for rounding.
 fn agrees(device: f32, here: f32) -> bool {
     device == here || (device > 64.0 && here > 64.0 && (device - here).abs() <= ROUNDING * here)
@@ -303,7 +303,7 @@ fn rows_on_the_device_are_within_the_tolerance_and_fewer_than_rings() {
     assert!(rows as f64 <= 0.6 * rings as f64, "{rows} triangles of rows, {rings} of rings");
 }
 
-/// Few similar patches, which together ask for more triangles than one factor for all edges takes. Without that choice not all edges
+/// Few similar patches, which together request more triangles than one factor for all edges takes. Without that choice not all edges
 /// would have the same factor.
 #[test]
 fn the_device_takes_one_factor_for_all_edges_where_the_cpu_does() {

@@ -39,7 +39,7 @@ pub(super) fn on_gpu(scene: &mut Scene, inputs: &Inputs) -> Tessellated {
 
 /// The factors that the GPU gave the edges.
 pub(super) fn edge_factors(scene: &Scene) -> Vec<f32> {
-    engine().asked_factors(scene).expect("a readback").into_factors()
+    engine().requested_factors(scene).expect("a readback").into_factors()
 }
 
 /// Same domain points and triangles in the same order, positions within 4 ULP of the largest coordinate: what is left
@@ -190,8 +190,8 @@ fn low_factors_and_small_triangles_are_counted_as_on_the_cpu() {
             let inputs = inputs(&loaded, &settings);
             let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
             engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
-            let asked = engine().asked_factors(&scene).expect("a readback");
-            let on_cpu = Measured::new(&loaded.mesh, &loaded.topology, asked, &cpu);
+            let requested = engine().requested_factors(&scene).expect("a readback");
+            let on_cpu = Measured::new(&loaded.mesh, &loaded.topology, requested, &cpu);
             let on_gpu = engine().measure(&mut scene).expect("a readback");
             let what = format!("{partitioning:?} {factor}");
             assert_eq!(on_gpu.patches_low, on_cpu.patches_low, "{what}");

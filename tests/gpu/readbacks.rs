@@ -36,9 +36,9 @@ fn each_chunk_is_read_back_once_whatever_is_asked_for() {
     assert_eq!(read(&with("render", &["--size", "160x120"]), &picture), 0, "nothing is measured");
     let stats = stats.to_str().expect("a path in UTF-8").to_owned();
     let everything = |more: &[&str]| {
-        let asked = ["render", "--size", "160x120", "--overlay", "cracks,deviation", "--select", "3"];
-        let truth = ["--truth", "shape:icosphere", "--stats", &stats];
-        let all = [&asked[..], &settings[..], &truth[..], more].concat();
+        let requested = ["render", "--size", "160x120", "--overlay", "cracks,deviation", "--select", "3"];
+        let reference_shape = ["--reference-surface", "shape:icosphere", "--stats", &stats];
+        let all = [&requested[..], &settings[..], &reference_shape[..], more].concat();
         let count = read(&all, &picture);
         let text = std::fs::read_to_string(&stats).expect("stats");
         (count, serde_json::from_str::<serde_json::Value>(&text).expect("JSON"))

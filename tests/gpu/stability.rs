@@ -9,7 +9,7 @@ use geometry::progress::Progress;
 use geometry::tessellate::{Clip, Edges, Lod, Normals, Partitioning, Surface, Tessellation, tessellate};
 use glam::{Vec2, Vec3};
 use gpu::Timing;
-use inspect::measure::{AskedFactors, Measured};
+use inspect::measure::{Measured, RequestedFactors};
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::Settings;
 use lab::stability::{CASES, CaseView, Effort, Method, Quantity, Row, Verdict, lines, run};
@@ -290,16 +290,19 @@ impl Trial {
         let topology = Topology::build(&self.mesh, &Progress::default()).expect("nobody cancels");
         let inputs = settings.inputs(self.camera.lod_view(VIEWPORT, &self.mesh.bounds()));
         let out = tessellate(&self.mesh, &topology, &inputs, None);
-        let asked =
-            AskedFactors::new(settings.tessellation.edges, settings.tessellation.convention, out.edge_factors.clone());
-        Measured::new(&self.mesh, &topology, asked, &out)
+        let requested = RequestedFactors::new(
+            settings.tessellation.edges,
+            settings.tessellation.convention,
+            out.edge_factors.clone(),
+        );
+        Measured::new(&self.mesh, &topology, requested, &out)
     }
 }
 
 /// How many meshes at random the CPU takes: PNAEN_SOUPS, for a long look in release, or else `usually`.
 pub(super) fn soups(usually: u32) -> ProptestConfig {
-    let asked = std::env::var("PNAEN_SOUPS").ok();
-    let cases = asked.map_or(usually, |count| count.parse().expect("PNAEN_SOUPS is a number"));
+    let requested = std::env::var("PNAEN_SOUPS").ok();
+    let cases = requested.map_or(usually, |count| count.parse().expect("PNAEN_SOUPS is a number"));
     // Some soups are passed over: settings that a property says nothing of.
     ProptestConfig { max_global_rejects: cases.max(1024), ..ProptestConfig::with_cases(cases) }
 }

@@ -109,7 +109,7 @@ fn what_is_not_symmetric_tears_where_it_says() {
     let measured = measured(&mut scene);
     assert_eq!(measured.cracks.different_factors, agreement.edges.len() as u64, "each of them is a crack");
     assert!(measured.cracks.max_gap() > 1e-4);
-    // One triangle alone asks for more.
+    // One triangle alone requests more.
     let odd = edge("return select(4.0, 9.0, triangle.index == 7u && edge.side == 1u);");
     let own = given(&mut scene, &odd, &inputs);
     let agreement = Agreement::new(&loaded.topology, &own, Convention::D3d11);

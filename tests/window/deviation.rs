@@ -64,20 +64,20 @@ fn a_reference_surface_is_loaded_and_stays_if_the_next_one_fails() {
     assert!(harness.query_by_label("limit surface").is_some());
     let limit = harness.state().deviation(SplitSide::Right).expect("measured");
     let context = harness.ctx.clone();
-    harness.state_mut().open_truth(&context, Source::Shape(Shape::CubeSplit));
+    harness.state_mut().open_reference_shape(&context, Source::Shape(Shape::CubeSplit));
     settle(&mut harness);
     // The flat cube: the corners of the rounded one stay there, and its faces bulge.
-    assert_eq!(harness.state().truth(), Some(&Source::Shape(Shape::CubeSplit)));
+    assert_eq!(harness.state().reference_shape(), Some(&Source::Shape(Shape::CubeSplit)));
     let bulge = harness.state().deviation(SplitSide::Right).expect("measured");
     assert!(bulge > 10.0 * limit && bulge < Vec3::ONE.length().into(), "{bulge} and {limit}");
-    harness.state_mut().open_truth(&context, Source::File("nowhere.glb".into()));
+    harness.state_mut().open_reference_shape(&context, Source::File("nowhere.glb".into()));
     settle(&mut harness);
     assert!(harness.query_by_label_contains("nowhere.glb").is_some(), "the error names the file");
     assert_eq!(harness.state().deviation(SplitSide::Right), Some(bulge), "the reference surface before it stays");
     click(&mut harness, "Close");
     click(&mut harness, "File");
     click(&mut harness, "Forget reference surface");
-    assert_eq!((harness.state().truth(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
+    assert_eq!((harness.state().reference_shape(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
 }
 
 /// The distance between the inscribed and the circumscribed sphere of an icosahedron, of radius 1.

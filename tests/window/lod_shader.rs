@@ -101,7 +101,7 @@ fn a_version_that_cannot_be_used_is_named_with_its_line_and_leaves_the_last_one(
     open(&mut harness, &path);
     // Nothing can be used yet, so LOD stays, and can be set.
     harness.get_by_label_contains("own.wgsl, line 3: ");
-    harness.get_by_label_contains("LOD stays.");
+    harness.get_by_label_contains("The LOD is still used.");
     assert_eq!((harness.state().lod_shader_file(), totals(harness.state())), (None, before));
     write(&path, "5.0");
     until(&mut harness, "the change isn't seen", |app| app.lod_shader_file().is_some());

@@ -104,14 +104,14 @@ fn jobs_that_were_under_way_go_on_without_further_messages() {
     let mut harness = alone(Source::Shape(Shape::Torus));
     choose(&mut harness, "Colours", "Deviation");
     let wanted: Source = "shape:icosphere@4".parse().expect("a shape");
-    let (context, truth) = (harness.ctx.clone(), Source::Shape(Shape::Icosphere));
+    let (context, reference_shape) = (harness.ctx.clone(), Source::Shape(Shape::Icosphere));
     // Measuring, copying, making the left half and loading are all under way.
     press(&mut harness, egui::Key::S);
     choose(&mut harness, "Left", "Flat");
     harness.key_press(egui::Key::Num7);
     harness.run_steps(2);
     harness.state_mut().open(&context, wanted.clone());
-    harness.state_mut().open_truth(&context, truth);
+    harness.state_mut().open_reference_shape(&context, reference_shape);
     lose(&mut harness);
     let mut harness = anew(harness);
     settle(&mut harness);

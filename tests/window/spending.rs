@@ -118,7 +118,7 @@ fn an_image_of_a_lit_sphere_takes_the_place_of_those_that_are_made_in_code() {
     harness.state_mut().open(&context, Source::Shape(Shape::Icosphere));
     settle(&mut harness);
     assert!(blues(&harness) > 10_000, "{}", blues(&harness));
-    choose(&mut harness, "Lit sphere", "Chrome");
+    choose(&mut harness, "Matcap", "Chrome");
     assert_eq!((harness.state().matcap_image(), harness.state().settings().matcap), (None, Matcap::Chrome));
     assert_eq!(blues(&harness), 0);
 }

@@ -68,7 +68,7 @@ fn an_image_displaces_the_mesh_and_other_settings_stay() {
     let loaded = app.loaded().expect("a mesh");
     assert_eq!(loaded.preparation.heights, Some(HeightSource::File(path.clone())));
     assert_eq!(app.cracks().map(|cracks| cracks.different_bits), Some(0));
-    choose(&mut harness, "Displace", "As published");
+    choose(&mut harness, "Displace", "Paper (seams closed)");
     assert!(
         harness.state().cracks().expect("measured").different_bits > 0,
         "displacement as published cracks at split normals"
@@ -93,7 +93,7 @@ fn an_image_displaces_the_mesh_and_other_settings_stay() {
 fn missing_heights_are_reported_and_change_nothing() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
-    choose(&mut harness, "Height map", "Material");
+    choose(&mut harness, "Height map", "Base colour brightness");
     harness.get_by_label_contains("no material has a base colour image");
     assert_eq!(harness.state().source(), Some(&Source::Shape(Shape::Torus)));
     assert_eq!(harness.state().settings().tessellation.displacement, Displacement::Off, "settings stay");

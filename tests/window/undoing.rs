@@ -26,7 +26,7 @@ fn state(app: &App) -> (Settings, Preparation, Option<Source>, [Option<PathBuf>;
         app.surface_shader_file(),
     ];
     let preparation = app.loaded().expect("a mesh").preparation.clone();
-    (*app.settings(), preparation, app.truth().cloned(), files.map(|file| file.map(Path::to_owned)))
+    (*app.settings(), preparation, app.reference_shape().cloned(), files.map(|file| file.map(Path::to_owned)))
 }
 
 /// Makes a change, undoes it and redoes it, and lets the window take each.
@@ -97,7 +97,9 @@ fn every_file_beside_the_mesh_is_undone_and_redone() {
     }
     change(&mut harness, "the environment", |app, context| app.open_environment(context, sky));
     change(&mut harness, "the matcap", |app, context| app.open_matcap(context, ball));
-    change(&mut harness, "the reference", |app, context| app.open_truth(context, Source::Shape(Shape::CubeSplit)));
+    change(&mut harness, "the reference", |app, context| {
+        app.open_reference_shape(context, Source::Shape(Shape::CubeSplit))
+    });
     change(&mut harness, "the factors", |app, context| app.open_factors(context, factors));
     change(&mut harness, "the LOD shader", |app, context| app.open_lod_shader(context, lod));
     change(&mut harness, "the surface shader", |app, context| app.open_surface_shader(context, surface));
@@ -108,8 +110,12 @@ fn every_file_beside_the_mesh_is_undone_and_redone() {
         closed.push(format!("{:?}", command.action));
     }
     assert!(closed.len() >= 4, "{closed:?}");
-    let (.., truth, files) = state(harness.state());
-    assert_eq!((truth, files.iter().flatten().count()), (None, 1), "but for the matcap, all are closed: {files:?}");
+    let (.., reference_shape, files) = state(harness.state());
+    assert_eq!(
+        (reference_shape, files.iter().flatten().count()),
+        (None, 1),
+        "but for the matcap, all are closed: {files:?}"
+    );
 }
 
 #[test]

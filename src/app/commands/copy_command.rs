@@ -38,7 +38,8 @@ impl App {
         let moment = self.moment().zip(document.loaded.mesh.rig.as_deref());
         let animation = moment.map(|(moment, rig)| (rig.clip_name(moment.clip), moment.time));
         let source = absolute_source(&document.loaded.source);
-        let truth = self.truth.as_ref().map(|truth| absolute_source(&truth.source));
+        let reference_shape =
+            self.reference_shape.as_ref().map(|reference_shape| absolute_source(&reference_shape.source));
         let mut preparation = document.loaded.preparation.clone();
         if let Some(HeightSource::File(path)) = &mut preparation.heights {
             *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
@@ -55,7 +56,7 @@ impl App {
             radius: document.scene.bounds.radius(),
             size: self.saved_size(choices),
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
-            truth: truth.as_ref(),
+            reference_shape: reference_shape.as_ref(),
             factors: self.factors_file(),
             lod_shader: self.lod_shader_file().filter(|_| self.uses_lod_shader()),
             surface_shader: self.surface_shader_file(),

@@ -28,7 +28,7 @@ impl App {
             (Need::File, self.source().is_some_and(|source| source.shape().is_none())),
             (Need::Picture, self.viewport.picture.drawn.is_some()),
             (Need::NoWriting, !self.is_writing()),
-            (Need::Truth, self.truth.is_some()),
+            (Need::ReferenceShape, self.reference_shape.is_some()),
             (Need::Factors, self.given.is_some()),
             (Need::LodShader, self.lod_shader.is_some()),
             (Need::SurfaceShader, self.surface_shader.is_some()),

@@ -14,7 +14,7 @@ pub(super) fn title(purpose: Purpose) -> &'static str {
     match purpose {
         Purpose::Open => "Open path",
         Purpose::Heights => "Height image path",
-        Purpose::CompanionFile(CompanionFile::Truth) => "Reference surface path",
+        Purpose::CompanionFile(CompanionFile::ReferenceShape) => "Reference surface path",
         Purpose::CompanionFile(CompanionFile::Factors) => "Factors path",
         Purpose::CompanionFile(CompanionFile::LodShader) => "LOD shader path",
         Purpose::CompanionFile(CompanionFile::SurfaceShader) => "Surface shader path",
@@ -51,7 +51,9 @@ pub(super) fn takes(purpose: Purpose) -> String {
                 "A {kinds} file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)"
             );
         }
-        Purpose::CompanionFile(CompanionFile::Truth) => return format!("A {} file, or shape:NAME", known_extensions()),
+        Purpose::CompanionFile(CompanionFile::ReferenceShape) => {
+            return format!("A {} file, or shape:NAME", known_extensions());
+        }
         Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => "A .png, .jpg or .webp image",
         Purpose::CompanionFile(CompanionFile::Factors) => "A .csv file with the factors of every triangle",
         Purpose::CompanionFile(CompanionFile::LodShader) => "A .wgsl file with the function edge_factor",
@@ -73,7 +75,7 @@ pub(super) fn takes(purpose: Purpose) -> String {
 pub(super) fn kinds(purpose: Purpose) -> Vec<Kind> {
     match purpose {
         // A mesh is told by its content, so it may have any name.
-        Purpose::Open | Purpose::CompanionFile(CompanionFile::Truth) => {
+        Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape) => {
             vec![("Meshes", EXTENSIONS.map(|(extension, _)| extension).to_vec()), ("All files", vec!["*"])]
         }
         Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => {
@@ -121,7 +123,7 @@ pub(super) fn proposed(purpose: Purpose, open: Option<&Source>, folder: Option<&
         return unused(folder.map_or_else(|| absolute(&name), |folder| folder.join(&name).display().to_string()));
     }
     match (purpose, open) {
-        (Purpose::Open | Purpose::CompanionFile(CompanionFile::Truth), Some(Source::File(path))) => {
+        (Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape), Some(Source::File(path))) => {
             path.display().to_string()
         }
         _ => String::new(),

@@ -8,7 +8,7 @@ use geometry::progress::Stage;
 /// The jobs that are shown, and what stopping them does, in sentences.
 const SHOWN: [(Work, &str); 4] = [
     (Work::Mesh, "Stops loading. The mesh that is open stays."),
-    (Work::Truth, "Stops loading. The reference surface before it stays."),
+    (Work::ReferenceShape, "Stops loading. The reference surface before it stays."),
     (Work::Light, "Stops reading. The light before it stays."),
     (Work::File, "Stops it. Nothing is written."),
 ];

@@ -206,9 +206,9 @@ impl App {
             (self.viewport.frozen, self.viewport.ruler) = (None, None);
         }
         if !keep_view {
-            self.forget_truth();
+            self.forget_reference_shape();
         } else if is_turned {
-            self.follow_truth(context);
+            self.follow_reference_shape(context);
         }
         let is_first = before.is_none();
         if !is_first {

@@ -19,9 +19,9 @@ use super::viewport::selection::Selection;
 use geometry::mesh::{EdgeCounts, Moment};
 use geometry::tessellate::Deformed;
 use inspect::engine::Loaded;
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
 use inspect::settings::SplitSide;
-use inspect::truth::Truth;
 
 pub(crate) struct Document {
     pub loaded: Loaded,
@@ -39,7 +39,7 @@ pub(crate) struct Document {
     /// See [`Mesh::has_texture_coordinates`](geometry::mesh::Mesh::has_texture_coordinates).
     pub has_texture_coordinates: bool,
     /// The exact surface, if the mesh is a shape that has one.
-    pub exact: Option<Arc<Truth>>,
+    pub exact: Option<Arc<ReferenceShape>>,
     /// A number of its own for each document, even if the same file is loaded again.
     pub generation: u64,
     /// What is measured of the left and of the right half of the view.
@@ -78,7 +78,7 @@ impl Measurements {
 impl Document {
     fn new(loaded: Loaded, scene: Scene) -> Self {
         static GENERATION: AtomicU64 = AtomicU64::new(0);
-        let exact = loaded.source.shape().and_then(Truth::from_shape).map(Arc::new);
+        let exact = loaded.source.shape().and_then(ReferenceShape::from_shape).map(Arc::new);
         Self {
             edges: loaded.topology.edge_counts(),
             moment: None,

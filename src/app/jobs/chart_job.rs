@@ -14,9 +14,9 @@ use geometry::mesh::Moment;
 use geometry::progress::Progress;
 use gpu::{Gpu, GpuError};
 use inspect::engine::{Engine, Loaded};
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::{Camera, Target};
 use inspect::settings::{ARENA_BYTES, Settings};
-use inspect::truth::Truth;
 use lab::chart::{Bench, Effort, Probe, Row, Setting, Subject};
 
 /// What all points of a chart have in common: mesh, pose, reference surface, view and settings that aren't tried.
@@ -25,7 +25,7 @@ pub(crate) struct ChartBasis {
     pub document: u64,
     pub moment: Option<Moment>,
     /// Counts reference surfaces; see [`App::yardstick`](crate::app::App).
-    pub truth: u64,
+    pub reference_shape: u64,
     pub camera: Camera,
     /// Width and height of the view, in px.
     pub size: [u32; 2],
@@ -38,7 +38,7 @@ pub(crate) struct Job {
     pub adapter: wgpu::Adapter,
     pub loaded: Loaded,
     pub of: ChartBasis,
-    pub truth: Option<Arc<Truth>>,
+    pub reference_shape: Option<Arc<ReferenceShape>>,
     /// The window's settings, if the list doesn't have them.
     pub current: Option<Settings>,
     pub settings: Vec<Setting>,
@@ -57,9 +57,15 @@ pub(crate) struct Charted {
 }
 
 impl Charted {
-    pub(crate) fn new(of: ChartBasis, title: String, truth: Option<(&Truth, String)>, adapter: String) -> Self {
-        let (diagonal, truth) = truth.map(|(truth, words)| (truth.diagonal(), words)).unzip();
-        let subject = Subject { title, truth, adapter, size: of.size, rows: Vec::new() };
+    pub(crate) fn new(
+        of: ChartBasis,
+        title: String,
+        reference_shape: Option<(&ReferenceShape, String)>,
+        adapter: String,
+    ) -> Self {
+        let (diagonal, reference_shape) =
+            reference_shape.map(|(reference_shape, words)| (reference_shape.diagonal(), words)).unzip();
+        let subject = Subject { title, reference_shape, adapter, size: of.size, rows: Vec::new() };
         Self { of, subject, left_out: Vec::new(), diagonal, current: None }
     }
 
@@ -213,9 +219,9 @@ impl Worker {
         scene.frame_clip(moment.map(|moment| moment.clip));
         scene.set_moment(moment)?;
         let target = Target::new(&engine.gpu, size)?;
-        let (mesh, truth) = (job.loaded.source.to_string(), job.truth.as_deref());
+        let (mesh, reference_shape) = (job.loaded.source.to_string(), job.reference_shape.as_deref());
         let mut bench =
-            Bench { engine: &engine, mesh, scene, target: &target, camera, truth, base, effort: job.effort };
+            Bench { engine: &engine, mesh, scene, target: &target, camera, reference_shape, base, effort: job.effort };
         if let Some(settings) = job.current.filter(|_| self.goes_on()) {
             let probe = bench.probe(&settings)?;
             engine.gpu.check()?;

@@ -74,7 +74,7 @@ impl App {
     /// What is open, or being opened, beside the mesh.
     pub(in crate::app) fn companion(&self, companion: CompanionFile) -> Option<Source> {
         let path = match companion {
-            CompanionFile::Truth => return self.truth().cloned(),
+            CompanionFile::ReferenceShape => return self.reference_shape().cloned(),
             CompanionFile::Factors => self.factors_file(),
             CompanionFile::LodShader => self.open_shader_file::<LodShader>(),
             CompanionFile::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
@@ -86,7 +86,7 @@ impl App {
 
     pub(in crate::app) fn close_companion(&mut self, companion: CompanionFile) {
         match companion {
-            CompanionFile::Truth => self.forget_truth(),
+            CompanionFile::ReferenceShape => self.forget_reference_shape(),
             CompanionFile::Factors => self.forget_factors(),
             CompanionFile::LodShader => self.forget_shader::<LodShader>(),
             CompanionFile::SurfaceShader => self.forget_shader::<SurfaceShader>(),
@@ -98,7 +98,7 @@ impl App {
     /// Starts to open a file beside the mesh, or a shape as the reference surface. Until it is read, what is open stays.
     pub(in crate::app) fn open_companion(&mut self, context: &egui::Context, companion: CompanionFile, source: Source) {
         match (companion, source) {
-            (CompanionFile::Truth, source) => self.open_truth(context, source),
+            (CompanionFile::ReferenceShape, source) => self.open_reference_shape(context, source),
             (CompanionFile::Factors, Source::File(path)) => self.open_factors(context, path),
             (CompanionFile::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
             (CompanionFile::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),

@@ -23,7 +23,7 @@ pub(crate) struct DeviationJob {
 pub(crate) struct DeviationBasis {
     pub tessellation: u64,
     /// Counts reference surfaces.
-    pub truth: u64,
+    pub reference_shape: u64,
     /// The surface whose limit surface is the reference, if none was chosen.
     pub limit: Surface,
 }

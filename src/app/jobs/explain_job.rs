@@ -20,8 +20,8 @@ impl App {
     /// Starts to explain a patch, unless that was done already. One that is being explained comes first.
     pub(in crate::app) fn explain(&mut self, context: &egui::Context, posed: PosedMesh, wanted: EmittedPatch) {
         let Some(document) = &mut self.document else { return };
-        let is_asked = document.explanation.as_ref().is_some_and(|(asked, _)| *asked == wanted);
-        if is_asked || self.jobs.has(Work::Explanation) {
+        let is_requested = document.explanation.as_ref().is_some_and(|(asked, _)| *asked == wanted);
+        if is_requested || self.jobs.has(Work::Explanation) {
             return;
         }
         document.explanation = Some((wanted, None));

@@ -16,7 +16,7 @@ use load::files::Limits;
 pub(crate) enum Work {
     Mesh,
     /// The reference surface.
-    Truth,
+    ReferenceShape,
     /// The file of light.
     Light,
     /// Reading a file of factors, or comparing its factors under another convention.
@@ -48,8 +48,8 @@ impl Work {
 
     /// Whether it reads a file beside the mesh.
     fn is_companion(self) -> bool {
-        use Work::{Factors, Light, LodShader, Matcap, SurfaceShader, Truth};
-        matches!(self, Truth | Light | Factors | Matcap | LodShader | SurfaceShader)
+        use Work::{Factors, Light, LodShader, Matcap, ReferenceShape, SurfaceShader};
+        matches!(self, ReferenceShape | Light | Factors | Matcap | LodShader | SurfaceShader)
     }
 
     /// Whether it ends with the document.

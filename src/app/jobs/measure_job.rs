@@ -9,7 +9,7 @@ use geometry::tessellate::{Convention, Edges, HullFactors, Inputs, PatchFactors,
 use geometry::view::ScreenView;
 use gpu::{Given, Gpu, GpuError, Readback};
 use inspect::engine::measurements::closed_extent;
-use inspect::measure::{Agreement, AskedFactors, CrackedEdge, Measured, Sizes, Survey};
+use inspect::measure::{Agreement, CrackedEdge, Measured, RequestedFactors, Sizes, Survey};
 use inspect::render::{Camera, Scene};
 
 /// Why a measurement ended without a result.
@@ -92,14 +92,14 @@ struct Surveyed {
 struct ReadFactors {
     /// This many bytes of the patches' factors come first.
     patch_bytes: usize,
-    asked: RequestedFactors,
+    asked: FactorSource,
     convention: Convention,
     /// Factors that a file gave in place of those of LOD.
-    given: Option<AskedFactors>,
+    given: Option<RequestedFactors>,
 }
 
 /// What gave the factors that were asked for.
-enum RequestedFactors {
+enum FactorSource {
     /// LOD, for every edge or every side.
     Lod(Edges),
     /// An LOD shader, a [`HullFactors`] for every patch.
@@ -203,17 +203,17 @@ fn read_factors(gpu: &Gpu, scene: &Scene) -> (ReadFactors, Readback) {
     let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
     let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes.end).sum();
     let sizes = scene.tessellator.buffers();
-    let (asked, buffer, asked_bytes) = match scene.tessellator.user_factors() {
-        Some(own) => (RequestedFactors::Shader, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
+    let (asked, buffer, requested_bytes) = match scene.tessellator.user_factors() {
+        Some(own) => (FactorSource::Shader, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
         None => {
             let (of_lod, edges) = scene.tessellator.edge_factors();
-            (RequestedFactors::Lod(edges), of_lod, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
+            (FactorSource::Lod(edges), of_lod, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
         }
     };
-    let readback = Readback::start(gpu, buffers.chain([(buffer, 0..asked_bytes)]));
+    let readback = Readback::start(gpu, buffers.chain([(buffer, 0..requested_bytes)]));
     let convention = scene.tessellator.convention();
     let given = match scene.tessellator.given() {
-        Some(Given::Factors(given)) => Some(AskedFactors::given(convention, given)),
+        Some(Given::Factors(given)) => Some(RequestedFactors::given(convention, given)),
         _ => None,
     };
     (ReadFactors { patch_bytes: patch_bytes as usize, asked, convention, given }, readback)
@@ -226,12 +226,12 @@ fn survey(parts: &Parts, posed: &PosedMesh, factors: ReadFactors, view: ScreenVi
     let bytes = parts.first()?;
     let (factors, read) = bytes.split_at(patch_bytes);
     let own: Vec<HullFactors> = match asked {
-        RequestedFactors::Shader => bytemuck::pod_collect_to_vec(read),
-        RequestedFactors::Lod(_) => Vec::new(),
+        FactorSource::Shader => bytemuck::pod_collect_to_vec(read),
+        FactorSource::Lod(_) => Vec::new(),
     };
     let asked = given.unwrap_or_else(|| match asked {
-        RequestedFactors::Shader => AskedFactors::given(convention, &own),
-        RequestedFactors::Lod(edges) => AskedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
+        FactorSource::Shader => RequestedFactors::given(convention, &own),
+        FactorSource::Lod(edges) => RequestedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
     });
     // Where the sides of edges got different factors from a shader is told as it is of a file.
     let agreement = (!own.is_empty()).then(|| Agreement::new(&topology, &own, convention));

@@ -169,10 +169,10 @@ impl App {
     /// What commands compare with: the chosen mesh; and while the overlay is on, an exact or the limit surface.
     fn reference_surface(&self, settings: &Settings) -> Option<ReferenceSurface> {
         let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
-        let chosen = self.truth.as_ref().map(|chosen| chosen.source.to_string());
+        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.source.to_string());
         let exact = self.source().filter(|_| is_shown).map(ToString::to_string);
         match self.yardstick().1 {
-            Some(truth) => Some(ReferenceSurface::Truth(chosen.or(exact)?, truth)),
+            Some(reference_shape) => Some(ReferenceSurface::ReferenceShape(chosen.or(exact)?, reference_shape)),
             // The CPU doesn't know the limit surface of a shader.
             None => (is_shown && !self.uses_surface_shader()).then_some(ReferenceSurface::Limit),
         }

@@ -63,8 +63,15 @@ impl App {
     fn chart_of(&self) -> Option<ChartBasis> {
         let document = self.document.as_ref()?;
         let size = self.viewport.picture.target.as_ref()?.0.size;
-        let (moment, truth, base) = (self.moment(), self.yardstick().0, base(&self.settings));
-        Some(ChartBasis { document: document.generation, moment, truth, camera: self.viewport.camera, size, base })
+        let (moment, reference_shape, base) = (self.moment(), self.yardstick().0, base(&self.settings));
+        Some(ChartBasis {
+            document: document.generation,
+            moment,
+            reference_shape,
+            camera: self.viewport.camera,
+            size,
+            base,
+        })
     }
 
     /// Why the chart is out of date; none if it isn't.
@@ -77,14 +84,19 @@ impl App {
     pub(in crate::app) fn measure_chart(&mut self, context: &egui::Context) {
         let Some(of) = self.chart_of() else { return };
         let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
-        let (_, truth, words) = self.yardstick();
+        let (_, reference_shape, words) = self.yardstick();
         let all = self.chart_settings();
         let is_known = |setting: &Setting| self.panels.chart.charted().is_some_and(|charted| charted.has(setting));
         let missing: Vec<_> = all.iter().filter(|setting| !is_known(setting)).copied().collect();
         let starts_over = missing.is_empty() || self.panels.chart.charted().is_none_or(|charted| charted.of != of);
         if starts_over {
             let (title, adapter) = (loaded.source.title(), self.engine.gpu.info.name.clone());
-            let charted = Charted::new(of, title, truth.as_deref().map(|truth| (truth, words)), adapter);
+            let charted = Charted::new(
+                of,
+                title,
+                reference_shape.as_deref().map(|reference_shape| (reference_shape, words)),
+                adapter,
+            );
             self.panels.chart.charting.charted = Some(charted);
         }
         let mut settings = if starts_over { all } else { missing };
@@ -94,7 +106,7 @@ impl App {
         let is_listed = settings.first().is_some_and(|first| Some(*first) == own);
         let current = self.unknown_current().filter(|_| !is_listed);
         let adapter = self.render_state.adapter.clone();
-        let job = Job { adapter, loaded, of, truth, current, settings, effort: self.chart_effort() };
+        let job = Job { adapter, loaded, of, reference_shape, current, settings, effort: self.chart_effort() };
         self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
@@ -139,9 +151,9 @@ impl App {
             return;
         }
         let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
-        let (adapter, truth) = (self.render_state.adapter.clone(), self.yardstick().1);
+        let (adapter, reference_shape) = (self.render_state.adapter.clone(), self.yardstick().1);
         let (effort, settings) = (self.chart_effort(), Vec::new());
-        let job = Job { adapter, loaded, of, truth, current: Some(current), settings, effort };
+        let job = Job { adapter, loaded, of, reference_shape, current: Some(current), settings, effort };
         self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
@@ -158,7 +170,7 @@ impl ChartBasis {
             Some("another mesh is shown")
         } else if self.moment != now.moment {
             Some("another pose is shown")
-        } else if self.truth != now.truth {
+        } else if self.reference_shape != now.reference_shape {
             Some("another reference surface is chosen")
         } else if (self.camera, self.size) != (now.camera, now.size) {
             Some("the view has changed")

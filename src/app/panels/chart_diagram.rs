@@ -43,7 +43,7 @@ impl<'a> Diagram<'a> {
         // A plot keeps its view until it is reset, so each cost has a plot of its own.
         let plot = Plot::new(("chart", self.cost == Cost::Ms))
             .x_axis_label(self.cost.name())
-            .y_axis_label(if subject.truth.is_some() { "Error, % of diagonal" } else { "Error, px" })
+            .y_axis_label(if subject.reference_shape.is_some() { "Error, % of diagonal" } else { "Error, px" })
             .grid_color(ui.visuals().weak_text_color().gamma_multiply(0.5))
             .x_grid_spacer(move |input: GridInput| marks(&x, input.bounds))
             .y_grid_spacer(move |input: GridInput| marks(&y, input.bounds))

@@ -285,7 +285,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let subject = &diagram.charted.subject;
     let races = subject.races();
     let front: Vec<_> = races.iter().flat_map(|race| race.front(|row| diagram.cost.of(row))).collect();
-    let unit = if subject.truth.is_some() { "%" } else { "px" };
+    let unit = if subject.reference_shape.is_some() { "%" } else { "px" };
     // Numbers of triangles are longer than times.
     let (cost_unit, cost_name, width) = match diagram.cost {
         Cost::Ms => ("ms", "ms", 6),

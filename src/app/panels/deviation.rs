@@ -28,8 +28,8 @@ impl App {
         }
         let document = self.document.as_ref()?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
-        let (truth, limit) = (self.yardstick().0, self.settings.tessellation.surface);
-        Some(DeviationBasis { tessellation, truth, limit })
+        let (reference_shape, limit) = (self.yardstick().0, self.settings.tessellation.surface);
+        Some(DeviationBasis { tessellation, reference_shape, limit })
     }
 
     /// Whether there is nothing to compare with: the CPU doesn't know the limit surface of a shader.
@@ -71,12 +71,15 @@ impl App {
         }
         for half in SplitSide::BOTH {
             let Some(of) = self.deviation_of(half).filter(|_| self.settings.half(half).is_some()) else { continue };
-            let truth = self.yardstick().1;
+            let reference_shape = self.yardstick().1;
             let Some(document) = self.document.as_mut() else { continue };
             let is_posed = document.moment == self.viewport.playback.moment();
             let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
             let Some(scene) = scene else { continue };
-            let target = || truth.map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::Truth);
+            let target = || {
+                reference_shape
+                    .map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::ReferenceShape)
+            };
             document.halves[half as usize].deviation.go_on(&self.engine.gpu, scene, of, target)?;
         }
         self.scale_deviation();
@@ -105,7 +108,7 @@ impl App {
     pub(in crate::app) fn worst_mark(&self, half: SplitSide) -> Vec<LineSegment> {
         let shown = self.known_deviation(half).filter(|_| self.shows_deviation());
         let worst = shown.and_then(|found| found.worst);
-        worst.map_or_else(Vec::new, |worst| worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()))
+        worst.map_or_else(Vec::new, |worst| worst_lines(worst.emitted.as_vec3(), worst.reference_shape.as_vec3()))
     }
 
     /// The number of the result that each half's mark shows; 0 for no mark.
@@ -149,9 +152,9 @@ impl App {
             let text = "Nothing is measured: the CPU doesn't know the surface of a shader. Choose a reference surface under File.";
             return drop(ui.add(egui::Label::new(text).wrap()));
         }
-        let (truth, mut name) = (self.yardstick().1, self.yardstick().2);
+        let (reference_shape, mut name) = (self.yardstick().1, self.yardstick().2);
         let is_split = self.settings.half(SplitSide::Left).is_some();
-        if is_split && truth.is_none() {
+        if is_split && reference_shape.is_none() {
             name = format!("limit of {}", self.settings.tessellation.surface.label());
         }
         let mut clicked = None;
@@ -220,7 +223,7 @@ impl App {
     fn deviation_px(&self, half: SplitSide) -> Option<f64> {
         let (worst, view) = (self.known_deviation(half)?.worst?, self.viewport.picture.seen_from()?);
         let at = |place: glam::DVec3| project(view.clip_from_object, view.viewport, place.as_vec3());
-        Some(f64::from(at(worst.emitted)?.distance(at(worst.truth)?)))
+        Some(f64::from(at(worst.emitted)?.distance(at(worst.reference_shape)?)))
     }
 
     fn frame_worst(&mut self, half: SplitSide) {

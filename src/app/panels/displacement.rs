@@ -60,7 +60,7 @@ impl App {
                 chosen = Some(None);
             }
             let is_material = heights == Some(HeightSource::Materials);
-            if entry("Material", is_material, "The brightness of each material's base colour image.") {
+            if entry("Base colour brightness", is_material, "The brightness of each material's base colour image.") {
                 chosen = Some(Some(HeightSource::Materials));
             }
             let is_file = matches!(heights, Some(HeightSource::File(_)));

@@ -16,7 +16,7 @@ impl App {
         let own = self.settings.matcap;
         let image = self.matcap.as_ref().map(OpenFile::name);
         let shown = image.clone().unwrap_or_else(|| own.label().to_owned());
-        let combo = egui::ComboBox::from_id_salt("Lit sphere").selected_text(shown).truncate();
+        let combo = egui::ComboBox::from_id_salt("Matcap").selected_text(shown).truncate();
         let combo = combo.show_ui(ui, |ui| {
             for matcap in Matcap::ALL {
                 let is_shown = image.is_none() && own == matcap;

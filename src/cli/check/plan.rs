@@ -19,7 +19,8 @@ const CONFIG: &str = "pnaen.toml";
 /// The options of a camera: those that a named view may have.
 const CAMERA: [&str; 6] = ["camera", "target", "orthographic", "field-of-view", "roll", "file-camera"];
 /// The options whose values are paths, which are relative to the configuration's folder.
-const PATHS: [&str; 7] = ["height", "environment", "truth", "matcap-image", "factors", "lod-shader", "surface-shader"];
+const PATHS: [&str; 7] =
+    ["height", "environment", "reference-surface", "matcap-image", "factors", "lod-shader", "surface-shader"];
 
 /// An asset, and how it is checked.
 pub(super) struct Job {
@@ -159,7 +160,7 @@ fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &s
     }
     // A reference surface that is a file may name other files, which aren't known here.
     let is_kept = matches!(source, Source::File(_))
-        && views.iter().all(|(_, options)| !matches!(options.truth.truth, Some(Source::File(_))));
+        && views.iter().all(|(_, options)| !matches!(options.reference_shape.reference_shape, Some(Source::File(_))));
     let pictures = args.page.is_some();
     let configuration = format!("{gates:?} {views:?} {pictures} {:?}", args.adapter.adapter);
     Ok(Job { source, name, gates, views, read, hidden, configuration, is_kept })
@@ -179,7 +180,7 @@ fn resolved(option: &mut OptionValue, folder: &Path) -> Vec<PathBuf> {
     }
     for value in option.values.iter_mut().flatten() {
         let is_file = match option.name.as_str() {
-            "truth" => !value.starts_with("shape:"),
+            "reference-surface" => !value.starts_with("shape:"),
             "height" => value != "material",
             // Standard input, which is refused later.
             _ => value != "-",

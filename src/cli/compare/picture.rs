@@ -11,12 +11,12 @@ use geometry::mesh::{Mesh, MeshSlices, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{FIXED_ONE, Surface, Tessellation, Vertex, outline_place};
 use inspect::engine::{Engine, Loaded};
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::layout::WORST_COLOR;
 use inspect::render::{Camera, LineSegment};
 use inspect::settings::{Colors, Overlays, Settings};
 use inspect::shot::legend::{Named, draw_key};
 use inspect::shot::{ReferenceSurface, Shot, ShotView, Subject, write_picture};
-use inspect::truth::Truth;
 use lab::compare::{Comparison, ForeignMesh, OurTessellation, SideDifference, patch_starts};
 
 /// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
@@ -56,7 +56,8 @@ pub(super) fn draw(
         lines.swap(0, 1);
     }
     let subject = Subject {
-        reference_surface: our_mesh(ours).map(|truth| ReferenceSurface::Truth("ours".to_owned(), Arc::new(truth))),
+        reference_surface: our_mesh(ours)
+            .map(|reference_shape| ReferenceSurface::ReferenceShape("ours".to_owned(), Arc::new(reference_shape))),
         more_lines: [Vec::new(), lines.concat()],
         arena_bytes: args.surface.arena_bytes(),
         ..Subject::new(shown, settings())
@@ -86,11 +87,11 @@ fn their_mesh(theirs: &ForeignMesh, comparison: &Comparison) -> Option<Mesh> {
 }
 
 /// What we emit, as the surface that theirs is compared with.
-fn our_mesh(ours: &OurTessellation) -> Option<Truth> {
+fn our_mesh(ours: &OurTessellation) -> Option<ReferenceShape> {
     let out = ours.tessellated;
     let positions: Vec<[f32; 3]> = out.vertices.iter().map(|vertex| vertex.position).collect();
     let slices = MeshSlices { positions: &positions, indices: out.triangles.as_flattened(), ..MeshSlices::default() };
-    Truth::from_mesh(&Mesh::from_slices(&slices).ok()?)
+    ReferenceShape::from_mesh(&Mesh::from_slices(&slices).ok()?)
 }
 
 /// What differs, as lines and dots: each kind with its colour and its name.

@@ -26,10 +26,10 @@ choices! {
         On => "on", "On",
             "Displaces without cracks. Each edge and each point takes its texture coordinates from one triangle \
              (dominant edges and vertices, McDonald 2011), and moves along the mean of the normals that meet there.";
-        AsPublished => "as-published", "As published",
+        AsPublished => "as-published", "Paper (seams closed)",
             "Uses dominant edges and vertices (McDonald 2011), but moves each patch along its own normals. Texture seams \
              stay closed, and edges with split normals crack open.";
-        PerPatch => "per-patch", "Per patch",
+        PerPatch => "per-patch", "Per patch (cracks)",
             "Each patch uses its own texture coordinates and normals. Texture seams and edges with split normals crack \
              open.";
     }

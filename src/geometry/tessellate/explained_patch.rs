@@ -40,9 +40,9 @@ pub struct ExplainedPatch {
 pub struct ExplainedEdge {
     /// The least factor that the edge may get: its curves need it, or the heights on them.
     pub least: f32,
-    /// The factor that the patch asks for.
+    /// The factor that the patch requests.
     pub own: f32,
-    /// The other patches on the edge, and the factors that they ask for.
+    /// The other patches on the edge, and the factors that they request.
     pub others: Vec<(u32, f32)>,
     /// The factor that it gets: the largest of these; a larger one if patches asked again; or what all edges get.
     pub got: f32,
@@ -51,23 +51,23 @@ pub struct ExplainedEdge {
 /// Whose request an edge got.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DecidedBy {
-    /// Nobody asked for more than the edge's curve needs by itself.
+    /// Nobody requested more than the edge's curve needs by itself.
     Curve,
     /// The patch that is explained.
     Own,
     /// A patch beside it.
     Other,
-    /// Both asked for the same.
+    /// Both requested the same.
     Both,
     /// One of them asked again, since no inside factor, or only a much larger one, sufficed beside what the edges got first.
-    /// Or all edges got one factor that is larger than what these asked for.
+    /// Or all edges got one factor that is larger than what these requested.
     Again,
     /// Nobody: all edges got one factor, which takes fewer triangles.
     All,
 }
 
 impl ExplainedEdge {
-    /// Returns the largest factor that other patches ask for, if there are any.
+    /// Returns the largest factor that other patches request, if there are any.
     pub fn other(&self) -> Option<f32> {
         self.others.iter().map(|&(_, factor)| factor).reduce(f32::max)
     }
@@ -164,7 +164,7 @@ pub fn explain_patch(
     let tolerance = lod.surface_tolerance();
     let errors = pattern_errors(&measured, inputs.tessellation.convention, used);
     let mut minimum = minimum(searched.tessellation.partitioning, own);
-    // The search doesn't try all factors. What is drawn may have fewer triangles than it found, because neighbours asked for more
+    // The search doesn't try all factors. What is drawn may have fewer triangles than it found, because neighbours requested more
     // along the edges. Other LODs don't see to it that heights have enough.
     let drawn = triangle_count(used);
     let is_within = errors.is_some_and(|errors| errors.largest() <= tolerance) && (by_error || !is_displaced);
@@ -211,17 +211,17 @@ impl MeshLod<'_> {
     fn explain_edge(&self, patch: u32, side: usize, used: f32) -> ExplainedEdge {
         let (nets, topology) = (self.nets, self.nets.topology);
         let factor = nets.patch_factor(patch, side);
-        let asked = |patch: u32, side: usize| {
+        let requested = |patch: u32, side: usize| {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| self.least_edge_factor(factor));
-            self.fewest(patch, &seen, least, 0.0, SearchGoal::Asked).edges[(side + 2) % 3]
+            self.fewest(patch, &seen, least, 0.0, SearchGoal::Requests).edges[(side + 2) % 3]
         };
         let own_side = topology.sides[topology.patches[patch as usize].sides[side] as usize];
         let sides = topology.edge_sides(&topology.edges[own_side.edge as usize]).iter();
         let others = sides.filter(|other| (other.patch(), other.index()) != (patch, side));
         let others = others.filter(|other| nets.patch_factor(other.patch(), other.index()) == factor);
-        let others: Vec<_> = others.map(|other| (other.patch(), asked(other.patch(), other.index()))).collect();
-        let own = asked(patch, side);
+        let others: Vec<_> = others.map(|other| (other.patch(), requested(other.patch(), other.index()))).collect();
+        let own = requested(patch, side);
         let most = others.iter().map(|&(_, factor)| factor).fold(own, f32::max);
         let got = if used > 0.0 && is_enough(most) { used } else { most.max(used) };
         ExplainedEdge { least: self.least_edge_factor(factor), own, others, got }

@@ -245,10 +245,10 @@ mod tests {
                 let sought = FactorSearch { least, inside: 1.0, inner: 0.0, wanted };
                 fewest_triangles(patch, tolerance, Partitioning::Integer, &sought)
             };
-            let ChosenFactors { edges, .. } = found(&patch, [1.0; 3], SearchGoal::Asked);
+            let ChosenFactors { edges, .. } = found(&patch, [1.0; 3], SearchGoal::Requests);
             let inside = found(&patch, edges, SearchGoal::Given).inside;
             prop_assert!(inside <= 64.0);
-            let same_place = found(&seen_patch(&VIEW, &net), [1.0; 3], SearchGoal::Asked).edges;
+            let same_place = found(&seen_patch(&VIEW, &net), [1.0; 3], SearchGoal::Requests).edges;
             prop_assert!(edges.iter().sum::<f32>() <= same_place.iter().sum::<f32>() + 2.0);
             let factors = process(Partitioning::Integer, edges, inside);
             let (plan, outline) = (domain_plan(factors), outline(&net));

@@ -50,13 +50,13 @@ impl HullFactors {
         self.culls() || self.edges.into_iter().all(|factor| factor == self.inside)
     }
 
-    /// Returns whether the inside factor asks for more segments than a partitioning has, as where LOD by error found none that is
+    /// Returns whether the inside factor requests more segments than a partitioning has, as where LOD by error found none that is
     /// enough.
     pub fn inside_is_capped(self, partitioning: Partitioning) -> bool {
         self.inside % ROW_BASE_STEP as f32 > last_factor(partitioning)
     }
 
-    /// Returns whether any factor asks for more segments than a partitioning has.
+    /// Returns whether any factor requests more segments than a partitioning has.
     pub fn is_capped(self, partitioning: Partitioning) -> bool {
         self.inside_is_capped(partitioning) || self.edges.iter().any(|&factor| factor > last_factor(partitioning))
     }

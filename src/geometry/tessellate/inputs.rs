@@ -14,8 +14,7 @@ choices! {
             "Every shared edge is computed once. The triangles on both sides get identical bits, so that nothing cracks.";
         AsPublished => "as-published", "By each patch",
             "Every patch computes its edges for itself, as the white paper's shaders do (McDonald and Kilgard 2010). \
-             Rounding differs, so that edges crack in their last bits. In the window, LOD by edge length and clipping \
-             switch to the white paper's form too.";
+             Rounding differs, so that edges crack in their last bits.";
     }
 }
 

@@ -3,9 +3,9 @@
 //!
 //! The triangles along an edge (its *row*) depend on that edge's factor and on the inside factor alone, and all others
 //! depend on the inside factor alone. So every patch looks for the inside factor with which it and its edges together
-//! have the fewest triangles, and asks each edge for a factor. An edge gets the largest factor that its patches ask for.
+//! have the fewest triangles, and asks each edge for a factor. An edge gets the largest factor that its patches request.
 //! Then every patch takes the least inside factor that suffices beside the factors of its edges. If that is much larger than
-//! what it has chosen, it asks again. If in the end one factor for all edges takes fewer triangles, all edges get that one.
+//! what it has chosen, it requests again. If in the end one factor for all edges takes fewer triangles, all edges get that one.
 
 use std::array::from_fn;
 
@@ -22,7 +22,7 @@ use super::piece_error::{SeenPatch, clip_point, deeper, depth_scale, may_slide, 
 /// The part of the tolerance that bounds may use up. The rest is for rounding.
 pub const BOUND_SHARE: f32 = 0.999;
 
-/// A factor that is asked for if none is enough.
+/// A factor that is requested if none is enough.
 pub const BEYOND_LAST: f32 = 127.5;
 
 /// Returns the least number of segments, `least` or more, that a partitioning has without fractions: any whole number,
@@ -211,9 +211,9 @@ pub(super) struct ChosenFactors {
 /// What the factors of a patch's edges are that are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SearchGoal {
-    /// What the patch asks its edges for. Every segment of an edge is a triangle's side in this patch and in its neighbour.
-    Asked,
-    /// What it would have if no neighbour asked for anything.
+    /// What the patch requests factors of its edges for. Every segment of an edge is a triangle's side in this patch and in its neighbour.
+    Requests,
+    /// What it would have if no neighbour requested anything.
     Own,
     /// What its edges have: only the inside is looked for.
     Given,
@@ -294,7 +294,7 @@ pub(super) fn fewest_triangles(
         return ChosenFactors { edges: least, inside, inner };
     }
     let slides = may_slide(patch, within);
-    let segment = if wanted == SearchGoal::Asked { 2.0 } else { 1.0 };
+    let segment = if wanted == SearchGoal::Requests { 2.0 } else { 1.0 };
     let mut best = ChosenFactors { edges: least, inside: BEYOND_LAST, inner };
     let mut fewest = 3.4e38;
     let mut step = first_step(partitioning, least_inside, inner);
@@ -332,9 +332,9 @@ pub(super) fn fewest_triangles(
     best
 }
 
-/// Returns whether a patch asks its edges again: beside what other patches asked for, its inside factor is much larger
+/// Returns whether a patch requests factors of its edges again: beside what other patches requested, its inside factor is much larger
 /// than the one that it has chosen.
-pub(super) fn asks_again(chosen: f32, inside: f32) -> bool {
+pub(super) fn requests_again(chosen: f32, inside: f32) -> bool {
     inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0
 }
 

@@ -73,13 +73,13 @@ struct TriedRows {
     lessened: u32,
 }
 
-/// As how many triangles a segment of an edge counts where a patch asks for it. It is a triangle's side in this patch and in its
-/// neighbour; but the neighbour often asks for it, too.
-pub const ASKED_SEGMENT: f32 = 1.75;
+/// As how many triangles a segment of an edge counts where a patch requests it. It is a triangle's side in this patch and in its
+/// neighbour; but the neighbour often requests it, too.
+pub const REQUESTED_SEGMENT: f32 = 1.75;
 
 /// Returns as how many triangles a segment of an edge counts.
 fn segment_cost(sought: &FactorSearch) -> f32 {
-    if sought.wanted == SearchGoal::Asked { ASKED_SEGMENT } else { 1.0 }
+    if sought.wanted == SearchGoal::Requests { REQUESTED_SEGMENT } else { 1.0 }
 }
 
 /// Returns whether the edges have their factors, so that only base and width are chosen.
@@ -157,7 +157,7 @@ fn grown_rows(sought: &FactorSearch, tried: TriedRows, expected: &Expected, erro
     let ratio = if ratio < 100.0 { ratio } else { 100.0 };
     let across = expected.across / (tried.rows * tried.rows);
     let along = expected.along / (tried.width * tried.width);
-    // Beyond what second derivatives ask for, more segments rarely help.
+    // Beyond what second derivatives request, more segments rarely help.
     let part = match is_given(sought) {
         true if tried.width < 1.5 * expected.width => 0.0,
         true => 0.25,
@@ -311,9 +311,9 @@ fn points_inside(edges: [f32; 3], inside: f32) -> f32 {
     (point_count(factors) - outer_count(factors)) as f32
 }
 
-/// Returns whether a patch asks its edges again: beside what other patches asked for, it has many more points inside than with
+/// Returns whether a patch requests factors of its edges again: beside what other patches requested, it has many more points inside than with
 /// what it has chosen.
-pub(super) fn rows_ask_again(chosen: &ChosenFactors, edges: [f32; 3], inside: f32) -> bool {
+pub(super) fn rows_request_again(chosen: &ChosenFactors, edges: [f32; 3], inside: f32) -> bool {
     inside == BEYOND_LAST || points_inside(edges, inside) > 1.1 * points_inside(chosen.edges, chosen.inside) + 2.0
 }
 

@@ -1,5 +1,5 @@
 //! The tessellation factors that LOD gives to the edges and patches of a mesh, on the CPU: what
-//! `shaders/pass_factors.wgsl`, `shaders/pass_asked.wgsl` and `shaders/pass_uniform.wgsl` compute.
+//! `shaders/pass_factors.wgsl`, `shaders/pass_requests.wgsl` and `shaders/pass_uniform.wgsl` compute.
 
 use glam::Vec3;
 
@@ -8,10 +8,10 @@ use super::factors::base_factor;
 use super::flat_patch::{line_error, normals_agree, plane_error};
 use super::hull_factors::inside_of_base;
 use super::least_factors::{
-    BEYOND_LAST, ChosenFactors, FactorSearch, SearchGoal, asks_again, fewest_triangles, least_edge_factor,
+    BEYOND_LAST, ChosenFactors, FactorSearch, SearchGoal, fewest_triangles, least_edge_factor, requests_again,
     uniform_suffices, whole_segments,
 };
-use super::least_rows::{fewest_rows, rows_ask_again};
+use super::least_rows::{fewest_rows, rows_request_again};
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch};
 use super::texel_lengths::Maps;
@@ -29,7 +29,7 @@ pub(super) struct MeshFactors {
 }
 
 /// Returns how often patches may ask: once, and again as long as factors change. A patch has no more rows than its edges have
-/// segments, so that under rows patches more often need more than what their neighbours have asked for.
+/// segments, so that under rows patches more often need more than what their neighbours have requested.
 pub fn rounds(has_rows: bool) -> u32 {
     if has_rows { 5 } else { 4 }
 }
@@ -44,7 +44,7 @@ pub(super) struct MeshLod<'a> {
 
 impl MeshLod<'_> {
     /// Returns the factors that LOD gives: to each edge the largest that any of its curves needs, or under LOD by error that
-    /// any of its patches asks for. With edges as published, each curve has its own factor.
+    /// any of its patches requests. With edges as published, each curve has its own factor.
     pub(super) fn mesh_factors(&self) -> MeshFactors {
         if self.inputs.tessellation.lod.is_by_error() {
             return self.factors_by_error();
@@ -75,33 +75,33 @@ impl MeshLod<'_> {
         MeshFactors { edges: edges.to_vec(), insides }
     }
 
-    /// Returns the factors of LOD by error: to each edge the largest that its patches ask for. Patches that are left out
+    /// Returns the factors of LOD by error: to each edge the largest that its patches request. Patches that are left out
     /// ask, too: what others look like doesn't depend on it.
     ///
-    /// Beside factors that other patches asked for, a patch may need a much larger inside factor than it has chosen, or find
-    /// none that suffices. Such patches ask again, for no less than what their edges have.
+    /// Beside factors that other patches requested, a patch may need a much larger inside factor than it has chosen, or find
+    /// none that suffices. Such patches request again, for no less than what their edges have.
     fn factors_by_error(&self) -> MeshFactors {
         let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
         let edges = 0..self.nets.curves.factor_curves.len() as u32 - 1;
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(factor)).collect();
-        let mut asked = vec![whole_segments(partitioning, 1.0); least.len()];
-        let ask = |patch: u32, edges: [f32; 3], asked: &mut [f32]| {
+        let mut requested = vec![whole_segments(partitioning, 1.0); least.len()];
+        let request = |patch: u32, edges: [f32; 3], requested: &mut [f32]| {
             for (k, own) in [1, 2, 0].into_iter().zip(edges) {
                 let factor = self.nets.patch_factor(patch, k) as usize;
-                asked[factor] = asked[factor].max(own);
+                requested[factor] = requested[factor].max(own);
             }
         };
         let mut chosen = Vec::new();
         for patch in 0..self.nets.topology.patches.len() as u32 {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| least[factor as usize]);
-            let own = self.fewest(patch, &seen, least, 0.0, SearchGoal::Asked);
-            ask(patch, own.edges, &mut asked);
+            let own = self.fewest(patch, &seen, least, 0.0, SearchGoal::Requests);
+            request(patch, own.edges, &mut requested);
             chosen.push(own);
         }
         let rounds = rounds(partitioning.has_rows());
         for round in 1..=rounds {
-            let before = asked.clone();
+            let before = requested.clone();
             for (patch, chosen) in (0..).zip(&mut chosen) {
                 let edges = self.nets.edges_of_patch(&before, patch);
                 if edges == chosen.edges {
@@ -109,26 +109,26 @@ impl MeshLod<'_> {
                 }
                 let beside = self.beside(patch, edges, chosen.inner);
                 let again = match partitioning.has_rows() {
-                    true => rows_ask_again(chosen, edges, beside.inside),
-                    false => asks_again(chosen.inside, beside.inside),
+                    true => rows_request_again(chosen, edges, beside.inside),
+                    false => requests_again(chosen.inside, beside.inside),
                 };
-                let asks = !surface.is_flat() && round < rounds && again;
+                let requests = !surface.is_flat() && round < rounds && again;
                 *chosen = beside;
-                if asks {
+                if requests {
                     let seen = self.seen_patch(patch);
-                    let own = self.fewest(patch, &seen, edges, chosen.inner, SearchGoal::Asked);
-                    ask(patch, own.edges, &mut asked);
+                    let own = self.fewest(patch, &seen, edges, chosen.inner, SearchGoal::Requests);
+                    request(patch, own.edges, &mut requested);
                     if own.inside != BEYOND_LAST {
                         *chosen = own;
                     }
                 }
             }
-            if asked == before {
+            if requested == before {
                 break;
             }
         }
         let insides: Vec<f32> = chosen.iter().map(|chosen| chosen.inside).collect();
-        let factors = MeshFactors { edges: asked, insides };
+        let factors = MeshFactors { edges: requested, insides };
         let Some(factor) = self.uniform_factor(&factors) else { return factors };
         let beside = |(patch, chosen): (u32, ChosenFactors)| self.beside(patch, [factor; 3], chosen.inner).inside;
         MeshFactors { edges: vec![factor; least.len()], insides: (0..).zip(chosen).map(beside).collect() }
@@ -177,7 +177,7 @@ impl MeshLod<'_> {
         seen
     }
 
-    /// Returns the factors that a patch asks for at least, of the edges U == 0, V == 0 and W == 0: what `least` returns for
+    /// Returns the factors that a patch requests at least, of the edges U == 0, V == 0 and W == 0: what `least` returns for
     /// each. Where points may slide along an edge, what the edge needs at the same places doesn't count.
     pub(super) fn first_least(&self, patch: u32, seen: &SeenPatch, least: impl Fn(u32) -> f32) -> [f32; 3] {
         let Tessellation { partitioning, tolerance, .. } = self.inputs.tessellation;

@@ -114,7 +114,7 @@ pub mod shared_constants {
     };
     pub use super::flat_patch::{AGREEING, TWO_POINTS};
     pub use super::least_factors::{BEYOND_LAST, BOUND_SHARE, ROW_REACH, SPREAD, TOGETHER};
-    pub use super::least_rows::{ASKED_SEGMENT, LESSENINGS};
+    pub use super::least_rows::{LESSENINGS, REQUESTED_SEGMENT};
     pub use super::normal::CANCELLED;
     pub use super::piece_error::{FINEST_GRID, PARTIAL_STEPS};
     pub use super::surface::UNIT;

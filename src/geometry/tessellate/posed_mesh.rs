@@ -20,7 +20,7 @@ const BOUNDS_TIMES: usize = 17;
 /// Meshes of up to this many corners are deformed so quickly that no one notices.
 const QUICK: usize = 1 << 16;
 
-/// A mesh with the pose in which it is wanted. The deformed mesh is made when first asked for; clones share it.
+/// A mesh with the pose in which it is wanted. The deformed mesh is made when first requested; clones share it.
 #[derive(Clone, Debug)]
 pub struct PosedMesh {
     mesh: Arc<Mesh>,

@@ -19,7 +19,7 @@ pub struct Solid {
     /// The least and the greatest coordinates, in object units.
     pub extent: [Vec3; 2],
     /// The largest distance of control points from the triangles that they belong to, in object units, for each surface that
-    /// has been asked for.
+    /// has been requested.
     reaches: [OnceLock<f32>; Surface::ALL.len()],
     /// Whether surfaces for which [`Surface::tears`] crack on this mesh.
     pub has_split_normals: bool,

@@ -16,7 +16,7 @@ use load::{Budget, HeightSource, Import, LoadError, LoadedMesh, Source, crease_b
 #[derive(Clone, Debug)]
 pub struct Loaded {
     pub source: Source,
-    /// The preparation that was asked for. The crease band may have become narrower than that.
+    /// The preparation that was requested. The crease band may have become narrower than that.
     pub preparation: Preparation,
     pub crease_band: CreaseBand,
     /// The mesh as it was read: the same as `mesh` unless that has a crease band.

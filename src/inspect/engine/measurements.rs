@@ -1,4 +1,4 @@
-//! The engine's measurements of a scene. One walk over the emitted mesh feeds all measurements that are asked for.
+//! The engine's measurements of a scene. One walk over the emitted mesh feeds all measurements that are requested.
 
 use glam::{Mat4, Vec3};
 
@@ -7,8 +7,8 @@ use crate::measure::{
     Accuracy, AccuracyMeasurement, AccuracyOptions, DeviationField, DeviationMeasurement, DeviationTarget, Measured,
     PatchesAbove, ScreenError, ScreenErrorMeasurement, Sizes, Survey, Visitor,
 };
+use crate::reference_shape::ReferenceShape;
 use crate::render::{Camera, Leak, LeakCount, Leaks, Scene};
-use crate::truth::Truth;
 use geometry::mesh::{Mesh, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView, Tessellation, is_beyond_near};
@@ -26,12 +26,12 @@ pub struct Measurements<'a> {
     /// The distance from this surface, all over.
     pub deviation: Option<&'a DeviationTarget>,
     /// The distances to a reference surface and back, also in px as seen from the view. All of the mesh must be emitted.
-    pub accuracy: Option<(&'a Truth, &'a LodView, AccuracyOptions)>,
+    pub accuracy: Option<(&'a ReferenceShape, &'a LodView, AccuracyOptions)>,
     /// How large triangles are on screen.
     pub sizes: Option<ScreenView>,
 }
 
-/// What was measured: whatever [`Measurements`] asked for.
+/// What was measured: whatever [`Measurements`] requested.
 #[derive(Default)]
 pub struct MeasurementResults {
     pub survey: Option<Measured>,
@@ -47,7 +47,7 @@ pub struct MeasurementResults {
 }
 
 impl Engine {
-    /// Measures what is emitted, and reads each of its chunks back once, however much is asked for. The counts must be
+    /// Measures what is emitted, and reads each of its chunks back once, however much is requested. The counts must be
     /// known.
     ///
     /// # Errors
@@ -76,14 +76,15 @@ impl Engine {
         let (_, triangles) = scene.tessellator.totals();
         let mut survey = None;
         if wanted.survey {
-            survey = Some(Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.asked_factors(scene)?));
+            survey = Some(Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.requested_factors(scene)?));
         }
         let of_inputs = |inputs| ScreenErrorMeasurement::new(&mesh, &topology, inputs, triangles);
         let mut screen_error = wanted.screen_error.map(of_inputs);
         let from = |target| DeviationMeasurement::new(target, &mesh, &topology, triangles, progress);
         let mut deviation = wanted.deviation.map(from);
-        let of_truth = |(truth, view, options)| AccuracyMeasurement::new(truth, Some(view), options);
-        let mut accuracy = wanted.accuracy.map(of_truth);
+        let of_reference_shape =
+            |(reference_shape, view, options)| AccuracyMeasurement::new(reference_shape, Some(view), options);
+        let mut accuracy = wanted.accuracy.map(of_reference_shape);
         let mut sizes = wanted.sizes.map(Sizes::new);
         let mut visitors: Vec<&mut dyn Visitor> = Vec::new();
         visitors.extend(survey.as_mut().map(|visitor| visitor as &mut dyn Visitor));
@@ -108,7 +109,7 @@ impl Engine {
     /// The device was lost.
     pub fn measure(&self, scene: &mut Scene) -> Result<Measured, GpuError> {
         let (mesh, topology) = scene.tessellator.posed().deformed();
-        let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.asked_factors(scene)?);
+        let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.requested_factors(scene)?);
         self.visit(scene, &mut [&mut survey])?;
         Ok(survey.finish())
     }

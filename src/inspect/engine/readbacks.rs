@@ -5,7 +5,7 @@ use std::sync::atomic::Ordering;
 use glam::Vec3;
 
 use super::Engine;
-use crate::measure::{AskedFactors, EmittedChunk, PointsAgreement, Visitor};
+use crate::measure::{EmittedChunk, PointsAgreement, RequestedFactors, Visitor};
 use crate::render::Scene;
 use geometry::mesh::Curves;
 use geometry::progress::Progress;
@@ -23,7 +23,7 @@ pub struct CopiedChunk {
 }
 
 impl CopiedChunk {
-    /// Emits a chunk and asks for it. The counts must be known.
+    /// Emits a chunk and requests it. The counts must be known.
     ///
     /// # Errors
     /// The device was lost.
@@ -114,16 +114,16 @@ impl Engine {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn asked_factors(&self, scene: &Scene) -> Result<AskedFactors, GpuError> {
+    pub fn requested_factors(&self, scene: &Scene) -> Result<RequestedFactors, GpuError> {
         let convention = scene.tessellator.convention();
         match scene.tessellator.given() {
-            Some(Given::Factors(given)) => return Ok(AskedFactors::given(convention, given)),
-            Some(Given::Shader(_)) => return Ok(AskedFactors::given(convention, &self.user_factors(scene)?)),
+            Some(Given::Factors(given)) => return Ok(RequestedFactors::given(convention, given)),
+            Some(Given::Shader(_)) => return Ok(RequestedFactors::given(convention, &self.user_factors(scene)?)),
             None => {}
         }
         let (buffer, edges) = scene.tessellator.edge_factors();
         let bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
-        Ok(AskedFactors::new(edges, convention, cast::<f32>(&read_buffer(&self.gpu, buffer, 0, bytes)?)))
+        Ok(RequestedFactors::new(edges, convention, cast::<f32>(&read_buffer(&self.gpu, buffer, 0, bytes)?)))
     }
 
     /// The factors that an LOD shader gave every patch, as it gave them; none without such a shader. The counts must be known.
@@ -182,13 +182,13 @@ impl Engine {
         Ok(is_enough.then_some(triangles))
     }
 
-    /// The number of factors that ask for more segments than the partitioning has: of edges (sides, if factors are as
+    /// The number of factors that request more segments than the partitioning has: of edges (sides, if factors are as
     /// published or given), and under LOD by error of insides. The counts must be known.
     ///
     /// # Errors
     /// More patches than the adapter binds memory for, or a lost device.
     pub fn factors_capped(&self, scene: &Scene, tessellation: &Tessellation) -> Result<u64, GpuError> {
-        let edges = self.asked_factors(scene)?.beyond(tessellation.partitioning);
+        let edges = self.requested_factors(scene)?.beyond(tessellation.partitioning);
         if !tessellation.used_lod().is_by_error() {
             return Ok(edges);
         }
@@ -218,7 +218,7 @@ impl Engine {
     pub fn read_tessellated(&self, scene: &mut Scene) -> Result<Tessellated, GpuError> {
         let mut out = Tessellated {
             patch_factors: self.patch_factors(scene)?,
-            edge_factors: self.asked_factors(scene)?.into_factors(),
+            edge_factors: self.requested_factors(scene)?.into_factors(),
             ..Tessellated::default()
         };
         self.visit(scene, &mut [&mut |chunk: &EmittedChunk| out.append(chunk.vertices, chunk.triangles)])?;

@@ -42,7 +42,7 @@ pub fn sibling(scene: &Scene) -> impl FnOnce() -> Result<Tessellator, GpuError> 
 }
 
 impl SilhouetteDrawing {
-    /// Goes on by one step: it asks for counts, takes them, or draws a chunk. After the last one it returns all samples, which are
+    /// Goes on by one step: it requests counts, takes them, or draws a chunk. After the last one it returns all samples, which are
     /// on their way to the host, as [`Silhouette::find`] takes them.
     ///
     /// # Errors

@@ -2,9 +2,9 @@
 //! normals.
 
 mod emitted;
-mod from_truth;
+mod from_reference;
 mod peaks;
-mod to_truth;
+mod to_reference;
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -14,11 +14,11 @@ use glam::{DVec3, Vec3};
 
 use super::screen_error::Screen;
 use super::visitor::{EmittedChunk, Visitor};
-use crate::truth::{EdgePoints, Truth};
+use crate::reference_shape::{EdgePoints, ReferenceShape};
 use emitted::Emitted;
 use geometry::tessellate::{LodView, Vertex};
 use peaks::{Peaks, climb};
-use to_truth::Sums;
+use to_reference::Sums;
 
 /// How finely accuracy is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,7 +40,7 @@ impl Default for AccuracyOptions {
 ///
 /// All of the mesh must be emitted: parts that are clipped or culled count as distance from the reference surface.
 pub(crate) struct AccuracyMeasurement<'a> {
-    truth: &'a Truth,
+    reference_shape: &'a ReferenceShape,
     options: AccuracyOptions,
     screen: Option<Screen>,
     /// What collects the worst places, still without any.
@@ -102,13 +102,13 @@ pub struct WorstPoint {
     /// The emitted point, in object units.
     pub emitted: DVec3,
     /// The point of the reference surface, in object units.
-    pub truth: DVec3,
+    pub reference_shape: DVec3,
 }
 
 impl WorstPoint {
     /// The place with its distance on screen, in px; `None` if it isn't in view.
     fn in_px(self, screen: &Screen) -> Option<Self> {
-        screen.distance_px(self.emitted, self.truth).map(|value| Self { value, ..self })
+        screen.distance_px(self.emitted, self.reference_shape).map(|value| Self { value, ..self })
     }
 }
 
@@ -118,13 +118,13 @@ pub struct Accuracy {
     /// The diagonal of the reference surface's bounding box, in object units. Distances are often given as parts of it.
     pub diagonal: f64,
     /// From what was emitted to the reference surface.
-    pub to_truth: Distances,
-    pub to_truth_sampling: Sampling,
-    pub worst_to_truth: WorstPoint,
+    pub to_reference: Distances,
+    pub to_reference_sampling: Sampling,
+    pub worst_to_reference: WorstPoint,
     /// From the reference surface to what was emitted.
-    pub from_truth: Distances,
-    pub from_truth_sampling: Sampling,
-    pub worst_from_truth: WorstPoint,
+    pub from_reference: Distances,
+    pub from_reference_sampling: Sampling,
+    pub worst_from_reference: WorstPoint,
     /// The largest distance on screen between an emitted point and the nearest point of the reference surface; `None` if no
     /// point is in view, or there is no view.
     pub worst_px: Option<WorstPoint>,
@@ -138,7 +138,7 @@ pub struct Accuracy {
 impl Accuracy {
     /// Combines both directions: the larger of the largest distances, and the root of the mean of both mean squares.
     pub fn both_ways(&self) -> Distances {
-        let [a, b] = [self.to_truth, self.from_truth];
+        let [a, b] = [self.to_reference, self.from_reference];
         Distances { largest: a.largest.max(b.largest), rms: a.rms.hypot(b.rms) / 2.0_f64.sqrt() }
     }
 
@@ -164,15 +164,15 @@ const REGIONS: f64 = 32.0;
 
 impl<'a> AccuracyMeasurement<'a> {
     /// Starts a measurement. With a view, distances are also measured in px.
-    pub(crate) fn new(truth: &'a Truth, view: Option<&LodView>, options: AccuracyOptions) -> Self {
-        let spread = truth.samples(options.samples).into_iter().map(|sample| sample.point);
-        let EdgePoints { points: of_edges, spacing: of_neighbours } = truth.edge_points(options.samples);
+    pub(crate) fn new(reference_shape: &'a ReferenceShape, view: Option<&LodView>, options: AccuracyOptions) -> Self {
+        let spread = reference_shape.samples(options.samples).into_iter().map(|sample| sample.point);
+        let EdgePoints { points: of_edges, spacing: of_neighbours } = reference_shape.edge_points(options.samples);
         let points: Vec<DVec3> = spread.chain(of_edges).collect();
-        let spacing = truth.spacing(options.samples);
+        let spacing = reference_shape.spacing(options.samples);
         let most = (options.samples / SAMPLES_A_CLIMB).clamp(1, MOST_CLIMBS);
-        let no_peaks = Peaks::new(most, truth.diagonal() / REGIONS);
+        let no_peaks = Peaks::new(most, reference_shape.diagonal() / REGIONS);
         Self {
-            truth,
+            reference_shape,
             options,
             screen: view.map(Screen::new),
             spread: options.samples,
@@ -207,26 +207,28 @@ impl<'a> AccuracyMeasurement<'a> {
 
     /// The worst place from what was emitted to the reference surface, among those on the way uphill from `peaks`. `value` is the
     /// value of a place with a distance.
-    fn worst_to_truth(
+    fn worst_to_reference(
         &self,
         peaks: &Peaks,
         value: impl Fn(WorstPoint) -> Option<WorstPoint> + Sync,
     ) -> Option<WorstPoint> {
         let measure = |p: DVec3, _: f64| {
             let place = self.emitted.closest(p, f64::INFINITY)?;
-            let (truth, distance) = self.truth.closest_point(place.point);
-            value(WorstPoint { value: distance, patch: place.patch, emitted: place.point, truth })
+            let (reference_shape, distance) = self.reference_shape.closest_point(place.point);
+            value(WorstPoint { value: distance, patch: place.patch, emitted: place.point, reference_shape })
         };
         self.summit(peaks, |place| place.emitted, measure)
     }
 
     /// The worst place from the reference surface to what was emitted, among those on the way uphill from `peaks`.
-    fn worst_from_truth(&self, peaks: &Peaks) -> Option<WorstPoint> {
+    fn worst_from_reference(&self, peaks: &Peaks) -> Option<WorstPoint> {
         let measure = |p: DVec3, enough: f64| {
-            let (truth, _) = self.truth.closest_point(p);
-            self.emitted.closest_or_within(truth, enough, &mut Vec::new()).map(|found| found.from(truth))
+            let (reference_shape, _) = self.reference_shape.closest_point(p);
+            self.emitted
+                .closest_or_within(reference_shape, enough, &mut Vec::new())
+                .map(|found| found.from(reference_shape))
         };
-        self.summit(peaks, |place| place.truth, measure)
+        self.summit(peaks, |place| place.reference_shape, measure)
     }
 
     /// The results; `None` if nothing with an area was emitted.
@@ -234,26 +236,26 @@ impl<'a> AccuracyMeasurement<'a> {
         if !self.nearest.is_empty() {
             self.drop_kept();
         }
-        let (squares_from_truth, peaks) = self.measure_from_truth();
-        let worst_from_truth = self.worst_from_truth(&peaks)?;
-        let worst_to_truth = self.worst_to_truth(&self.sums.peaks, Some)?;
+        let (squares_from_reference, peaks) = self.measure_from_reference();
+        let worst_from_reference = self.worst_from_reference(&peaks)?;
+        let worst_to_reference = self.worst_to_reference(&self.sums.peaks, Some)?;
         let in_px = |place: WorstPoint| place.in_px(self.screen.as_ref()?);
-        let worst_px = self.worst_to_truth(&self.sums.peaks_px, in_px);
+        let worst_px = self.worst_to_reference(&self.sums.peaks_px, in_px);
         let Sums { area, squares, angles, sampling, worst_normal, not_finite, .. } = self.sums;
         if area <= 0.0 {
             return None;
         }
         Some(Accuracy {
-            diagonal: self.truth.diagonal(),
-            to_truth: Distances { largest: worst_to_truth.value, rms: (squares / area).sqrt() },
-            to_truth_sampling: sampling,
-            worst_to_truth,
-            from_truth: Distances {
-                largest: worst_from_truth.value,
-                rms: (squares_from_truth / self.spread as f64).sqrt(),
+            diagonal: self.reference_shape.diagonal(),
+            to_reference: Distances { largest: worst_to_reference.value, rms: (squares / area).sqrt() },
+            to_reference_sampling: sampling,
+            worst_to_reference,
+            from_reference: Distances {
+                largest: worst_from_reference.value,
+                rms: (squares_from_reference / self.spread as f64).sqrt(),
             },
-            from_truth_sampling: self.sampling,
-            worst_from_truth,
+            from_reference_sampling: self.sampling,
+            worst_from_reference,
             worst_px,
             normals: Angles { largest: worst_normal?.value, rms: (angles / area).sqrt() },
             worst_normal: worst_normal?,

@@ -240,7 +240,7 @@ fn different_normals(mesh: &Mesh, topology: &Topology, edge: u32, sides: &[EdgeS
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::measure::{AskedFactors, Measured};
+    use crate::measure::{Measured, RequestedFactors};
     use crate::settings::Settings;
     use geometry::mesh::{Corner, Material, Shape};
     use geometry::tessellate::{
@@ -278,7 +278,7 @@ mod tests {
         let out = tessellate(&mesh, &topology, &inputs, None);
         let mut outlines = Outlines::new(
             out.patch_factors,
-            AskedFactors::new(settings.tessellation.edges, settings.tessellation.convention, out.edge_factors),
+            RequestedFactors::new(settings.tessellation.edges, settings.tessellation.convention, out.edge_factors),
         );
         outlines.take(0, &out.vertices);
         (mesh, topology, outlines)
@@ -371,7 +371,7 @@ mod tests {
             discarded.iter().for_each(|(patch, edges)| given[*patch as usize].edges = *edges);
             let inputs = Settings::default().inputs(view());
             let out = tessellate_given(&mesh, &topology, &inputs, &given);
-            Measured::new(&mesh, &topology, AskedFactors::given(Convention::D3d11, &given), &out).cracks
+            Measured::new(&mesh, &topology, RequestedFactors::given(Convention::D3d11, &given), &out).cracks
         };
         assert!(found(&[]).edges.is_empty());
         let [a, b, c] = topology.patch_positions(5);

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use super::accuracy::{WorstPoint, blocks, worse};
 use super::visitor::{EmittedChunk, Visitor};
-use crate::truth::Truth;
+use crate::reference_shape::ReferenceShape;
 use geometry::mesh::{Mesh, Topology};
 use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{FIXED_ONE, Inputs, LimitSurface, Vertex};
@@ -17,7 +17,7 @@ use geometry::tessellate::{FIXED_ONE, Inputs, LimitSurface, Vertex};
 #[derive(Clone)]
 pub enum DeviationTarget {
     /// A reference surface.
-    Truth(Arc<Truth>),
+    ReferenceShape(Arc<ReferenceShape>),
     /// The limit surface under these inputs.
     Limit(Box<Inputs>),
 }
@@ -26,7 +26,7 @@ impl DeviationTarget {
     /// The surface for a mesh. A limit surface needs the mesh's control nets.
     fn on<'a>(&'a self, mesh: &'a Mesh, topology: &'a Topology) -> TargetSurface<'a> {
         match self {
-            Self::Truth(truth) => TargetSurface::Truth(truth),
+            Self::ReferenceShape(reference_shape) => TargetSurface::ReferenceShape(reference_shape),
             Self::Limit(inputs) => TargetSurface::Limit(Box::new(LimitSurface::new(mesh, topology, inputs))),
         }
     }
@@ -35,7 +35,7 @@ impl DeviationTarget {
 /// A [`DeviationTarget`] for one mesh.
 enum TargetSurface<'a> {
     /// Distances go to the nearest point of this surface.
-    Truth(&'a Truth),
+    ReferenceShape(&'a ReferenceShape),
     /// Distances go to the point of the limit surface at the same place of the patch.
     Limit(Box<LimitSurface<'a>>),
 }
@@ -185,23 +185,23 @@ impl Sums {
         let area = (b - a).cross(c - a).length() / 2.0;
         let net = match target {
             TargetSurface::Limit(limit) => Some(limit.net(corners[0].patch())),
-            TargetSurface::Truth(_) => None,
+            TargetSurface::ReferenceShape(_) => None,
         };
         let domains = corners.map(|vertex| vertex.domain().map(|x| f64::from(x) / f64::from(FIXED_ONE)));
         for (weights, share) in grid(steps) {
             let emitted = (0..3).map(|k| positions[k] * weights[k]).sum();
-            let truth = match (target, &net) {
+            let reference_shape = match (target, &net) {
                 (TargetSurface::Limit(limit), Some(net)) => {
                     let [u, v] = [0, 1].map(|i| (0..3).map(|k| weights[k] * domains[k][i]).sum());
                     limit.position(corners[0].patch(), net, u, v)
                 }
-                (TargetSurface::Truth(truth), _) => truth.closest(emitted).point,
+                (TargetSurface::ReferenceShape(reference_shape), _) => reference_shape.closest(emitted).point,
                 (TargetSurface::Limit(_), None) => emitted,
             };
-            let value = emitted.distance(truth);
+            let value = emitted.distance(reference_shape);
             self.samples.push(value as f32);
             self.squares += area * share * value * value;
-            let place = WorstPoint { value, patch: corners[0].patch(), emitted, truth };
+            let place = WorstPoint { value, patch: corners[0].patch(), emitted, reference_shape };
             self.worst = self.worst.into_iter().chain([place]).reduce(worse);
         }
         self.area += area;
@@ -238,15 +238,20 @@ mod tests {
         corners.map(|position| Vertex { position, ..bytemuck::Zeroable::zeroed() }).to_vec()
     }
 
-    fn measured(corners: [[f32; 3]; 3], truth: &Arc<Truth>, progress: &Progress) -> Result<DeviationField, Cancelled> {
-        let (target, mesh, topology) = (DeviationTarget::Truth(truth.clone()), Mesh::default(), Topology::default());
+    fn measured(
+        corners: [[f32; 3]; 3],
+        reference_shape: &Arc<ReferenceShape>,
+        progress: &Progress,
+    ) -> Result<DeviationField, Cancelled> {
+        let (target, mesh, topology) =
+            (DeviationTarget::ReferenceShape(reference_shape.clone()), Mesh::default(), Topology::default());
         let mut measurement = DeviationMeasurement::new(&target, &mesh, &topology, 1, progress);
         measurement.take(&EmittedChunk::whole(&triangle(corners), &[[0, 1, 2]]));
         measurement.finish()
     }
 
-    fn field(corners: [[f32; 3]; 3], truth: &Arc<Truth>) -> DeviationField {
-        measured(corners, truth, &Progress::new()).expect("nobody cancels")
+    fn field(corners: [[f32; 3]; 3], reference_shape: &Arc<ReferenceShape>) -> DeviationField {
+        measured(corners, reference_shape, &Progress::new()).expect("nobody cancels")
     }
 
     #[test]
@@ -263,7 +268,7 @@ mod tests {
 
     #[test]
     fn a_face_in_a_sphere_is_farthest_from_it_in_its_middle() {
-        let sphere = Arc::new(Truth::from_shape(Shape::Icosphere).expect("a sphere"));
+        let sphere = Arc::new(ReferenceShape::from_shape(Shape::Icosphere).expect("a sphere"));
         let field = field([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere);
         let [samples] = &field.chunks[..] else { panic!("one chunk") };
         assert_eq!(field.steps, 24);
@@ -274,7 +279,7 @@ mod tests {
         let worst = field.worst().expect("a triangle");
         let expected = 1.0 - 1.0 / 3.0_f64.sqrt();
         assert!((worst.value - expected).abs() < 1e-9 && worst.emitted.distance(DVec3::splat(1.0 / 3.0)) < 1e-7);
-        assert!((worst.truth.length() - 1.0).abs() < 1e-9);
+        assert!((worst.reference_shape.length() - 1.0).abs() < 1e-9);
         assert!(field.rms() > 0.0 && field.rms() < expected);
         let largest = samples.iter().copied().fold(0.0, f32::max);
         assert_eq!(largest, worst.value as f32);
@@ -282,7 +287,7 @@ mod tests {
 
     #[test]
     fn a_triangle_with_nan_has_no_samples_and_does_not_count() {
-        let sphere = Arc::new(Truth::from_shape(Shape::Icosphere).expect("a sphere"));
+        let sphere = Arc::new(ReferenceShape::from_shape(Shape::Icosphere).expect("a sphere"));
         let field = field([[f32::NAN, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere);
         assert!(field.chunks[0].iter().all(|sample| sample.is_nan()));
         assert_eq!((field.worst(), field.rms()), (None, 0.0));
@@ -291,7 +296,7 @@ mod tests {
     #[test]
     fn many_triangles_have_fewer_samples_each_and_a_cancelled_field_stops() {
         assert_eq!([1, 5_000, 20_000, 60_000, 1_000_000].map(|count| DeviationField::unknown(count).steps), STEPS);
-        let sphere = Arc::new(Truth::from_shape(Shape::Icosphere).expect("a sphere"));
+        let sphere = Arc::new(ReferenceShape::from_shape(Shape::Icosphere).expect("a sphere"));
         let progress = Progress::new();
         progress.cancel();
         let field = measured([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], &sphere, &progress);
@@ -300,8 +305,10 @@ mod tests {
 
     #[test]
     fn progress_goes_on_from_chunk_to_chunk() {
-        let (truth, progress) = (Truth::from_shape(Shape::Icosphere).expect("a sphere"), Progress::new());
-        let (target, mesh, topology) = (DeviationTarget::Truth(Arc::new(truth)), Mesh::default(), Topology::default());
+        let (reference_shape, progress) =
+            (ReferenceShape::from_shape(Shape::Icosphere).expect("a sphere"), Progress::new());
+        let (target, mesh, topology) =
+            (DeviationTarget::ReferenceShape(Arc::new(reference_shape)), Mesh::default(), Topology::default());
         let mut measurement = DeviationMeasurement::new(&target, &mesh, &topology, 4, &progress);
         let vertices = triangle([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
         let fractions = [0, 1, 2, 3].map(|_| {

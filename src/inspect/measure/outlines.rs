@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use glam::{DVec3, Vec3};
 
-use super::asked_factors::AskedFactors;
+use super::requested_factors::RequestedFactors;
 use geometry::mesh::{EdgeKind, Side, Topology};
 use geometry::tessellate::{
     Convention, FIXED_ONE, MOST_ROWS, PatchFactors, Vertex, domain_plan, domain_point, domain_side, outer_count,
@@ -27,7 +27,7 @@ pub struct Outlines {
     /// The outline of patch p is `points[starts[p]..starts[p + 1]]`, in the tessellator's order.
     starts: Vec<u32>,
     points: Vec<OutlinePoint>,
-    asked: AskedFactors,
+    requested: RequestedFactors,
 }
 
 /// The emitted points along the edges of a patch (an index into [`Topology::patches`]) that factors 0, 1 and 2 cut. Without
@@ -105,14 +105,14 @@ impl EdgeSide {
 
 impl Outlines {
     /// Makes room for the outlines of patches with these factors.
-    pub fn new(factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
+    pub fn new(factors: Vec<PatchFactors>, requested: RequestedFactors) -> Self {
         let mut starts = vec![0];
         let mut end = 0;
         for &patch in &factors {
             end += outer_count(patch);
             starts.push(end);
         }
-        Self { factors, starts, points: vec![OutlinePoint::default(); end as usize], asked }
+        Self { factors, starts, points: vec![OutlinePoint::default(); end as usize], requested }
     }
 
     /// Takes the vertices of whole patches in order, from `first_patch` on.
@@ -133,7 +133,7 @@ impl Outlines {
         }
     }
 
-    /// The number of emitted patches with a factor of 63 or more (of rows the largest), which may have asked for a larger one than
+    /// The number of emitted patches with a factor of 63 or more (of rows the largest), which may have requested a larger one than
     /// there is.
     pub fn at_limit(&self) -> u32 {
         let any = |factors: &&PatchFactors| {
@@ -208,7 +208,7 @@ impl Outlines {
         }
         // The outline has the edges of factors 0, 1 and 2 one after another.
         let words = self.factors[side.patch() as usize].outside;
-        let factor = self.asked.index(side.index());
+        let factor = self.requested.index(side.index());
         let first: u32 = words[..factor].iter().map(|&word| segments(word)).sum();
         Some((factor, first..=first + segments(words[factor])))
     }
@@ -225,10 +225,10 @@ impl Outlines {
     }
 
     fn side_without_points(&self, topology: &Topology, side: Side) -> EdgeSide {
-        let (patch, factor) = (side.patch(), self.asked.index(side.index()));
+        let (patch, factor) = (side.patch(), self.requested.index(side.index()));
         let triangle = topology.patches[patch as usize].triangle;
         let word = self.factors[patch as usize].outside[factor];
-        EdgeSide { patch, triangle, factor: self.asked.of(topology, patch, factor), word, points: Vec::new() }
+        EdgeSide { patch, triangle, factor: self.requested.of(topology, patch, factor), word, points: Vec::new() }
     }
 
     /// A patch's outline, in the tessellator's order.
@@ -259,8 +259,8 @@ mod tests {
             of([1.0; 3], 1.0),
             of([0.0; 3], 64.0),
         ];
-        let asked = AskedFactors::new(Edges::PerEdge, Convention::D3d11, Vec::new());
-        let outlines = Outlines::new(factors, asked);
+        let requested = RequestedFactors::new(Edges::PerEdge, Convention::D3d11, Vec::new());
+        let outlines = Outlines::new(factors, requested);
         assert_eq!((outlines.at_limit(), outlines.low()), (3, 1));
     }
 }

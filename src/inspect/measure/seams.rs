@@ -123,7 +123,7 @@ mod tests {
     use glam::{Mat4, Vec2, vec2, vec3};
 
     use super::*;
-    use crate::measure::{AskedFactors, Measured};
+    use crate::measure::{Measured, RequestedFactors};
     use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
     use geometry::mesh::{Corner, CornerDetail, Map, MapUv, Material, Sampling, Shape, Slot, Texture};
     use geometry::progress::Progress;
@@ -133,8 +133,8 @@ mod tests {
         let topology = Topology::new(mesh);
         let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
         let out = tessellate(mesh, &topology, &inputs, None);
-        let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-        Measured::new(mesh, &topology, asked, &out).seams
+        let requested = RequestedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
+        Measured::new(mesh, &topology, requested, &out).seams
     }
 
     /// A roof of two triangles, which meet at the edge from (0, 0, 0) to (0, 2, 0). `lean` says how far the normals of its sides
@@ -258,8 +258,8 @@ mod tests {
         // Each edge has a factor of its own, and a wrong convention gives it to others.
         let factors: Vec<f32> = (0..topology.edges.len()).map(|edge| 1.0 + edge as f32).collect();
         let out = tessellate(&mesh, &topology, &inputs, Some(&factors));
-        let asked = AskedFactors::new(mirrored.edges, mirrored.convention, factors);
-        let found = Measured::new(&mesh, &topology, asked, &out).seams;
+        let requested = RequestedFactors::new(mirrored.edges, mirrored.convention, factors);
+        let found = Measured::new(&mesh, &topology, requested, &out).seams;
         assert!(found.shading.edges < 12, "{found:?}");
     }
 }

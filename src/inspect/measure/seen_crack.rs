@@ -73,7 +73,7 @@ mod tests {
     use glam::{Mat4, vec2, vec3};
 
     use super::*;
-    use crate::measure::AskedFactors;
+    use crate::measure::RequestedFactors;
     use geometry::mesh::Shape;
     use geometry::tessellate::{Inputs, LodView, Surface, Tessellation, tessellate};
 
@@ -85,8 +85,9 @@ mod tests {
             let tessellation = Tessellation { surface, factor: 4.0, ..Tessellation::default() };
             let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
             let out = tessellate(&mesh, &topology, &inputs, None);
-            let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-            Measured::new(&mesh, &topology, asked, &out)
+            let requested =
+                RequestedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
+            Measured::new(&mesh, &topology, requested, &out)
         };
         // The cube's corners are at 0.577 along each axis, 57.7 px from the middle of a picture that is seen along -Z.
         let view = ScreenView { clip_from_object: Mat4::from_scale(vec3(0.5, 0.5, 1.0)), viewport: vec2(400.0, 400.0) };

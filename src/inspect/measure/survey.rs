@@ -2,10 +2,10 @@
 
 use glam::Vec3;
 
-use super::asked_factors::AskedFactors;
 use super::cracks::Cracks;
 use super::folds::{self, FoldedPatch};
 use super::outlines::Outlines;
+use super::requested_factors::RequestedFactors;
 use super::seams::Seams;
 use super::visitor::{EmittedChunk, LEAST, Visitor};
 use geometry::cores::in_ranges;
@@ -75,10 +75,15 @@ pub struct Measured {
 
 impl<'a> Survey<'a> {
     /// A survey of patches with these factors.
-    pub fn new(mesh: &'a Mesh, topology: &'a Topology, factors: Vec<PatchFactors>, asked: AskedFactors) -> Self {
+    pub fn new(
+        mesh: &'a Mesh,
+        topology: &'a Topology,
+        factors: Vec<PatchFactors>,
+        requested: RequestedFactors,
+    ) -> Self {
         let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let culled = Culled::new(&factors);
-        let outlines = Outlines::new(factors, asked);
+        let outlines = Outlines::new(factors, requested);
         Self { mesh, topology, ulp: ulp(topology), culled, outlines, folded: Vec::new(), not_finite: 0, extent }
     }
 
@@ -133,8 +138,8 @@ impl Visitor for Survey<'_> {
 
 impl Measured {
     /// Measures what the CPU emitted.
-    pub fn new(mesh: &Mesh, topology: &Topology, asked: AskedFactors, out: &Tessellated) -> Self {
-        let mut survey = Survey::new(mesh, topology, out.patch_factors.clone(), asked);
+    pub fn new(mesh: &Mesh, topology: &Topology, requested: RequestedFactors, out: &Tessellated) -> Self {
+        let mut survey = Survey::new(mesh, topology, out.patch_factors.clone(), requested);
         survey.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
         survey.finish()
     }
@@ -161,8 +166,9 @@ mod tests {
         out.vertices.iter_mut().step_by(997).for_each(far);
         out.vertices.iter_mut().step_by(10_007).for_each(|vertex| vertex.uv = [f32::NAN, 0.0]);
         let measured = |threads| {
-            let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-            on_threads(threads, || Measured::new(&mesh, &topology, asked, &out)).expect("threads")
+            let requested =
+                RequestedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
+            on_threads(threads, || Measured::new(&mesh, &topology, requested, &out)).expect("threads")
         };
         let alone = measured(1);
         assert!(alone.folds > 300 && alone.folded.iter().any(|patch| patch.folds > 1), "{}", alone.folds);
@@ -182,8 +188,9 @@ mod tests {
             let inputs = Inputs::new(&tessellation, LodView::new(Mat4::IDENTITY, Vec2::ONE));
             let mut out = tessellate(&mesh, &topology, &inputs, None);
             out.vertices[0].uv = [f32::NAN, 0.0];
-            let asked = AskedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
-            let own = Measured::new(&mesh, &topology, asked, &out);
+            let requested =
+                RequestedFactors::new(tessellation.edges, tessellation.convention, out.edge_factors.clone());
+            let own = Measured::new(&mesh, &topology, requested, &out);
             assert_eq!((own.patches_low, own.patches_at_limit, own.culled.total()), (low, at_limit, 0), "{factor}");
             assert_eq!((own.cracks.edges_compared, own.folds, own.not_finite), (384, 0, 1), "{factor}");
             let positions = out.vertices[1..].iter().map(|vertex| Vec3::from(vertex.position));

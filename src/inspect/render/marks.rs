@@ -58,10 +58,11 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
 }
 
 /// The place with the largest deviation: a dot on it, and a line to the nearest point of the reference surface.
-pub fn worst_lines(emitted: Vec3, truth: Vec3) -> Vec<LineSegment> {
+pub fn worst_lines(emitted: Vec3, reference_shape: Vec3) -> Vec<LineSegment> {
     let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
-    let mark =
-        |color, wider: f32| [line(emitted, truth, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)];
+    let mark = |color, wider: f32| {
+        [line(emitted, reference_shape, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)]
+    };
     [mark(OUTLINE_COLOR, 1.5), mark(WORST_COLOR, 0.0)].concat()
 }
 

@@ -361,7 +361,7 @@ options! {
 
     MATCAP: field!(matcap), Kind::Choice(descriptions::<Matcap>) => {
         name: "matcap",
-        label: "Lit sphere",
+        label: "Matcap",
         placeholder: "NAME",
         text: "The lit sphere whose colours the matcap overlay shows.",
         no_effect: |settings| {

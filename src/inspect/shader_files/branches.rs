@@ -18,7 +18,7 @@ pub(super) fn without_dead_branches(lines: &[String], known: &Known) -> Vec<Stri
     let mut at = 0;
     while at < lines.len() {
         let line = &lines[at];
-        let Some(truth) = condition(line).and_then(|condition| decided(condition, known)) else {
+        let Some(reference_shape) = condition(line).and_then(|condition| decided(condition, known)) else {
             kept.push(line.clone());
             at += 1;
             continue;
@@ -28,7 +28,7 @@ pub(super) fn without_dead_branches(lines: &[String], known: &Known) -> Vec<Stri
             at += 1;
             continue;
         };
-        let taken = if truth { &lines[at + 1..block.then_end] } else { block.otherwise(lines) };
+        let taken = if reference_shape { &lines[at + 1..block.then_end] } else { block.otherwise(lines) };
         let taken: Vec<_> = taken.iter().map(|line| line.strip_prefix("    ").unwrap_or(line).to_owned()).collect();
         let taken = without_dead_branches(&taken, known);
         let returns =
@@ -89,12 +89,12 @@ fn decided(condition: &str, known: &Known) -> Option<bool> {
         return None;
     }
     let parts = condition.split(if is_all { " && " } else { " || " });
-    let truths: Vec<_> = parts.map(|part| comparison(part, known)).collect();
+    let reference_shapes: Vec<_> = parts.map(|part| comparison(part, known)).collect();
     // One that is false decides an `&&`, one that is true an `||`.
-    if truths.contains(&Some(!is_all)) {
+    if reference_shapes.contains(&Some(!is_all)) {
         return Some(!is_all);
     }
-    truths.iter().all(Option::is_some).then_some(is_all)
+    reference_shapes.iter().all(Option::is_some).then_some(is_all)
 }
 
 /// Returns whether `name == VALUE`, or `name != VALUE`, holds. Names of values that differ are different values.

@@ -27,7 +27,7 @@ pub struct CopiedCommand<'a> {
     pub size: [u32; 2],
     /// A clip's name, and the time in it in s.
     pub animation: Option<(&'a str, f64)>,
-    pub truth: Option<&'a Source>,
+    pub reference_shape: Option<&'a Source>,
     /// The file whose factors take the place of those of LOD.
     pub factors: Option<&'a Path>,
     /// The file whose functions take the place of LOD.
@@ -155,8 +155,8 @@ impl CopiedCommand<'_> {
         for (name, path) in files.into_iter().filter_map(|(name, path)| Some((name, path?))) {
             line.option(name, named(&Source::File(path.to_owned())));
         }
-        if let (Some(truth), None) = (self.truth, self.animation) {
-            line.option("--truth", named(truth));
+        if let (Some(reference_shape), None) = (self.reference_shape, self.animation) {
+            line.option("--reference-surface", named(reference_shape));
         }
         self.triangle.into_iter().for_each(|triangle| line.option("--select", triangle));
         if let Some((name, time)) = self.animation {

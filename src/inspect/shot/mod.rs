@@ -342,7 +342,8 @@ impl Shot {
         for half in SplitSide::BOTH {
             let inputs = self.inputs(half);
             let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
-            let truth = reference_surface.and_then(ReferenceSurface::truth).filter(|_| stats.is_some());
+            let reference_shape =
+                reference_surface.and_then(ReferenceSurface::reference_shape).filter(|_| stats.is_some());
             let wanted = Measurements {
                 survey: settings.overlays.cracks || self.subject.selected.is_some() || stats.is_some(),
                 // The CPU doesn't know the surface of a shader.
@@ -351,7 +352,8 @@ impl Shot {
                     .is_some_and(|stats| stats.error)
                     .then_some(inputs),
                 deviation: target.as_ref(),
-                accuracy: truth.map(|(_, truth)| (truth, &inputs.view, AccuracyOptions::default())),
+                accuracy: reference_shape
+                    .map(|(_, reference_shape)| (reference_shape, &inputs.view, AccuracyOptions::default())),
                 sizes: (stats.is_some() && half == SplitSide::Right).then_some(view),
             };
             self.results[half as usize] = Some(self.engine.measure_watched(scene, &wanted, progress)?);
@@ -417,7 +419,7 @@ impl Shot {
             lines.extend(t_junction_lines(topology, &junctions));
         }
         if let Some(worst) = results.and_then(|results| results.deviation.as_ref()).and_then(DeviationField::worst) {
-            lines.extend(worst_lines(worst.emitted.as_vec3(), worst.truth.as_vec3()));
+            lines.extend(worst_lines(worst.emitted.as_vec3(), worst.reference_shape.as_vec3()));
         }
         if settings.overlays.grid {
             lines.extend(axis_lines(&self.scene.bounds));
@@ -437,7 +439,7 @@ impl Shot {
 
     /// The distance of a half from the reference surface, if it was measured.
     fn accuracy(&self, half: SplitSide) -> Option<AccuracyStats> {
-        let (name, _) = self.subject.reference_surface.as_ref().and_then(ReferenceSurface::truth)?;
+        let (name, _) = self.subject.reference_surface.as_ref().and_then(ReferenceSurface::reference_shape)?;
         let results = self.results(half)?;
         let is_whole = results.survey.as_ref()?.culled.total() == 0;
         results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(name, accuracy, is_whole))

@@ -6,14 +6,14 @@ use glam::DVec3;
 use serde::Serialize;
 
 use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Sampling};
+use crate::reference_shape::ReferenceShape;
 use crate::render::Scale;
-use crate::truth::Truth;
 use geometry::tessellate::Inputs;
 
 /// The surface that a picture is compared with.
 pub enum ReferenceSurface {
     /// A given or exact surface, with its name.
-    Truth(String, Arc<Truth>),
+    ReferenceShape(String, Arc<ReferenceShape>),
     /// The limit surface of the tessellation.
     Limit,
 }
@@ -22,15 +22,15 @@ impl ReferenceSurface {
     /// The surface to compare with what was emitted with these inputs.
     pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
         match self {
-            Self::Truth(_, truth) => DeviationTarget::Truth(truth.clone()),
+            Self::ReferenceShape(_, reference_shape) => DeviationTarget::ReferenceShape(reference_shape.clone()),
             Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
         }
     }
 
     /// The given or exact surface and its name; none for the limit surface.
-    pub fn truth(&self) -> Option<(&str, &Truth)> {
+    pub fn reference_shape(&self) -> Option<(&str, &ReferenceShape)> {
         match self {
-            Self::Truth(name, truth) => Some((name, truth)),
+            Self::ReferenceShape(name, reference_shape) => Some((name, reference_shape)),
             Self::Limit => None,
         }
     }
@@ -39,13 +39,13 @@ impl ReferenceSurface {
 /// The sampled distance of everything that was emitted from the reference surface.
 #[derive(Debug, Serialize)]
 pub struct AccuracyStats {
-    truth: String,
+    reference_surface: String,
     /// The diagonal of the reference surface's bounding box, in object units.
     diagonal: f64,
     /// From what was emitted to the nearest points of the reference surface.
-    to_truth: DistanceStats,
+    to_reference: DistanceStats,
     /// From the reference surface to the nearest points of what was emitted; none if patches were left out.
-    from_truth: Option<DistanceStats>,
+    from_reference: Option<DistanceStats>,
     /// The largest distance on screen, in px; none if nothing is in view.
     max_px: Option<f64>,
     /// Between shading normals and those of the reference surface, in degrees.
@@ -73,7 +73,7 @@ struct AngleStats {
 
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
-    pub fn new(truth: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
+    pub fn new(reference_shape: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
         let distances = |distances: Distances, Sampling { samples, spacing }| {
             let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
@@ -81,10 +81,10 @@ impl AccuracyStats {
         };
         let Angles { largest, rms } = accuracy.normals;
         Self {
-            truth: truth.to_owned(),
+            reference_surface: reference_shape.to_owned(),
             diagonal: accuracy.diagonal,
-            to_truth: distances(accuracy.to_truth, accuracy.to_truth_sampling),
-            from_truth: is_whole.then(|| distances(accuracy.from_truth, accuracy.from_truth_sampling)),
+            to_reference: distances(accuracy.to_reference, accuracy.to_reference_sampling),
+            from_reference: is_whole.then(|| distances(accuracy.from_reference, accuracy.from_reference_sampling)),
             max_px: accuracy.worst_px.map(|worst| worst.value),
             normals: AngleStats { max: largest, rms },
         }
@@ -109,15 +109,16 @@ pub struct DeviationStats {
 struct WorstStats {
     patch: u32,
     emitted: [f64; 3],
-    truth: [f64; 3],
+    reference_surface: [f64; 3],
 }
 
 impl DeviationStats {
     pub fn new(field: &DeviationField, scale: Scale) -> Self {
         let max = field.worst().map_or(0.0, |worst| worst.value);
         let worst = field.worst().map(|worst| {
-            let [emitted, truth] = [worst.emitted, worst.truth].map(|place: DVec3| place.to_array());
-            WorstStats { patch: worst.patch, emitted, truth }
+            let [emitted, reference_surface] =
+                [worst.emitted, worst.reference_shape].map(|place: DVec3| place.to_array());
+            WorstStats { patch: worst.patch, emitted, reference_surface }
         });
         Self { max, rms: field.rms(), scale: [scale.least, scale.most], worst, triangles_left_out: field.left_out }
     }

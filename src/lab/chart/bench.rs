@@ -7,9 +7,9 @@ use geometry::tessellate::{Clip, Tessellation};
 use gpu::{GpuError, Timing};
 use inspect::engine::{Engine, MeasurementResults, Measurements, Runs};
 use inspect::measure::AccuracyOptions;
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::Settings;
-use inspect::truth::Truth;
 
 /// How much time is spent on a setting.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +35,7 @@ pub struct Bench<'a> {
     pub scene: Scene,
     pub target: &'a Target,
     pub camera: Camera,
-    pub truth: Option<&'a Truth>,
+    pub reference_shape: Option<&'a ReferenceShape>,
     /// The settings that all methods have in common.
     pub base: Settings,
     pub effort: Effort,
@@ -64,7 +64,7 @@ impl Bench<'_> {
         let time = Time::new(&passes);
         let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None, triangles_by_error: None };
         let wanted = Measurements {
-            accuracy: self.truth.map(|truth| (truth, &inputs.view, self.effort.accuracy)),
+            accuracy: self.reference_shape.map(|reference_shape| (reference_shape, &inputs.view, self.effort.accuracy)),
             screen_error: Some(&inputs),
             ..Measurements::default()
         };
@@ -73,9 +73,9 @@ impl Bench<'_> {
         if let Some(px) = own_px.map(|px| px as f32).filter(|px| *px > 0.0) {
             probe.triangles_by_error = engine.triangles_by_error(scene, &inputs, px)?;
         }
-        let from_truth = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
-        probe.max_error_px = match self.truth {
-            Some(_) => from_truth,
+        let from_reference = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
+        probe.max_error_px = match self.reference_shape {
+            Some(_) => from_reference,
             None => own_px,
         };
         probe.errors = accuracy.map(|accuracy| {

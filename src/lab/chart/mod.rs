@@ -142,7 +142,7 @@ pub struct Subject {
     /// The mesh's name in pictures and reports.
     pub title: String,
     /// The reference surface that it was compared with, in words; `None` if each surface was compared with its own limit.
-    pub truth: Option<String>,
+    pub reference_shape: Option<String>,
     pub adapter: String,
     /// The width and height of the view, in px.
     pub size: [u32; 2],
@@ -157,7 +157,7 @@ impl Subject {
 
     /// The largest error of any settings: see [`Self::error`].
     pub fn error_of(&self, probe: &Probe) -> Option<f64> {
-        let error = match self.truth {
+        let error = match self.reference_shape {
             Some(_) => probe.errors.map(|errors| errors.largest),
             None => probe.max_error_px,
         };

@@ -68,7 +68,7 @@ impl Subject {
     pub fn races(&self) -> Vec<Race<'_>> {
         let mut races: Vec<Race> = Vec::new();
         for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(row)?))) {
-            let surface = self.truth.is_none().then_some(row.setting.method.surface);
+            let surface = self.reference_shape.is_none().then_some(row.setting.method.surface);
             match races.iter_mut().find(|race| race.surface == surface) {
                 Some(race) => race.entries.push((row, error)),
                 None => races.push(Race { surface, entries: vec![(row, error)] }),

@@ -26,9 +26,9 @@ pub(super) fn row(surface: Surface, lod: LodKind, value: f32, (ms, triangles, er
     }
 }
 
-pub(super) fn subject(truth: Option<&str>, rows: Vec<Row>) -> Subject {
-    let truth = truth.map(str::to_owned);
-    Subject { title: "Torus <7>".into(), truth, adapter: "an adapter".into(), size: [1280, 720], rows }
+pub(super) fn subject(reference_shape: Option<&str>, rows: Vec<Row>) -> Subject {
+    let reference_shape = reference_shape.map(str::to_owned);
+    Subject { title: "Torus <7>".into(), reference_shape, adapter: "an adapter".into(), size: [1280, 720], rows }
 }
 
 /// Rows in which flat has the mesh's error at every factor, and PN-AEN comes closer.
@@ -47,7 +47,7 @@ pub(super) fn some_rows() -> Vec<Row> {
 
 #[test]
 fn an_error_that_is_due_to_rounding_is_0() {
-    let shown = |truth, error| subject(truth, Vec::new()).shown_error(error);
+    let shown = |reference_shape, error| subject(reference_shape, Vec::new()).shown_error(error);
     assert_eq!([2.93e-14, 1.94].map(|px| shown(None, px)), ["0", "1.94"]);
     assert_eq!([5e-8, 0.0593].map(|part| shown(Some("it"), part)), ["0", "5.93"], "in percent");
 }

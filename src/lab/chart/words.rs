@@ -14,12 +14,12 @@ const LEAST_PX: f64 = 1e-3;
 impl Subject {
     /// Errors up to this count as 0.
     pub fn floor(&self) -> f64 {
-        if self.truth.is_some() { LEAST_PART } else { LEAST_PX }
+        if self.reference_shape.is_some() { LEAST_PART } else { LEAST_PX }
     }
 
     /// The factor by which errors are multiplied to be shown: 100 for percent, or 1 for px.
     pub fn unit(&self) -> f64 {
-        if self.truth.is_some() { 100.0 } else { 1.0 }
+        if self.reference_shape.is_some() { 100.0 } else { 1.0 }
     }
 
     /// An error in the unit in which errors are shown. As in the charts, one that is due to rounding is 0.
@@ -29,7 +29,7 @@ impl Subject {
 
     /// The label of the error axis, with its unit.
     pub(crate) fn error_name(&self) -> &'static str {
-        match self.truth {
+        match self.reference_shape {
             Some(_) => "Largest error, % of the diagonal",
             None => "Largest error, px",
         }
@@ -37,8 +37,8 @@ impl Subject {
 
     /// The facts above the panels: the reference surface, the size of the view, and the adapter.
     pub fn facts(&self) -> String {
-        let against = match &self.truth {
-            Some(truth) => format!("against {truth}"),
+        let against = match &self.reference_shape {
+            Some(reference_shape) => format!("against {reference_shape}"),
             None => "against each surface's own limit".to_owned(),
         };
         let [width, height] = self.size;
@@ -73,7 +73,7 @@ impl Subject {
 
     /// Names the row that comes closest to the reference surface.
     fn closest(&self, race: &Race) -> Option<String> {
-        self.truth.as_ref()?;
+        self.reference_shape.as_ref()?;
         let (row, error) = race.entries.iter().min_by(|a, b| a.1.total_cmp(&b.1))?;
         let percent = short(error * 100.0);
         Some(format!("Closest comes {}, to {percent} % of the diagonal.", self.named(row)))
@@ -99,7 +99,7 @@ impl Subject {
 
     /// An error with its unit.
     fn amount(&self, error: f64) -> String {
-        match self.truth {
+        match self.reference_shape {
             Some(_) => format!("{} % of the diagonal", plain(error * 100.0)),
             None => format!("{} px", plain(error)),
         }

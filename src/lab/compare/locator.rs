@@ -10,7 +10,7 @@ use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{
     ControlNet, FIXED_ONE, Inputs, LimitSurface, Partitioning, Tessellated, Tessellation, Vertex, tessellate,
 };
-use inspect::truth::{Triangles, closest_on_triangle};
+use inspect::reference_shape::{Triangles, closest_on_triangle};
 
 /// Patches that are cut into triangles, with a hierarchy of boxes to find the nearest one.
 pub(super) struct Locator<'a> {

@@ -17,7 +17,7 @@ use geometry::tessellate::{
 };
 use gpu::{GpuError, Timing};
 use inspect::engine::Engine;
-use inspect::measure::{AskedFactors, Measured, SWEEP_STEP, sweep};
+use inspect::measure::{Measured, RequestedFactors, SWEEP_STEP, sweep};
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Choice, Settings};
 
@@ -202,7 +202,7 @@ impl<'a> Running<'a> {
             let pose = self.pose(moment);
             let (mesh, topology) = PosedMesh::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
             let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
-            let asked = AskedFactors::new(
+            let asked = RequestedFactors::new(
                 settings.tessellation.edges,
                 settings.tessellation.convention,
                 out.edge_factors.clone(),

@@ -4,8 +4,8 @@ use glam::{Vec2, Vec3, vec2};
 
 use super::CaseView;
 use geometry::mesh::Bounds;
+use inspect::reference_shape::radical_inverse;
 use inspect::render::Camera;
-use inspect::truth::radical_inverse;
 
 /// The size of the picture that screen measurements refer to: width and height in px.
 pub(super) const SIZE: [u32; 2] = [320, 240];

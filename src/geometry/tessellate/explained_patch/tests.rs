@@ -57,9 +57,9 @@ fn what_edges_were_asked_for_and_got_is_what_lod_by_error_gives_them() {
                 assert!(edge.own >= edge.least || explained.is_flat, "{what}");
                 assert!(edge.got >= edge.own || edge.decided_by() == DecidedBy::All, "{what}");
                 decided[edge.decided_by() as usize] += 1;
-                for &(other, asked) in &edge.others {
+                for &(other, requested) in &edge.others {
                     let of_other = all[other as usize].edges.as_ref().expect("as above");
-                    assert!(of_other.iter().any(|back| back.own == asked && back.got == edge.got), "{what}");
+                    assert!(of_other.iter().any(|back| back.own == requested && back.got == edge.got), "{what}");
                 }
             }
             let errors = explained.errors.expect("nothing is culled");
@@ -81,7 +81,7 @@ fn an_edge_that_gets_less_than_was_asked_for_has_what_all_edges_have() {
 
 #[test]
 fn patches_beside_no_other_have_their_own_least_if_edges_count_once() {
-    // A patch whose neighbours ask for no more than it does, and which wouldn't ask for anything else by itself.
+    // A patch whose neighbours request no more than it does, and which wouldn't request anything else by itself.
     let (mesh, topology, inputs) = shape(Shape::Torus, Tessellation::default());
     let out = tessellate(&mesh, &topology, &inputs, None);
     let least = minimum_triangles(&mesh, &topology, &inputs);

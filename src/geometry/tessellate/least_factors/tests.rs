@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::tessellate::largest_patch;
 
-fn asked_factors(
+fn requested_factors(
     patch: &SeenPatch,
     tolerance: f32,
     partitioning: Partitioning,
@@ -12,7 +12,12 @@ fn asked_factors(
     inside: f32,
     inner: f32,
 ) -> ChosenFactors {
-    fewest_triangles(patch, tolerance, partitioning, &FactorSearch { least, inside, inner, wanted: SearchGoal::Asked })
+    fewest_triangles(
+        patch,
+        tolerance,
+        partitioning,
+        &FactorSearch { least, inside, inner, wanted: SearchGoal::Requests },
+    )
 }
 
 fn minimum_factors(
@@ -101,7 +106,8 @@ fn flat_patches_ask_for_the_least_factors() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        let ChosenFactors { edges, inside: chosen, .. } = asked_factors(&patch, 0.01, partitioning, least, 1.0, 0.0);
+        let ChosenFactors { edges, inside: chosen, .. } =
+            requested_factors(&patch, 0.01, partitioning, least, 1.0, 0.0);
         assert_eq!(edges, least, "{partitioning:?}");
         let inside = least_inside_factor(&patch, 0.01, partitioning, least, (1.0, 0.0));
         let expected = if partitioning == Partitioning::FractionalEven { 2.0 } else { 1.0 };
@@ -113,8 +119,8 @@ fn flat_patches_ask_for_the_least_factors() {
 fn heights_inside_and_factors_of_edges_are_kept() {
     let patch = seen_patch(&VIEW, &lifted(CORNERS, [0.0; 7]));
     let edges = [3.0, 1.0, 7.0];
-    let asked = asked_factors(&patch, 0.01, Partitioning::Integer, edges, 5.0, 0.0);
-    assert_eq!(asked, ChosenFactors { edges, inside: 5.0, inner: 5.0 });
+    let requested = requested_factors(&patch, 0.01, Partitioning::Integer, edges, 5.0, 0.0);
+    assert_eq!(requested, ChosenFactors { edges, inside: 5.0, inner: 5.0 });
     assert_eq!(least_inside_factor(&patch, 0.01, Partitioning::Integer, edges, (5.0, 0.0)), 5.0);
 }
 
@@ -125,7 +131,7 @@ fn an_inside_factor_above_64_says_that_none_is_enough() {
         let least = [factor_from(partitioning, 1.0); 3];
         let none = ChosenFactors { edges: least, inside: BEYOND_LAST, inner: 0.0 };
         let inside = |edges, tolerance| least_inside_factor(&patch, tolerance, partitioning, edges, (1.0, 0.0));
-        assert_eq!(asked_factors(&patch, 1e-6, partitioning, least, 1.0, 0.0), none, "{partitioning:?}");
+        assert_eq!(requested_factors(&patch, 1e-6, partitioning, least, 1.0, 0.0), none, "{partitioning:?}");
         assert_eq!(minimum_factors(&patch, 1e-6, partitioning, least, 1.0), none, "{partitioning:?}");
         assert_eq!(inside(least, 1e-6), BEYOND_LAST, "{partitioning:?}");
         assert_eq!(inside([BEYOND_LAST; 3], 1.0), BEYOND_LAST);
@@ -137,7 +143,7 @@ fn what_is_not_a_number_ends_the_search() {
     let patch = seen_patch(&VIEW, &lifted([Vec3::NAN, Vec3::X, Vec3::Y], [0.1; 7]));
     for partitioning in Partitioning::DIRECT3D {
         let least = [factor_from(partitioning, 1.0); 3];
-        assert_eq!(asked_factors(&patch, 0.5, partitioning, least, 1.0, 0.0).edges, least);
+        assert_eq!(requested_factors(&patch, 0.5, partitioning, least, 1.0, 0.0).edges, least);
         assert_eq!(least_inside_factor(&patch, 0.5, partitioning, least, (1.0, 0.0)), BEYOND_LAST);
     }
 }
@@ -185,14 +191,14 @@ proptest! {
             3.0 * rings + 1.5 * rings * rings + segment * (u + v + w)
         };
         if let Some(fewest) = fewest(&patch, tolerance, partitioning, 2.0) {
-            let asked = asked_factors(&patch, tolerance, partitioning, least, 1.0, 0.0);
-            let inside = |inner| least_inside_factor(&patch, tolerance, partitioning, asked.edges, (1.0, inner));
-            prop_assert!(asked.inside <= 64.0 && inside(0.0) == asked.inside, "{asked:?} {}", inside(0.0));
-            prop_assert_eq!(count(asked.edges, asked.inside, 2.0), fewest, "{:?}", asked);
+            let requested = requested_factors(&patch, tolerance, partitioning, least, 1.0, 0.0);
+            let inside = |inner| least_inside_factor(&patch, tolerance, partitioning, requested.edges, (1.0, inner));
+            prop_assert!(requested.inside <= 64.0 && inside(0.0) == requested.inside, "{requested:?} {}", inside(0.0));
+            prop_assert_eq!(count(requested.edges, requested.inside, 2.0), fewest, "{:?}", requested);
             // What is known of the inner triangles changes no factor.
-            prop_assert_eq!(inside(asked.inner), asked.inside, "{:?}", asked);
-            let again = asked_factors(&patch, tolerance, partitioning, least, 1.0, asked.inner);
-            prop_assert_eq!((again.edges, again.inside), (asked.edges, asked.inside));
+            prop_assert_eq!(inside(requested.inner), requested.inside, "{:?}", requested);
+            let again = requested_factors(&patch, tolerance, partitioning, least, 1.0, requested.inner);
+            prop_assert_eq!((again.edges, again.inside), (requested.edges, requested.inside));
         }
         if let Some(fewest) = fewest(&patch, tolerance, partitioning, 1.0) {
             let own = minimum_factors(&patch, tolerance, partitioning, least, 1.0);
@@ -204,9 +210,9 @@ proptest! {
 
 #[test]
 fn patches_ask_again_if_their_inside_is_much_larger_than_they_chose() {
-    assert!(!asks_again(1.0, 2.0) && asks_again(1.0, 3.0));
-    assert!(!asks_again(18.0, 20.0) && asks_again(18.0, 21.0));
-    assert!(asks_again(64.0, BEYOND_LAST));
+    assert!(!requests_again(1.0, 2.0) && requests_again(1.0, 3.0));
+    assert!(!requests_again(18.0, 20.0) && requests_again(18.0, 21.0));
+    assert!(requests_again(64.0, BEYOND_LAST));
 }
 
 #[test]

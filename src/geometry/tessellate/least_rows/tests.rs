@@ -5,8 +5,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn asked_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> ChosenFactors {
-    fewest_rows(patch, tolerance, &FactorSearch { least, inside, inner: 0.0, wanted: SearchGoal::Asked })
+fn requested_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> ChosenFactors {
+    fewest_rows(patch, tolerance, &FactorSearch { least, inside, inner: 0.0, wanted: SearchGoal::Requests })
 }
 
 fn minimum_rows(patch: &SeenPatch, tolerance: f32, least: [f32; 3], inside: f32) -> ChosenFactors {
@@ -64,7 +64,7 @@ fn a_patch_that_is_bent_in_one_direction_has_no_points_inside() {
         let mut along = [0.0; 3];
         along[k] = 1.0;
         let patch = bent(along, 0.2);
-        let ChosenFactors { edges, inside, .. } = asked_rows(&patch, 0.1, [1.0; 3], 1.0);
+        let ChosenFactors { edges, inside, .. } = requested_rows(&patch, 0.1, [1.0; 3], 1.0);
         let factors = process(Partitioning::Rows, edges, inside);
         assert_eq!(point_count(factors), outer_count(factors), "{edges:?} {inside}");
         assert_eq!(edges[k], 1.0, "{edges:?}");
@@ -81,12 +81,12 @@ fn a_patch_that_is_bent_in_one_direction_has_no_points_inside() {
 fn a_patch_that_one_triangle_shows_is_one_triangle() {
     let patch = seen_patch(&VIEW, &lifted([0.0; 7]));
     let one = ChosenFactors { edges: [1.0; 3], inside: (ROW_BASE_STEP + 1) as f32, inner: 0.0 };
-    assert_eq!(asked_rows(&patch, 0.01, [1.0; 3], 1.0), one);
+    assert_eq!(requested_rows(&patch, 0.01, [1.0; 3], 1.0), one);
     assert_eq!(minimum_rows(&patch, 0.01, [1.0; 3], 1.0), one);
     assert_eq!(rows_beside(&patch, 0.01, [1.0; 3], 1.0), one.inside);
     // Heights may need more rows than the surface does.
     let factors = |chosen: ChosenFactors| process(Partitioning::Rows, chosen.edges, chosen.inside);
-    let raised = factors(asked_rows(&patch, 0.01, [1.0; 3], 5.0));
+    let raised = factors(requested_rows(&patch, 0.01, [1.0; 3], 5.0));
     assert_eq!((row_count(raised), row_width(raised)), (5, 5));
     let beside = process(Partitioning::Rows, [7.0, 3.0, 2.0], rows_beside(&patch, 0.01, [7.0, 3.0, 2.0], 1.0));
     assert_eq!((row_width(beside), beside.outside.map(segments)), (1, [7, 3, 2]));
@@ -96,18 +96,18 @@ fn a_patch_that_one_triangle_shows_is_one_triangle() {
 fn what_no_rows_suffice_for_says_so() {
     let patch = seen_patch(&VIEW, &lifted([0.1, -0.1, 0.1, 0.2, -0.1, 0.1, 0.3]));
     let none = |least| ChosenFactors { edges: least, inside: BEYOND_LAST, inner: 0.0 };
-    assert_eq!(asked_rows(&patch, 1e-6, [2.0, 3.0, 1.0], 1.0), none([2.0, 3.0, 1.0]));
-    assert_eq!(asked_rows(&patch, 0.5, [127.5, 1.0, 1.0], 1.0), none([127.5, 1.0, 1.0]));
+    assert_eq!(requested_rows(&patch, 1e-6, [2.0, 3.0, 1.0], 1.0), none([2.0, 3.0, 1.0]));
+    assert_eq!(requested_rows(&patch, 0.5, [127.5, 1.0, 1.0], 1.0), none([127.5, 1.0, 1.0]));
     assert_eq!(rows_beside(&patch, 1e-6, [127.0; 3], 1.0), BEYOND_LAST);
-    assert_eq!(asked_rows(&patch, 0.5, [1.0; 3], BEYOND_LAST).inside, BEYOND_LAST);
+    assert_eq!(requested_rows(&patch, 0.5, [1.0; 3], BEYOND_LAST).inside, BEYOND_LAST);
     let lost = seen_patch(&VIEW, &lifted([f32::NAN; 7]));
-    assert_eq!(asked_rows(&lost, 0.5, [1.0; 3], 1.0), none([1.0; 3]));
+    assert_eq!(requested_rows(&lost, 0.5, [1.0; 3], 1.0), none([1.0; 3]));
 }
 
 #[test]
 fn patches_that_are_near_get_more_rows_than_rings_have_segments() {
     let patch = seen_patch(&VIEW, &lifted([0.1, -0.1, 0.1, 0.2, -0.1, 0.1, 0.3]));
-    let chosen = asked_rows(&patch, 4e-3, [1.0; 3], 1.0);
+    let chosen = requested_rows(&patch, 4e-3, [1.0; 3], 1.0);
     let factors = process(Partitioning::Rows, chosen.edges, chosen.inside);
     assert!(row_count(factors).max(row_width(factors)) > 64, "{chosen:?}");
     assert!(within(&patch, 4e-3, chosen.edges, chosen.inside));
@@ -116,13 +116,13 @@ fn patches_that_are_near_get_more_rows_than_rings_have_segments() {
 #[test]
 fn patches_ask_again_if_they_have_many_more_points_inside_than_they_chose() {
     let chosen = ChosenFactors { edges: [8.0; 3], inside: (ROW_BASE_STEP + 8) as f32, inner: 0.0 };
-    let again = |edges, inside| rows_ask_again(&chosen, edges, inside);
+    let again = |edges, inside| rows_request_again(&chosen, edges, inside);
     assert!(!again([8.0; 3], chosen.inside) && !again([10.0, 8.0, 8.0], chosen.inside));
     assert!(again([8.0, 12.0, 12.0], chosen.inside) && again([8.0; 3], BEYOND_LAST));
 }
 
 /// Returns the fewest triangles of all rows whose two edges beside the base have the same number of segments, where segments of
-/// edges count as in [`asked_rows`].
+/// edges count as in [`requested_rows`].
 fn fewest_of_all(patch: &SeenPatch, tolerance: f32) -> Option<f32> {
     // Those with the fewest triangles first.
     static ALL: LazyLock<Vec<(f32, [f32; 3], f32)>> = LazyLock::new(|| {
@@ -132,7 +132,7 @@ fn fewest_of_all(patch: &SeenPatch, tolerance: f32) -> Option<f32> {
                 let mut edges = [rows; 3];
                 edges[base % 3] = segments.into();
                 let inside = (ROW_BASE_STEP as usize * (base + 1)) as f32 + f32::from(width);
-                all.push((cost_of_rows(process(Partitioning::Rows, edges, inside), ASKED_SEGMENT), edges, inside));
+                all.push((cost_of_rows(process(Partitioning::Rows, edges, inside), REQUESTED_SEGMENT), edges, inside));
             }
         }
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -174,8 +174,10 @@ fn the_search_is_close_to_the_fewest_of_all() {
         let patch = seen_patch(&VIEW, &lifted(std::array::from_fn(|_| 0.1 * random.f32() - 0.05)));
         let tolerance = 0.15 + 1.85 * random.f32();
         let Some(fewest) = fewest_of_all(&patch, tolerance) else { continue };
-        let asked = asked_rows(&patch, tolerance, [1.0; 3], 1.0);
-        ratios.push(cost_of_rows(process(Partitioning::Rows, asked.edges, asked.inside), ASKED_SEGMENT) / fewest);
+        let requested = requested_rows(&patch, tolerance, [1.0; 3], 1.0);
+        ratios.push(
+            cost_of_rows(process(Partitioning::Rows, requested.edges, requested.inside), REQUESTED_SEGMENT) / fewest,
+        );
     }
     // It goes up from one place, and down one number after the other, and so misses some. But it also tries edges that differ.
     let mean = (ratios.iter().map(|ratio| ratio.ln()).sum::<f32>() / ratios.len() as f32).exp();
@@ -192,9 +194,9 @@ proptest! {
         least in prop::array::uniform3(1u8..9),
     ) {
         let (patch, least) = (seen_patch(&VIEW, &lifted(heights)), least.map(f32::from));
-        let asked = asked_rows(&patch, tolerance, least, 1.0);
-        prop_assert!(asked.inside != BEYOND_LAST && within(&patch, tolerance, asked.edges, asked.inside), "{asked:?}");
-        prop_assert!(asked.edges.iter().zip(least).all(|(&own, least)| own >= least), "{asked:?}");
+        let requested = requested_rows(&patch, tolerance, least, 1.0);
+        prop_assert!(requested.inside != BEYOND_LAST && within(&patch, tolerance, requested.edges, requested.inside), "{requested:?}");
+        prop_assert!(requested.edges.iter().zip(least).all(|(&own, least)| own >= least), "{requested:?}");
         let beside = rows_beside(&patch, tolerance, least, 1.0);
         prop_assert!(beside == BEYOND_LAST || within(&patch, tolerance, least, beside), "{beside}");
         let own = minimum_rows(&patch, tolerance, [1.0; 3], 1.0);

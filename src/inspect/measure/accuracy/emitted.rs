@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::WorstPoint;
-use crate::truth::{Closest, Triangles};
+use crate::reference_shape::{Closest, Triangles};
 use geometry::tessellate::Vertex;
 
 /// The triangles of some chunks.
@@ -28,8 +28,8 @@ pub(super) struct NearestEmitted {
 
 impl NearestEmitted {
     /// The place with the distance from a point of the reference surface to this one.
-    pub(super) fn from(self, truth: DVec3) -> WorstPoint {
-        WorstPoint { value: self.distance, patch: self.patch, emitted: self.point, truth }
+    pub(super) fn from(self, reference_shape: DVec3) -> WorstPoint {
+        WorstPoint { value: self.distance, patch: self.patch, emitted: self.point, reference_shape }
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::{WorstPoint, worse};
-use crate::truth::radical_inverse;
+use crate::reference_shape::radical_inverse;
 
 /// The places with the largest values so far, one for each region of space. They don't depend on the order of the places,
 /// unless values are equal.
@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     fn place(value: f64, x: f64) -> WorstPoint {
-        WorstPoint { value, patch: 0, emitted: DVec3::X * x, truth: DVec3::ZERO }
+        WorstPoint { value, patch: 0, emitted: DVec3::X * x, reference_shape: DVec3::ZERO }
     }
 
     #[test]
@@ -114,7 +114,7 @@ mod tests {
         };
         let on_plane = |p: DVec3, _: f64| {
             let emitted = DVec3::new(p.x, 0.0, p.z);
-            Some(WorstPoint { value: value(emitted), patch: 0, emitted, truth: DVec3::ZERO })
+            Some(WorstPoint { value: value(emitted), patch: 0, emitted, reference_shape: DVec3::ZERO })
         };
         let start = on_plane(DVec3::ZERO, 0.0).expect("every point has a place");
         let found = climb(start, 0.5, |place| place.emitted, on_plane);

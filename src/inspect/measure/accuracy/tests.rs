@@ -22,8 +22,8 @@ fn emitted(mesh: &Mesh, surface: Surface, factor: f32) -> Tessellated {
     tessellate(mesh, &topology, &settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE)), None)
 }
 
-fn measured(truth: &Truth, out: &Tessellated, samples: usize) -> Accuracy {
-    let mut measurement = AccuracyMeasurement::new(truth, None, options(samples));
+fn measured(reference_shape: &ReferenceShape, out: &Tessellated, samples: usize) -> Accuracy {
+    let mut measurement = AccuracyMeasurement::new(reference_shape, None, options(samples));
     measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
     measurement.finish().unwrap()
 }
@@ -48,7 +48,7 @@ fn square(half: f32, y: f32) -> (Vec<Vertex>, Vec<[u32; 3]>) {
     (vec![vertex(-1.0, -1.0), vertex(-1.0, 1.0), vertex(1.0, 1.0), vertex(1.0, -1.0)], vec![[0, 1, 2], [0, 2, 3]])
 }
 
-fn square_truth(half: f32) -> Truth {
+fn square_reference_shape(half: f32) -> ReferenceShape {
     let (vertices, triangles) = square(half, 0.0);
     let corner = |i: u32| geometry::mesh::Corner {
         position: vertices[i as usize].position.into(),
@@ -56,24 +56,24 @@ fn square_truth(half: f32) -> Truth {
         uv: Vec2::ZERO,
     };
     let mesh = Mesh { corners: (0..4).map(corner).collect(), triangles: triangles.into(), ..Mesh::default() };
-    Truth::from_mesh(&mesh).unwrap()
+    ReferenceShape::from_mesh(&mesh).unwrap()
 }
 
 #[test]
 fn the_icosahedron_is_a_fifth_of_the_radius_off_the_sphere() {
-    let truth = Truth::from_shape(Shape::Icosahedron).unwrap();
-    let accuracy = measured(&truth, &as_it_is(&Shape::Icosahedron.build()), 20_000);
+    let reference_shape = ReferenceShape::from_shape(Shape::Icosahedron).unwrap();
+    let accuracy = measured(&reference_shape, &as_it_is(&Shape::Icosahedron.build()), 20_000);
     let inradius = ((5.0 + 2.0 * 5.0_f64.sqrt()) / 15.0).sqrt();
     // Corners are f32 numbers, and no sample lies exactly opposite a face's middle.
-    near(accuracy.to_truth.largest, 1.0 - inradius, 1e-7);
-    near(accuracy.from_truth.largest, 1.0 - inradius, 1e-4);
-    near(accuracy.relative(accuracy.to_truth).largest, (1.0 - inradius) / 12.0_f64.sqrt(), 1e-7);
+    near(accuracy.to_reference.largest, 1.0 - inradius, 1e-7);
+    near(accuracy.from_reference.largest, 1.0 - inradius, 1e-4);
+    near(accuracy.relative(accuracy.to_reference).largest, (1.0 - inradius) / 12.0_f64.sqrt(), 1e-7);
     // The farthest place is the middle of a face.
-    let face = accuracy.worst_to_truth;
+    let face = accuracy.worst_to_reference;
     near(face.emitted.length(), inradius, 1e-7);
-    near(face.truth.length(), 1.0, 1e-12);
+    near(face.reference_shape.length(), 1.0, 1e-12);
     assert!(face.patch < 20);
-    near(accuracy.to_truth.rms, rms_of_a_face(inradius), 2e-4);
+    near(accuracy.to_reference.rms, rms_of_a_face(inradius), 2e-4);
     assert!(accuracy.normals.rms < accuracy.normals.largest && accuracy.normals.largest < 3.0, "{accuracy:?}");
 }
 
@@ -91,52 +91,52 @@ fn rms_of_a_face(inradius: f64) -> f64 {
 
 #[test]
 fn parallel_squares_are_equally_far_in_both_directions() {
-    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
-    let mut measurement = AccuracyMeasurement::new(&truth, None, options(1000));
+    let (reference_shape, (vertices, triangles)) = (square_reference_shape(1.0), square(1.0, 0.25));
+    let mut measurement = AccuracyMeasurement::new(&reference_shape, None, options(1000));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
-    for distances in [accuracy.to_truth, accuracy.from_truth, accuracy.both_ways()] {
+    for distances in [accuracy.to_reference, accuracy.from_reference, accuracy.both_ways()] {
         near(distances.largest, 0.25, 1e-12);
         near(distances.rms, 0.25, 1e-12);
     }
     assert!(accuracy.normals.largest < 0.01 && accuracy.worst_px.is_none(), "{accuracy:?}");
-    near(accuracy.relative(accuracy.to_truth).rms, 0.25 / 8.0_f64.sqrt(), 1e-9);
-    assert_eq!(accuracy.worst_from_truth.patch, 7);
+    near(accuracy.relative(accuracy.to_reference).rms, 0.25 / 8.0_f64.sqrt(), 1e-9);
+    assert_eq!(accuracy.worst_from_reference.patch, 7);
 }
 
 #[test]
 fn missing_parts_count_from_the_reference_surface() {
-    let (truth, (vertices, triangles)) = (square_truth(1.0), square(0.5, 0.0));
-    let mut measurement = AccuracyMeasurement::new(&truth, None, options(50_000));
+    let (reference_shape, (vertices, triangles)) = (square_reference_shape(1.0), square(0.5, 0.0));
+    let mut measurement = AccuracyMeasurement::new(&reference_shape, None, options(50_000));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
-    assert!(accuracy.to_truth.largest < 1e-12, "{accuracy:?}");
-    near(accuracy.from_truth.largest, 0.5_f64.sqrt(), 0.01);
+    assert!(accuracy.to_reference.largest < 1e-12, "{accuracy:?}");
+    near(accuracy.from_reference.largest, 0.5_f64.sqrt(), 0.01);
     // The distance is 0 inside, t along the sides, and the hypotenuse of two such distances in the corners.
     let squares = 4.0 * (0.125 / 3.0) + 4.0 * (0.25 * 0.5 / 3.0);
-    near(accuracy.from_truth.rms, (squares / 4.0_f64).sqrt(), 2e-3);
-    near(accuracy.both_ways().rms, accuracy.from_truth.rms / 2.0_f64.sqrt(), 1e-12);
+    near(accuracy.from_reference.rms, (squares / 4.0_f64).sqrt(), 2e-3);
+    near(accuracy.both_ways().rms, accuracy.from_reference.rms / 2.0_f64.sqrt(), 1e-12);
 }
 
 #[test]
 fn a_shifted_sphere_is_off_by_the_shift() {
-    let truth = Truth::from_shape(Shape::Icosphere).unwrap();
+    let reference_shape = ReferenceShape::from_shape(Shape::Icosphere).unwrap();
     let mut out = as_it_is(&Shape::Icosphere.build_at(4));
     out.vertices.iter_mut().for_each(|vertex| vertex.position[0] += 0.01);
-    let accuracy = measured(&truth, &out, 5000);
+    let accuracy = measured(&reference_shape, &out, 5000);
     // The distance is the shift times the cosine between it and the normal, whose mean square over the sphere is a third.
-    near(accuracy.to_truth.largest, 0.01, 7e-4);
-    near(accuracy.from_truth.largest, 0.01, 7e-4);
+    near(accuracy.to_reference.largest, 0.01, 7e-4);
+    near(accuracy.from_reference.largest, 0.01, 7e-4);
     near(accuracy.both_ways().rms, 0.01 / 3.0_f64.sqrt(), 2e-4);
     near(accuracy.normals.largest, 0.573, 0.01);
 }
 
 #[test]
 fn normals_that_lean_are_measured_in_degrees() {
-    let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.0));
+    let (reference_shape, (mut vertices, triangles)) = (square_reference_shape(1.0), square(1.0, 0.0));
     let lean = 10.0_f32.to_radians();
     vertices.iter_mut().for_each(|vertex| vertex.normal = pack_normal(vec3(lean.sin(), lean.cos(), 0.0)));
-    let mut measurement = AccuracyMeasurement::new(&truth, None, options(100));
+    let mut measurement = AccuracyMeasurement::new(&reference_shape, None, options(100));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     near(accuracy.normals.rms, 10.0, 0.01);
@@ -145,10 +145,10 @@ fn normals_that_lean_are_measured_in_degrees() {
 
 #[test]
 fn distances_on_screen_are_in_px_of_what_is_in_view() {
-    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
+    let (reference_shape, (vertices, triangles)) = (square_reference_shape(1.0), square(1.0, 0.25));
     let px = |clip_from_object| {
         let view = LodView::new(clip_from_object, Vec2::new(400.0, 300.0));
-        let mut measurement = AccuracyMeasurement::new(&truth, Some(&view), options(100));
+        let mut measurement = AccuracyMeasurement::new(&reference_shape, Some(&view), options(100));
         measurement.take(&EmittedChunk::whole(&vertices, &triangles));
         measurement.finish().unwrap().worst_px.map(|place| place.value)
     };
@@ -159,26 +159,27 @@ fn distances_on_screen_are_in_px_of_what_is_in_view() {
 
 #[test]
 fn nothing_emitted_gives_no_result_and_nan_is_left_out() {
-    let (truth, (mut vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
-    assert_eq!(AccuracyMeasurement::new(&truth, None, options(10)).finish(), None);
-    let mut flat = AccuracyMeasurement::new(&truth, None, options(10));
+    let (reference_shape, (mut vertices, triangles)) = (square_reference_shape(1.0), square(1.0, 0.25));
+    assert_eq!(AccuracyMeasurement::new(&reference_shape, None, options(10)).finish(), None);
+    let mut flat = AccuracyMeasurement::new(&reference_shape, None, options(10));
     flat.take(&EmittedChunk::whole(&vertices, &[[0, 0, 1]]));
     assert_eq!(flat.finish(), None);
     vertices[3].position[1] = f32::NAN;
-    let mut measurement = AccuracyMeasurement::new(&truth, None, options(1000));
+    let mut measurement = AccuracyMeasurement::new(&reference_shape, None, options(1000));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     assert_eq!(accuracy.not_finite, 1);
-    near(accuracy.to_truth.rms, 0.25, 1e-12);
-    assert!(accuracy.from_truth.largest.is_finite() && accuracy.from_truth.largest > 1.0);
+    near(accuracy.to_reference.rms, 0.25, 1e-12);
+    assert!(accuracy.from_reference.largest.is_finite() && accuracy.from_reference.largest > 1.0);
 }
 
 #[test]
 fn results_depend_neither_on_threads_nor_on_chunks() {
-    let truth = Truth::from_shape(Shape::Bicubic).unwrap();
+    let reference_shape = ReferenceShape::from_shape(Shape::Bicubic).unwrap();
     let out = emitted(&Shape::Bicubic.build(), Surface::PnAen, 4.0);
     let measure = |threads, chunks: usize| {
-        let mut measurement = AccuracyMeasurement::new(&truth, None, AccuracyOptions { samples: 3000, threads });
+        let mut measurement =
+            AccuracyMeasurement::new(&reference_shape, None, AccuracyOptions { samples: 3000, threads });
         let size = out.triangles.len().div_ceil(chunks);
         out.triangles
             .chunks(size)
@@ -188,9 +189,9 @@ fn results_depend_neither_on_threads_nor_on_chunks() {
     let once = measure(1, 1);
     assert_eq!(once, measure(5, 1));
     let chunked = measure(2, 3);
-    assert_eq!(once.to_truth.largest, chunked.to_truth.largest);
-    assert_eq!(once.from_truth, chunked.from_truth);
-    near(chunked.to_truth.rms, once.to_truth.rms, 1e-12);
+    assert_eq!(once.to_reference.largest, chunked.to_reference.largest);
+    assert_eq!(once.from_reference, chunked.from_reference);
+    near(chunked.to_reference.rms, once.to_reference.rms, 1e-12);
     near(chunked.normals.rms, once.normals.rms, 1e-9);
 }
 
@@ -199,11 +200,11 @@ fn results_depend_neither_on_threads_nor_on_chunks() {
 fn distances_fall_with_the_level() {
     for (surface, orders) in [(Surface::Flat, 1.7..2.3), (Surface::PnAen, 2.7..4.6)] {
         for shape in [Shape::Icosphere, Shape::Ellipsoid, Shape::Torus] {
-            let truth = Truth::from_shape(shape).unwrap();
+            let reference_shape = ReferenceShape::from_shape(shape).unwrap();
             let rms = [1, 2].map(|level| {
                 let factor = if surface == Surface::Flat { 1.0 } else { 8.0 };
-                let accuracy = measured(&truth, &emitted(&shape.build_at(level), surface, factor), 4000);
-                accuracy.to_truth.rms
+                let accuracy = measured(&reference_shape, &emitted(&shape.build_at(level), surface, factor), 4000);
+                accuracy.to_reference.rms
             });
             let order = (rms[0] / rms[1]).log2();
             assert!(orders.contains(&order), "{shape}, {surface:?}: order {order}, {rms:?}");
@@ -235,13 +236,13 @@ fn emitted_triangles(triangles: &[[[f32; 3]; 3]]) -> (Vec<Vertex>, Vec<[u32; 3]>
     (vertices, (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 
-fn compared(truth: &[[[f32; 3]; 3]], emitted: &[[[f32; 3]; 3]], samples: usize) -> Accuracy {
-    let truth = Truth::from_mesh(&mesh_of(truth)).unwrap();
+fn compared(reference_shape: &[[[f32; 3]; 3]], emitted: &[[[f32; 3]; 3]], samples: usize) -> Accuracy {
+    let reference_shape = ReferenceShape::from_mesh(&mesh_of(reference_shape)).unwrap();
     let (vertices, triangles) = emitted_triangles(emitted);
     // Seen from above, 150 px are a unit.
     let from_above = Mat4::from_rotation_x(std::f32::consts::FRAC_PI_2);
     let view = LodView::new(from_above, Vec2::splat(150.0));
-    let mut measurement = AccuracyMeasurement::new(&truth, Some(&view), options(samples));
+    let mut measurement = AccuracyMeasurement::new(&reference_shape, Some(&view), options(samples));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     measurement.finish().unwrap()
 }
@@ -256,11 +257,11 @@ fn the_tip_of_a_spike_counts_though_samples_miss_it() {
     let spike = [[0.1, 0.0, 0.2], [0.100_01, 0.0, 0.2], [0.1, 0.5, 0.2]];
     let with_spike = [ground[0], ground[1], spike];
     let missing = compared(&with_spike, &ground, 5000);
-    near(missing.from_truth.largest, 0.5, 1e-9);
-    assert_eq!(missing.worst_from_truth.truth, vec3(0.1, 0.5, 0.2).as_dvec3());
-    near(missing.worst_from_truth.emitted.y, 0.0, 1e-9);
+    near(missing.from_reference.largest, 0.5, 1e-9);
+    assert_eq!(missing.worst_from_reference.reference_shape, vec3(0.1, 0.5, 0.2).as_dvec3());
+    near(missing.worst_from_reference.emitted.y, 0.0, 1e-9);
     let surplus = compared(&ground, &with_spike, 5000);
-    near(surplus.to_truth.largest, 0.5, 1e-9);
+    near(surplus.to_reference.largest, 0.5, 1e-9);
 }
 
 #[test]
@@ -276,11 +277,11 @@ fn a_place_on_an_edge_counts_wherever_it_lies() {
         let at = f64::from(left) + expected * slant(left);
         for samples in [100, 3000] {
             let missing = compared(&whole, &with_gap, samples);
-            near(missing.from_truth.largest, expected, 1e-4);
-            near(missing.worst_from_truth.truth.distance(DVec3::X * at), 0.0, 1e-3);
+            near(missing.from_reference.largest, expected, 1e-4);
+            near(missing.worst_from_reference.reference_shape.distance(DVec3::X * at), 0.0, 1e-3);
             let surplus = compared(&with_gap, &whole, samples);
-            near(surplus.to_truth.largest, expected, 1e-4);
-            near(surplus.worst_to_truth.emitted.distance(DVec3::X * at), 0.0, 1e-3);
+            near(surplus.to_reference.largest, expected, 1e-4);
+            near(surplus.worst_to_reference.emitted.distance(DVec3::X * at), 0.0, 1e-3);
             near(surplus.worst_px.unwrap().value, 150.0 * expected, 150.0 * 1e-4);
         }
     }
@@ -289,46 +290,47 @@ fn a_place_on_an_edge_counts_wherever_it_lies() {
 #[test]
 fn a_low_poly_mesh_is_as_far_from_a_scan_as_the_farthest_vertex_of_the_scan() {
     let scan = Shape::Torus.build_at(3);
-    let (truth, out) = (Truth::from_mesh(&scan).unwrap(), as_it_is(&Shape::Torus.build()));
+    let (reference_shape, out) = (ReferenceShape::from_mesh(&scan).unwrap(), as_it_is(&Shape::Torus.build()));
     let corners = |triangle: &[u32; 3]| triangle.map(|i| Vec3::from(out.vertices[i as usize].position));
-    let tree = crate::truth::Triangles::new(out.triangles.iter().map(corners)).unwrap();
+    let tree = crate::reference_shape::Triangles::new(out.triangles.iter().map(corners)).unwrap();
     let distance = |corner: &geometry::mesh::Corner| {
         tree.closest(corner.position.as_dvec3(), f64::INFINITY).map_or(0.0, |closest| closest.distance)
     };
     let of_vertices = scan.corners.iter().map(distance).fold(0.0, f64::max);
     for samples in [1000, 20_000] {
-        let largest = measured(&truth, &out, samples).from_truth.largest;
+        let largest = measured(&reference_shape, &out, samples).from_reference.largest;
         assert!(largest >= of_vertices && largest < 1.001 * of_vertices, "{largest} for {of_vertices}");
     }
 }
 
 #[test]
 fn sampling_says_how_many_points_there_are_and_how_far_apart() {
-    let (truth, (vertices, triangles)) = (square_truth(1.0), square(1.0, 0.25));
-    let mut measurement = AccuracyMeasurement::new(&truth, None, options(100));
+    let (reference_shape, (vertices, triangles)) = (square_reference_shape(1.0), square(1.0, 0.25));
+    let mut measurement = AccuracyMeasurement::new(&reference_shape, None, options(100));
     measurement.take(&EmittedChunk::whole(&vertices, &triangles));
     let accuracy = measurement.finish().unwrap();
     // Spread by area, each of 100 points has 0.2 by 0.2 units. Sides of 2 units get 9 points between their ends, and the
     // diagonal of 2.83 units gets 15.
-    let Sampling { samples, spacing } = accuracy.from_truth_sampling;
+    let Sampling { samples, spacing } = accuracy.from_reference_sampling;
     assert_eq!(samples, 100 + 4 + 4 * 9 + 15);
     near(spacing, 0.2, 1e-6);
     // Each of two triangles is cut into 64.
-    let Sampling { samples, spacing } = accuracy.to_truth_sampling;
+    let Sampling { samples, spacing } = accuracy.to_reference_sampling;
     assert_eq!(samples, 2 * 64 + 4 + 4 * 9 + 15);
     near(spacing, 0.2, 1e-6);
     // A sliver has little area, and its edges are cut into few segments.
     let sliver = [[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1e-3]]];
     let other = [[[-1.0, 0.0, -1.0], [1.0, 0.0, -1.0], [0.0, 0.0, 1.0]]];
-    near(compared(&other, &sliver, 1000).to_truth_sampling.spacing, 0.5, 1e-9);
+    near(compared(&other, &sliver, 1000).to_reference_sampling.spacing, 0.5, 1e-9);
 }
 
 #[test]
 fn triangles_that_are_not_kept_are_measured_by_samples_alone() {
-    let (truth, out) = (Truth::from_shape(Shape::Torus).unwrap(), emitted(&Shape::Torus.build(), Surface::Flat, 2.0));
+    let (reference_shape, out) =
+        (ReferenceShape::from_shape(Shape::Torus).unwrap(), emitted(&Shape::Torus.build(), Surface::Flat, 2.0));
     let measure = |most_kept, chunks: usize| {
         let mut measurement =
-            AccuracyMeasurement { most_kept, ..AccuracyMeasurement::new(&truth, None, options(3000)) };
+            AccuracyMeasurement { most_kept, ..AccuracyMeasurement::new(&reference_shape, None, options(3000)) };
         let size = out.triangles.len().div_ceil(chunks);
         let take = |part| measurement.take(&EmittedChunk::whole(&out.vertices, part));
         out.triangles.chunks(size).for_each(take);
@@ -337,9 +339,11 @@ fn triangles_that_are_not_kept_are_measured_by_samples_alone() {
     let kept = measure(usize::MAX, 3);
     for (most_kept, chunks) in [(0, 1), (0, 3), (out.triangles.len() / 2, 3)] {
         let sampled = measure(most_kept, chunks);
-        near(sampled.from_truth.rms, kept.from_truth.rms, 1e-12);
-        assert_eq!(sampled.from_truth_sampling, kept.from_truth_sampling);
-        for [sampled, kept] in [[sampled.to_truth, kept.to_truth], [sampled.from_truth, kept.from_truth]] {
+        near(sampled.from_reference.rms, kept.from_reference.rms, 1e-12);
+        assert_eq!(sampled.from_reference_sampling, kept.from_reference_sampling);
+        for [sampled, kept] in
+            [[sampled.to_reference, kept.to_reference], [sampled.from_reference, kept.from_reference]]
+        {
             assert!(sampled.largest <= kept.largest && sampled.largest > 0.99 * kept.largest, "{sampled:?} {kept:?}");
         }
     }
@@ -348,14 +352,14 @@ fn triangles_that_are_not_kept_are_measured_by_samples_alone() {
 #[test]
 fn the_border_of_an_exact_surface_counts() {
     // The border of the saddle is farthest from flat triangles that end inside of it.
-    let truth = Truth::from_shape(Shape::Saddle).unwrap();
+    let reference_shape = ReferenceShape::from_shape(Shape::Saddle).unwrap();
     let mut out = as_it_is(&Shape::Saddle.build_at(5));
     let half = f64::from(geometry::mesh::shapes::sheets::SADDLE_HALF);
     out.vertices.iter_mut().for_each(|vertex| {
         let [x, _, z] = vertex.position.map(|x| 0.5 * x);
         vertex.position = [x, (x * x - z * z) / 2.0, z];
     });
-    let accuracy = measured(&truth, &out, 2000);
+    let accuracy = measured(&reference_shape, &out, 2000);
     // From a corner of the saddle, where its height is 0, to that of the smaller square.
-    near(accuracy.from_truth.largest, half / 2.0_f64.sqrt(), 1e-6);
+    near(accuracy.from_reference.largest, half / 2.0_f64.sqrt(), 1e-6);
 }

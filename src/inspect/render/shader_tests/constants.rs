@@ -23,11 +23,11 @@ use crate::render::tone::{COMPRESSION_START, DESATURATION};
 use crate::settings::{Colors, Overlays, ToneCurve};
 use geometry::mesh::{EdgeKind, MAX_LEVELS, MAX_MAPS, MOST_LIGHTS, Slot};
 use geometry::tessellate::shared_constants::{
-    AGREEING, ASKED_SEGMENT, BEYOND_LAST, BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE,
-    BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY,
-    FACING_MARGIN, FACING_ROUNDING, FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS,
-    FLAT_ANGLE, LESSENINGS, MOST_ROWS, NOT_CULLED, OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS,
-    POLAR_INDICES, POLAR_WEIGHTS, ROW_BASE_SHIFT, ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD,
+    AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
+    BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DETAIL_SHARE, FACING_AWAY, FACING_MARGIN, FACING_ROUNDING,
+    FACTOR_ODD, FACTOR_VALUE, FINEST_GRID, FIXED_HALF, FIXED_ONE, FIXED_TWO_THIRDS, FLAT_ANGLE, LESSENINGS, MOST_ROWS,
+    NOT_CULLED, OUT_OF_VIEW, PARALLEL, PARTIAL_STEPS, PATTERN_HALVES, PATTERN_STEPS, POLAR_INDICES, POLAR_WEIGHTS,
+    REQUESTED_SEGMENT, ROW_BASE_SHIFT, ROW_BASE_STEP, ROW_FLIP_SHIFT, ROW_REACH, ROW_SAMPLES, ROWS, SPREAD,
     SUBTRIANGULATED, SURFACE_SHARE, TOGETHER, TURN_SHARE, TWO_POINTS, UNIT,
 };
 use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
@@ -62,7 +62,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         "in Rust, an enum without numbers",
     ),
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
-    (&["WANTED_ASKED", "WANTED_OWN", "WANTED_GIVEN"], "in Rust, an enum without numbers"),
+    (&["GOAL_REQUESTS", "GOAL_MINIMUM", "GOAL_GIVEN"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
     (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass, or within one word that no other pass reads"),
     (
@@ -78,7 +78,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &[
             "LARGE_PATCHES",
             "LIST_COUNTERS",
-            "ASKING",
+            "REQUESTING",
             "GIVEN",
             "SMALL_PATCHES",
             "WORKGROUPS_DONE",
@@ -236,7 +236,7 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("MOST_WORKGROUPS", number(MOST_WORKGROUPS)),
         ("SEARCH_COUNTERS", number(SEARCH_COUNTERS)),
         ("SPREAD", number(SPREAD)),
-        ("ASKED_SEGMENT", number(ASKED_SEGMENT)),
+        ("REQUESTED_SEGMENT", number(REQUESTED_SEGMENT)),
         ("LESSENINGS", number(LESSENINGS)),
         ("TOGETHER", number(TOGETHER)),
         ("SURFACE_SHARE", number(SURFACE_SHARE)),

@@ -22,7 +22,7 @@ pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
         [LodKind::Uniform, LodKind::Paper, LodKind::ErrorRows].into_iter().filter_map(|other| saved(parts, other)),
     );
     all.extend(limits::sentences(parts));
-    let own = parts.iter().filter(|part| !part.has_truth());
+    let own = parts.iter().filter(|part| !part.has_reference_shape());
     let own: Vec<_> = own.map(|part| markdown::plain(&part.subject.title)).collect();
     if !own.is_empty() {
         let names = markdown::listed(&own);

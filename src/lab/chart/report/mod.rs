@@ -74,13 +74,13 @@ impl LeftOut {
 
 impl Part {
     /// Whether it was compared with a reference surface. Then all its rows can be compared, also with those of other meshes.
-    fn has_truth(&self) -> bool {
-        self.subject.truth.is_some()
+    fn has_reference_shape(&self) -> bool {
+        self.subject.reference_shape.is_some()
     }
 
     /// Its rows, if they were compared with a reference surface.
     fn race(&self) -> Option<Race<'_>> {
-        self.subject.races().into_iter().next().filter(|_| self.has_truth())
+        self.subject.races().into_iter().next().filter(|_| self.has_reference_shape())
     }
 
     /// Whether a row is the mesh without tessellation: one triangle for each patch.

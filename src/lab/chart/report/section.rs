@@ -39,8 +39,8 @@ pub(super) fn section(part: &Part) -> String {
 }
 
 fn facts(part: &Part) -> String {
-    let against = match &part.subject.truth {
-        Some(truth) => format!("compared with {}", markdown::plain(truth)),
+    let against = match &part.subject.reference_shape {
+        Some(reference_shape) => format!("compared with {}", markdown::plain(reference_shape)),
         None => "each surface compared with its own limit, since no reference surface is known".to_owned(),
     };
     let [width, height] = part.subject.size;
@@ -65,11 +65,17 @@ fn known(number: Option<f64>) -> String {
 }
 
 fn columns(part: &Part) -> impl Iterator<Item = &'static str> {
-    COLUMNS.into_iter().filter(|(_, needs_truth, _)| part.has_truth() || !needs_truth).map(|(name, ..)| name)
+    COLUMNS
+        .into_iter()
+        .filter(|(_, needs_reference_shape, _)| part.has_reference_shape() || !needs_reference_shape)
+        .map(|(name, ..)| name)
 }
 
 fn cells(part: &Part, row: &Row) -> impl Iterator<Item = String> {
-    COLUMNS.into_iter().filter(|(_, needs_truth, _)| part.has_truth() || !needs_truth).map(|(.., text)| text(row))
+    COLUMNS
+        .into_iter()
+        .filter(|(_, needs_reference_shape, _)| part.has_reference_shape() || !needs_reference_shape)
+        .map(|(.., text)| text(row))
 }
 
 /// A table of the rows that no other row beats, in triangles or in ms.
@@ -96,7 +102,7 @@ fn front(part: &Part, race: &Race) -> String {
 /// A table of the cheapest row of each method for each error, and sentences about the methods that don't reach it.
 fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
     let (mut rows, mut said) = (Vec::new(), Vec::new());
-    let (errors, unit) = if part.has_truth() { (&PARTS[..], "%") } else { (&PX[..], "px") };
+    let (errors, unit) = if part.has_reference_shape() { (&PARTS[..], "%") } else { (&PX[..], "px") };
     let methods = || {
         let own = part.subject.methods().into_iter();
         own.filter(|method| race.surface.is_none_or(|surface| method.surface == surface))

@@ -200,7 +200,7 @@ fn a_page_has_its_occasion_and_a_section_for_each_mesh() {
 #[test]
 fn without_a_reference_surface_surfaces_are_not_compared() {
     let mut own = with_limits(PnAen, 0.2);
-    own.subject.truth = None;
+    own.subject.reference_shape = None;
     let text = page(&occasion(), &[own.clone()]);
     assert!(text.contains("- Torus \\<7\\>: no reference surface is known"), "{text}");
     assert!(

@@ -25,9 +25,24 @@ const ONE: i64 = 1 << 16;
 /// The path that bytes are read with which aren't those of a file. No files are beside it.
 pub(crate) const NOWHERE: &str = "nowhere/fuzzed";
 
-pub(crate) fn gltf(data: &[u8], path: &str) -> bool {
-    mesh(Format::Gltf, data, path)
+/// Hands every target to a macro: its name, how many changed copies tests try, and what runs with the bytes of a file and its path.
+macro_rules! targets {
+    ($each:ident) => {
+        $each! {
+            gltf 10_000 |data: &[u8], path: &str| bodies::mesh(Format::Gltf, data, path);
+            glb 10_000 bodies::glb;
+            fbx 10_000 |data: &[u8], path: &str| bodies::mesh(Format::Fbx, data, path);
+            obj 10_000 |data: &[u8], path: &str| bodies::mesh(Format::Obj, data, path);
+            stl 10_000 |data: &[u8], path: &str| bodies::mesh(Format::Stl, data, path);
+            ply 10_000 |data: &[u8], path: &str| bodies::mesh(Format::Ply, data, path);
+            off 10_000 |data: &[u8], path: &str| bodies::mesh(Format::Off, data, path);
+            threemf 10_000 |data: &[u8], path: &str| bodies::mesh(Format::ThreeMf, data, path);
+            panorama 1000 bodies::panorama;
+            factors 200 bodies::factors;
+        }
+    };
 }
+pub(crate) use targets;
 
 /// Reads bytes as a `.glb`, whatever they start with.
 pub(crate) fn glb(data: &[u8], path: &str) -> bool {
@@ -36,32 +51,8 @@ pub(crate) fn glb(data: &[u8], path: &str) -> bool {
     mesh(Format::Gltf, &data, path)
 }
 
-pub(crate) fn fbx(data: &[u8], path: &str) -> bool {
-    mesh(Format::Fbx, data, path)
-}
-
-pub(crate) fn obj(data: &[u8], path: &str) -> bool {
-    mesh(Format::Obj, data, path)
-}
-
-pub(crate) fn stl(data: &[u8], path: &str) -> bool {
-    mesh(Format::Stl, data, path)
-}
-
-pub(crate) fn ply(data: &[u8], path: &str) -> bool {
-    mesh(Format::Ply, data, path)
-}
-
-pub(crate) fn off(data: &[u8], path: &str) -> bool {
-    mesh(Format::Off, data, path)
-}
-
-pub(crate) fn threemf(data: &[u8], path: &str) -> bool {
-    mesh(Format::ThreeMf, data, path)
-}
-
 /// Reads bytes as a file, which must give a valid mesh or an error. Returns whether it is a mesh.
-fn mesh(format: Format, data: &[u8], path: &str) -> bool {
+pub(crate) fn mesh(format: Format, data: &[u8], path: &str) -> bool {
     let progress = Progress::new();
     let result = read(format, data.to_vec(), Path::new(path), Selection::default(), &Limits::default(), &progress);
     match &result {

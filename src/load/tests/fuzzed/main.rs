@@ -14,6 +14,7 @@ extern crate pnaen_load as load;
 use std::path::Path;
 use std::sync::atomic::{AtomicU32, Ordering};
 
+use load::format::Format;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -131,52 +132,13 @@ fn run(target: &str, copies: u32, body: fn(&[u8], &str) -> bool) {
     assert!((copies / 50..copies - copies / 50).contains(&read), "{read} of {copies} were read");
 }
 
-#[test]
-fn gltf() {
-    run("gltf", 10_000, bodies::gltf);
+macro_rules! tests {
+    ($($name:ident $copies:literal $body:expr;)+) => {
+        $(#[test]
+        fn $name() {
+            run(stringify!($name), $copies, $body);
+        })+
+    };
 }
 
-#[test]
-fn glb() {
-    run("glb", 10_000, bodies::glb);
-}
-
-#[test]
-fn fbx() {
-    run("fbx", 10_000, bodies::fbx);
-}
-
-#[test]
-fn obj() {
-    run("obj", 10_000, bodies::obj);
-}
-
-#[test]
-fn stl() {
-    run("stl", 10_000, bodies::stl);
-}
-
-#[test]
-fn ply() {
-    run("ply", 10_000, bodies::ply);
-}
-
-#[test]
-fn panorama() {
-    run("panorama", 1000, bodies::panorama);
-}
-
-#[test]
-fn off() {
-    run("off", 10_000, bodies::off);
-}
-
-#[test]
-fn threemf() {
-    run("threemf", 10_000, bodies::threemf);
-}
-
-#[test]
-fn factors() {
-    run("factors", 200, bodies::factors);
-}
+bodies::targets!(tests);

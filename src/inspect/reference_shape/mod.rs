@@ -1,5 +1,5 @@
 //! Reference surfaces, which a tessellation is compared with: the exact surfaces that shapes are sampled from, and
-//! reference meshes. They are the surfaces of the option `--truth`.
+//! reference meshes. They are the surfaces of the option `--reference-surface`.
 //!
 //! All numbers are f64, in object units. [`crate::measure::Accuracy`] does the comparison.
 
@@ -52,12 +52,12 @@ pub struct EdgePoints {
 }
 
 /// A reference surface: the surface that a tessellation should be.
-pub enum Truth {
+pub enum ReferenceShape {
     Exact(Exact),
     Mesh(Reference),
 }
 
-impl Truth {
+impl ReferenceShape {
     /// Returns the surface that a shape's corners are samples of, or `None` if the shape has none.
     pub fn from_shape(shape: Shape) -> Option<Self> {
         of_shape(shape).map(Self::Exact)

@@ -6,64 +6,64 @@ use super::companion_files::new_generation;
 use super::job_list::Work;
 use crate::app::App;
 use geometry::progress::Progress;
+use inspect::reference_shape::ReferenceShape;
 use inspect::settings::Colors;
-use inspect::truth::Truth;
 use load::{LoadError, Source};
 
 /// A reference surface that was chosen for the mesh.
-pub(crate) struct ChosenTruth {
+pub(crate) struct ChosenReferenceShape {
     pub source: Source,
-    truth: Arc<Truth>,
+    reference_shape: Arc<ReferenceShape>,
     /// A number of its own for each one, from 2 on: see [`App::yardstick`].
     generation: u64,
 }
 
 impl App {
     /// Starts to load a reference surface. Until it is loaded, the one before it stays.
-    pub fn open_truth(&mut self, context: &egui::Context, source: Source) {
+    pub fn open_reference_shape(&mut self, context: &egui::Context, source: Source) {
         let (wanted, import, limits) = (source.clone(), self.preparation().import, self.jobs.limits);
-        let load = move |progress: &Progress| match Truth::load(&wanted, import, &limits, progress) {
-            Ok(Some(truth)) => Ok(Arc::new(truth)),
+        let load = move |progress: &Progress| match ReferenceShape::load(&wanted, import, &limits, progress) {
+            Ok(Some(reference_shape)) => Ok(Arc::new(reference_shape)),
             Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),
             Err(LoadError::Cancelled(_)) => Err(None),
             Err(error) => Err(Some(error.to_string())),
         };
         let title = format!("Loading the reference surface {}", source.title());
-        self.read_companion(context, Work::Truth, title, source.title(), load, |app, truth| {
-            app.truth = Some(ChosenTruth { source, truth, generation: new_generation() });
+        self.read_companion(context, Work::ReferenceShape, title, source.title(), load, |app, reference_shape| {
+            app.reference_shape = Some(ChosenReferenceShape { source, reference_shape, generation: new_generation() });
             app.settings.overlays.colors = Colors::Deviation;
         });
     }
 
     /// Loads a reference surface of a file again, which is turned and scaled as the mesh is.
-    pub(in crate::app) fn follow_truth(&mut self, context: &egui::Context) {
-        let chosen = self.truth.as_ref().map(|chosen| chosen.source.clone());
+    pub(in crate::app) fn follow_reference_shape(&mut self, context: &egui::Context) {
+        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.source.clone());
         if let Some(source @ (Source::File(_) | Source::Vase)) = chosen {
-            self.open_truth(context, source);
+            self.open_reference_shape(context, source);
         }
     }
 
     /// The reference surface that was chosen for the mesh.
-    pub fn truth(&self) -> Option<&Source> {
-        self.truth.as_ref().map(|chosen| &chosen.source)
+    pub fn reference_shape(&self) -> Option<&Source> {
+        self.reference_shape.as_ref().map(|chosen| &chosen.source)
     }
 
     /// Goes back to the default reference surface: the exact surface of a shape, or the limit surface.
-    pub(in crate::app) fn forget_truth(&mut self) {
-        self.truth = None;
-        self.jobs.stop(Work::Truth);
+    pub(in crate::app) fn forget_reference_shape(&mut self) {
+        self.reference_shape = None;
+        self.jobs.stop(Work::ReferenceShape);
     }
 
     /// The reference surface that distances are measured from: its number, the surface (none for the limit surface), and
     /// its name. The number is 0 for the limit surface, 1 for the exact surface, and from 2 on for a chosen one. In a pose it
     /// is always the limit surface, and an exact surface isn't used for a displaced mesh.
-    pub(in crate::app) fn yardstick(&self) -> (u64, Option<Arc<Truth>>, String) {
+    pub(in crate::app) fn yardstick(&self) -> (u64, Option<Arc<ReferenceShape>>, String) {
         let limit = || (0, None, "limit surface".to_owned());
         let Some(document) = self.document.as_ref().filter(|_| self.viewport.playback.moment().is_none()) else {
             return limit();
         };
-        if let Some(chosen) = &self.truth {
-            return (chosen.generation, Some(chosen.truth.clone()), chosen.source.title());
+        if let Some(chosen) = &self.reference_shape {
+            return (chosen.generation, Some(chosen.reference_shape.clone()), chosen.source.title());
         }
         let is_plain = !self.settings.tessellation.displacement.is_on();
         match (&document.exact, document.loaded.source.shape()) {

@@ -1,10 +1,10 @@
-// LOD by error: every patch asks its edges for factors, of which they get the largest; then every patch takes the least inside
-// factor that is enough beside them. Beside factors that other patches asked for, a patch may need a much larger inside factor than
-// it has chosen, or find none that is enough. Then it asks again, for no less than what its edges have. There are a few such rounds.
+// LOD by error: every patch requests factors of its edges for factors, of which they get the largest; then every patch takes the least inside
+// factor that is enough beside them. Beside factors that other patches requested, a patch may need a much larger inside factor than
+// it has chosen, or find none that is enough. Then it requests again, for no less than what its edges have. There are a few such rounds.
 //
 // A round takes three passes. In the first an invocation looks at each patch: one whose edges have changed is done if one triangle
 // shows it, and else put on a list. In the second a workgroup searches an inside factor for one patch on the list after another; in
-// the third those are searched that ask again. Before the rounds each patch asks: then there is no second pass.
+// the third those are searched that request again. Before the rounds each patch asks: then there is no second pass.
 
 // The counters. The numbers of large and of small patches are those of the patches that ask; after them come those of the patches
 // whose edges have their factors.
@@ -15,7 +15,7 @@ const WORKGROUPS_DONE: u32 = 4u;
 const SEARCHES_OVER: u32 = 5u;
 
 // The lists: of patches that ask, and of those whose edges have their factors.
-const ASKING: u32 = 0u;
+const REQUESTING: u32 = 0u;
 const GIVEN: u32 = 1u;
 
 // Where the counters of a list are.
@@ -74,15 +74,15 @@ fn set_known(patch_index: u32, edges: vec3<f32>, inner: f32) {
     atomicStore(&edge_factors[known_at(patch_index)], word);
 }
 
-fn ask(patch_index: u32, asked: vec3<f32>) {
+fn request(patch_index: u32, requested: vec3<f32>) {
     for (var i = 0u; i < 3u; i++) {
         let edge = patches[patch_index].factors[(i + 1u) % 3u] >> 3u;
-        atomicMax(&edge_factors[edge], bitcast<u32>(asked[i]));
+        atomicMax(&edge_factors[edge], bitcast<u32>(requested[i]));
     }
 }
 
 // Returns the size of what a patch has chosen: its inside factor, or under rows the number of points inside it. If it later needs
-// one that is much larger, it asks again.
+// one that is much larger, it requests again.
 fn chosen_size(edges: vec3<f32>, inside: f32) -> f32 {
     if params.partitioning == PARTITIONING_ROWS {
         return points_inside(edges, inside);
@@ -111,16 +111,16 @@ fn list_patches_main(invocation: Invocation) {
     let heights = heights_inside(index);
     var inside = whole_segments(params.partitioning, heights);
     if params.surface != SURFACE_FLAT {
-        let sought = Sought(edges, heights, known.inner, WANTED_GIVEN);
+        let sought = Sought(edges, heights, known.inner, GOAL_GIVEN);
         inside = without_search(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, sought);
         if inside == 0.0 {
             // In place of the inside factor the search reads the size that was chosen.
             inside = select(chosen_size(known.edges, bitcast<f32>(inside_of(index))), 0.0, is_first);
-            search_later(select(GIVEN, ASKING, is_first), index, edges, heights);
+            search_later(select(GIVEN, REQUESTING, is_first), index, edges, heights);
         }
     }
     if is_first && inside > 0.0 {
-        ask(index, edges);
+        request(index, edges);
     }
     set_inside(index, inside);
     set_known(index, edges, known.inner);
@@ -161,15 +161,15 @@ fn next_patch(list: u32, workgroups: u32) -> u32 {
     return team_patches[team()];
 }
 
-// Whether a patch asks again, whose edges have their factors and which had chosen this size before.
+// Whether a patch requests again, whose edges have their factors and which had chosen this size before.
 fn needs_more(chosen: f32, found: Chosen) -> bool {
     if SEARCHES_ROWS == 1u {
-        return found.inside == BEYOND_LAST || rows_ask_again(chosen, points_inside(found.edges, found.inside));
+        return found.inside == BEYOND_LAST || rows_request_again(chosen, points_inside(found.edges, found.inside));
     }
-    return asks_again(chosen, found.inside);
+    return requests_again(chosen, found.inside);
 }
 
-// The number of rounds. In the last one no patch asks again.
+// The number of rounds. In the last one no patch requests again.
 override ROUNDS: u32 = 0u;
 
 // Searches the factors of the patches on the list.
@@ -178,7 +178,7 @@ fn search_patches_main(invocation: Invocation) {
     lane = invocation.local;
     let before = atomicLoad(&edge_factors[counter_at(SEARCHES_OVER)]);
     let list = next_list();
-    let wanted = select(WANTED_ASKED, WANTED_GIVEN, list == GIVEN);
+    let wanted = select(GOAL_REQUESTS, GOAL_GIVEN, list == GIVEN);
     begun = invocation.workgroup.x;
     var next = next_patch(list, invocation.workgroups.x);
     while any_team(next != NO_MORE) {
@@ -196,15 +196,15 @@ fn search_patches_main(invocation: Invocation) {
         }
         if leads_team() && is_searched {
             let chosen = bitcast<f32>(inside_of(index));
-            // What asks again has found an inside factor before.
+            // What requests again has found an inside factor before.
             if list == GIVEN || before == 0u || found.inside != BEYOND_LAST {
                 set_inside(index, found.inside);
                 set_known(index, found.edges, found.inner);
             }
-            if list == ASKING {
-                ask(index, found.edges);
+            if list == REQUESTING {
+                request(index, found.edges);
             } else if before + 1u < 2u * ROUNDS && needs_more(chosen, found) {
-                search_later(ASKING, index, known.edges, heights);
+                search_later(REQUESTING, index, known.edges, heights);
             }
         }
         next = next_patch(list, invocation.workgroups.x);

@@ -1,11 +1,11 @@
-//! The tessellation factors that were asked for, before the tessellator clamped and rounded them.
+//! The tessellation factors that were requested, before the tessellator clamped and rounded them.
 
 use geometry::mesh::Topology;
 use geometry::tessellate::{Convention, Edges, HullFactors, Partitioning, domain_side, factor_side, last_factor};
 
 /// Factors before clamping and rounding, and the convention under which they were given.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct AskedFactors {
+pub struct RequestedFactors {
     factors: Vec<f32>,
     owners: Owners,
     convention: Convention,
@@ -23,7 +23,7 @@ enum Owners {
     Patches,
 }
 
-impl AskedFactors {
+impl RequestedFactors {
     /// Factors from LOD.
     pub fn new(edges: Edges, convention: Convention, factors: Vec<f32>) -> Self {
         let owners = if edges == Edges::AsPublished { Owners::Sides } else { Owners::Edges };
@@ -52,7 +52,7 @@ impl AskedFactors {
         (0..3).position(|i| domain_side(self.convention, i) == k as u32).unwrap_or_default()
     }
 
-    /// A patch's factor `i`, as it was asked for.
+    /// A patch's factor `i`, as it was requested.
     pub(super) fn of(&self, topology: &Topology, patch: u32, i: usize) -> f32 {
         let side = topology.patches[patch as usize].sides[factor_side(self.convention, i as u32) as usize];
         let index = match self.owners {

@@ -22,7 +22,7 @@ impl AccuracyMeasurement<'_> {
     }
 
     /// The squares of the distances from the points that are spread by area, and the worst places of all points.
-    pub(super) fn measure_from_truth(&self) -> (f64, Peaks) {
+    pub(super) fn measure_from_reference(&self) -> (f64, Peaks) {
         let (squares, mut all) = self.measure_points(0..self.spread, f64::NEG_INFINITY);
         // Points that are no farther than the worst so far needn't be measured exactly.
         let enough = all.places().next().map_or(f64::NEG_INFINITY, |worst| worst.value);
@@ -47,7 +47,7 @@ impl AccuracyMeasurement<'_> {
                 let Some(place) = place else { continue };
                 squares += place.value * place.value;
                 if place.value > enough {
-                    peaks.add(place.truth, place);
+                    peaks.add(place.reference_shape, place);
                 }
             }
             (squares, peaks)

@@ -41,7 +41,7 @@ fn is_closed(shape: Shape) -> bool {
 #[test]
 fn shapes_with_levels_have_an_exact_surface() {
     for shape in Shape::ALL {
-        assert_eq!(Truth::from_shape(shape).is_some(), shape.has_levels(), "{shape}");
+        assert_eq!(ReferenceShape::from_shape(shape).is_some(), shape.has_levels(), "{shape}");
         assert_eq!(EXACT.contains(&shape), shape.has_levels(), "{shape}");
     }
 }
@@ -111,9 +111,9 @@ fn areas_and_boxes_are_those_of_closed_forms() {
         (Shape::Cone, pi * 0.6 * (0.6 + slope), DVec3::new(0.6, 0.75, 0.6)),
     ];
     for (shape, area, corner) in forms {
-        let truth = Truth::from_shape(shape).unwrap();
-        assert!((truth.area() / area - 1.0).abs() < 1e-3, "{shape}: {} for {area}", truth.area());
-        assert!((truth.diagonal() - 2.0 * corner.length()).abs() < 1e-6, "{shape}");
+        let reference_shape = ReferenceShape::from_shape(shape).unwrap();
+        assert!((reference_shape.area() / area - 1.0).abs() < 1e-3, "{shape}: {} for {area}", reference_shape.area());
+        assert!((reference_shape.diagonal() - 2.0 * corner.length()).abs() < 1e-6, "{shape}");
     }
     for shape in EXACT {
         let ([min, max], samples) = (exact(shape).extent(), exact(shape).samples(20_000));
@@ -171,14 +171,14 @@ fn on_a_crease_the_normal_is_the_one_nearest_to_facing() {
 
 #[test]
 fn a_dense_mesh_is_nearly_its_surface() {
-    let mesh = Truth::from_mesh(&Shape::Icosphere.build_at(4)).unwrap();
-    let sphere = Truth::from_shape(Shape::Icosphere).unwrap();
+    let mesh = ReferenceShape::from_mesh(&Shape::Icosphere.build_at(4)).unwrap();
+    let sphere = ReferenceShape::from_shape(Shape::Icosphere).unwrap();
     assert!((mesh.area() / sphere.area() - 1.0).abs() < 2e-3);
     // The bounding box is smaller than the sphere's, since the flat triangles lie inside the sphere.
     assert!((mesh.diagonal() / sphere.diagonal() - 1.0).abs() < 2e-3);
-    for sample in Truth::from_shape(Shape::Torus).unwrap().samples(500) {
+    for sample in ReferenceShape::from_shape(Shape::Torus).unwrap().samples(500) {
         let p = 2.0 * sample.point;
-        let [a, b] = [&mesh, &sphere].map(|truth| truth.closest(p));
+        let [a, b] = [&mesh, &sphere].map(|reference_shape| reference_shape.closest(p));
         assert!((a.distance - b.distance).abs() < 4e-4 && a.normal.dot(b.normal) > 0.999, "{a:?} {b:?}");
     }
 }
@@ -192,7 +192,7 @@ fn samples_of_a_mesh_are_spread_evenly_over_its_triangles() {
     assert!((top as f64 / 2000.0 - 1.0).abs() < 2e-3, "{top}");
     let quarter = samples.iter().filter(|s| s.point.y > 0.5999 && s.point.x > 0.0 && s.point.z > 0.0).count();
     assert!((quarter as f64 / 500.0 - 1.0).abs() < 0.05, "{quarter}");
-    assert!(Truth::from_mesh(&Mesh::default()).is_none());
+    assert!(ReferenceShape::from_mesh(&Mesh::default()).is_none());
 }
 
 proptest! {

@@ -68,7 +68,7 @@ fn row(arg: &Arg) -> Vec<String> {
     };
     let help = arg.get_help().map(ToString::to_string).unwrap_or_default().replace('\n', " ");
     // `--help` says the rest.
-    let help = help.split_once(". ").map_or(help.as_str(), |(first, _)| first);
+    let help = first_sentence(&help);
     let values: Vec<_> = arg.get_possible_values().iter().map(|value| format!("`{}`", value.get_name())).collect();
     let values = if values.is_empty() || !arg.get_action().takes_values() {
         String::new()
@@ -81,6 +81,12 @@ fn row(arg: &Arg) -> Vec<String> {
         escaped(&default),
         escaped(help) + &values,
     ]
+}
+
+/// A text up to its first full stop that isn't one of "et al.".
+fn first_sentence(text: &str) -> &str {
+    let ends = text.match_indices(". ").map(|(at, _)| at).find(|at| !text[..*at].ends_with("et al"));
+    ends.map_or(text, |end| &text[..end])
 }
 
 fn rows(options: &[Arg]) -> String {

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::peaks::Peaks;
 use super::{AccuracyMeasurement, Sampling, Screen, WorstPoint, blocks, worse};
-use crate::truth::Truth;
+use crate::reference_shape::ReferenceShape;
 use geometry::tessellate::{Vertex, unpack_normal};
 
 /// The most segments that a triangle's edges are cut into for sampling.
@@ -23,7 +23,7 @@ impl AccuracyMeasurement<'_> {
             let mut sums = none();
             for vertex in range.filter(|vertex| used[*vertex]).map(|vertex| &vertices[vertex]) {
                 let point = Point { position: position(vertex), normal: normal(vertex), patch: vertex.patch() };
-                sums.add(&point, 0.0, this.truth, this.screen.as_ref());
+                sums.add(&point, 0.0, this.reference_shape, this.screen.as_ref());
             }
             sums
         });
@@ -38,7 +38,7 @@ impl AccuracyMeasurement<'_> {
             let mut sums = none();
             for edge in &edges[range] {
                 let ends = edge.ends.map(|index| &vertices[index as usize]);
-                sums.add_edge(ends, edge.steps, this.truth, this.screen.as_ref());
+                sums.add_edge(ends, edge.steps, this.reference_shape, this.screen.as_ref());
             }
             sums
         });
@@ -48,8 +48,8 @@ impl AccuracyMeasurement<'_> {
     /// The number of segments that a triangle's edges are cut into to sample its inside. It isn't a multiple of 3, since then
     /// no sample would lie in the middle of the triangle itself.
     fn steps(&self, area: f64) -> u32 {
-        let asked = (area * self.options.samples as f64 / self.truth.area()).sqrt().ceil();
-        let n = (asked as u32).clamp(2, MAX_STEPS);
+        let requested = (area * self.options.samples as f64 / self.reference_shape.area()).sqrt().ceil();
+        let n = (requested as u32).clamp(2, MAX_STEPS);
         if n.is_multiple_of(3) { n + 1 } else { n }
     }
 
@@ -86,7 +86,7 @@ impl AccuracyMeasurement<'_> {
             let mixed = |of: [DVec3; 3]| of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2];
             let normal = mixed(normals).try_normalize().unwrap_or(normals[0]);
             let point = Point { position: mixed(positions), normal, patch };
-            sums.add(&point, area / f64::from(n * n), self.truth, self.screen.as_ref());
+            sums.add(&point, area / f64::from(n * n), self.reference_shape, self.screen.as_ref());
         };
         for i in 0..n {
             for j in 0..n - i {
@@ -149,11 +149,12 @@ impl Sums {
     }
 
     /// Adds a point that stands for some area.
-    fn add(&mut self, point: &Point, area: f64, truth: &Truth, screen: Option<&Screen>) {
-        let nearest = truth.closest_facing(point.position, point.normal);
+    fn add(&mut self, point: &Point, area: f64, reference_shape: &ReferenceShape, screen: Option<&Screen>) {
+        let nearest = reference_shape.closest_facing(point.position, point.normal);
         // Unlike the arc cosine, this is exact for angles near 0.
         let angle = point.normal.cross(nearest.normal).length().atan2(point.normal.dot(nearest.normal)).to_degrees();
-        let place = WorstPoint { value: angle, patch: point.patch, emitted: point.position, truth: nearest.point };
+        let place =
+            WorstPoint { value: angle, patch: point.patch, emitted: point.position, reference_shape: nearest.point };
         self.area += area;
         self.squares += area * nearest.distance * nearest.distance;
         self.angles += area * angle * angle;
@@ -164,12 +165,12 @@ impl Sums {
 
     /// Adds the points between the ends of an edge. Their angles don't count: an edge along a curved crease belongs to triangles
     /// on both sides, but lies on one side of the reference surface's crease.
-    fn add_edge(&mut self, ends: [&Vertex; 2], steps: u32, truth: &Truth, screen: Option<&Screen>) {
+    fn add_edge(&mut self, ends: [&Vertex; 2], steps: u32, reference_shape: &ReferenceShape, screen: Option<&Screen>) {
         let [a, b] = ends.map(position);
         for i in 1..steps {
             let emitted = a.lerp(b, f64::from(i) / f64::from(steps));
-            let (point, value) = truth.closest_point(emitted);
-            self.add_place(WorstPoint { value, patch: ends[0].patch(), emitted, truth: point }, screen);
+            let (point, value) = reference_shape.closest_point(emitted);
+            self.add_place(WorstPoint { value, patch: ends[0].patch(), emitted, reference_shape: point }, screen);
         }
         self.sampling.spacing = self.sampling.spacing.max(a.distance(b) / f64::from(steps));
     }

@@ -1,8 +1,0 @@
-#![no_main]
-
-#[path = "../../fuzzed/bodies.rs"]
-mod bodies;
-
-libfuzzer_sys::fuzz_target!(|data: &[u8]| {
-    bodies::off(data, bodies::NOWHERE);
-});
