@@ -12,7 +12,7 @@ const PATIENCE: Duration = Duration::from_secs(60);
 
 /// Bytes on their way to the host: a copy in a buffer that can be mapped.
 ///
-/// 1. [`Self::of_buffers`] or [`Self::of_texture`] records the copy.
+/// 1. [`Self::from_buffers`] or [`Self::from_texture`] records the copy.
 /// 2. Once the encoder was submitted, [`Self::request`] requests the bytes.
 /// 3. [`Self::poll`] tells whether they are here, without waiting; then [`Self::bytes`] gives them. Or [`Self::wait`] waits.
 pub struct Readback {

@@ -226,7 +226,7 @@ pub(super) struct FactorSearch {
     pub least: [f32; 3],
     /// The least inside factor; of rows the least number of rows and of segments of a row.
     pub inside: f32,
-    /// As in [`Chosen`].
+    /// As in [`ChosenFactors`].
     pub inner: f32,
     pub wanted: SearchGoal,
 }
@@ -256,7 +256,7 @@ struct Step {
     is_last: bool,
 }
 
-/// Returns the first step. `least_inside` is the least inside factor, and `inner` is as in [`Chosen`].
+/// Returns the first step. `least_inside` is the least inside factor, and `inner` is as in [`ChosenFactors`].
 fn first_step(partitioning: Partitioning, least_inside: f32, inner: f32) -> Step {
     let inside = factor_from(partitioning, least_inside.max(2.0));
     // Two segments leave no inner triangles.

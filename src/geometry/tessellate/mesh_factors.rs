@@ -188,7 +188,7 @@ impl MeshLod<'_> {
     }
 
     /// Returns the factors with which a patch keeps LOD by error's tolerance with the fewest triangles. `least` are the least that
-    /// the edges U == 0, V == 0 and W == 0 may get, or those that they have, and `inner` is as in [`Chosen`].
+    /// the edges U == 0, V == 0 and W == 0 may get, or those that they have, and `inner` is as in [`ChosenFactors`].
     pub(super) fn fewest(
         &self,
         patch: u32,

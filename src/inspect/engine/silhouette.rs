@@ -26,7 +26,7 @@ pub struct SilhouetteView {
 
 /// A drawing under way. It has a tessellator of its own, so that what is shown stays as it is.
 pub struct SilhouetteDrawing {
-    /// See [`beside`].
+    /// See [`sibling`].
     pub tessellator: Tessellator,
     pub grid: SampleGrid,
     coverage: SilhouetteCoverage,
@@ -94,7 +94,7 @@ impl SilhouetteDrawing {
 }
 
 impl Engine {
-    /// Starts to draw the silhouettes of what `scene` shows, with a tessellator that was made [`beside`] it.
+    /// Starts to draw the silhouettes of what `scene` shows, with a tessellator that was made as its [`sibling`].
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, the mesh's rig is larger than it binds, or the device was lost.

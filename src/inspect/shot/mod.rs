@@ -172,7 +172,7 @@ impl ShotView {
 }
 
 impl Shot {
-    /// Tessellates the subject in its scene, which is [dressed](Subject::dress) already.
+    /// Tessellates the subject in its scene, which is [prepared](Subject::apply_to_scene) already.
     ///
     /// # Errors
     /// The adapter has no textures of that size, the left half needs larger buffers than it can bind, or the device was lost.
