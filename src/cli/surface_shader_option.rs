@@ -41,7 +41,7 @@ impl SurfaceShaderOption {
         refuse(
             self.surface_shader.is_some(),
             "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
-             one with --reference_shape",
+             one with --reference-surface",
         )
     }
 }
