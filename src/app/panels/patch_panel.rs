@@ -164,9 +164,9 @@ impl SelectedPatch<'_> {
     /// A row for each factor: its edge, the factor that LOD gave, the factor that the tessellator uses, and the segments.
     fn factor_rows(&self, ui: &mut Ui) {
         title(ui, "Factors", "TessFactor[i] belongs to the edge on which weight i (u, v, w) is 0.");
-        let header = format!("{:<4}{:<4}{:>8}{:>8}{:>6}", "", "edge", "from LOD", "used", "cut");
+        let header = format!("{:<4}{:<4}{:>8}{:>8}{:>6}", "", "edge", "LOD", "used", "cut");
         factor_row(ui, None, &header, true).on_hover_text(
-            "From LOD: the factor that LOD gave. Used: the factor after the tessellator clamped and rounded it. Cut: the \
+            "LOD: the factor that LOD gave. Used: the factor after the tessellator clamped and rounded it. Cut: the \
              number of segments.",
         );
         for i in 0..3 {
