@@ -108,7 +108,7 @@ fn of_command(command: &clap::Command) -> String {
         let common: Vec<_> = group.options.iter().filter(is_own).collect();
         if common.len() == group.options.len() {
             whole.push(format!("the {}", link(&group)));
-        } else if common.len() > 3 {
+        } else if !common.is_empty() {
             let names: Vec<_> =
                 common.iter().map(|arg| format!("`--{}`", arg.get_long().unwrap_or_default())).collect();
             parts += &format!("| {} | | See {}. |\n", names.join(", "), link(&group));
