@@ -1,6 +1,6 @@
 // Colours that show how a surface is shaped, and how a texture would lie on it.
 
-// Values of LOOK. src/inspect/render/look.rs has the same.
+// Values of LOOK. src/inspect/render/colors.rs has the same.
 const LOOK_SURFACE_NORMALS: u32 = 1u;
 const LOOK_CURVATURE: u32 = 2u;
 const LOOK_MATCAP: u32 = 3u;

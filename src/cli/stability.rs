@@ -70,9 +70,8 @@ impl Args {
     /// Refuses gates that judge one tessellation, and what needs a device that isn't used.
     fn check(&self) -> Result<(), CliError> {
         self.adapter.check(self.device == Some(Device::Cpu))?;
-        let single = [GateKind::AboveTolerance, GateKind::Triangles, GateKind::Bytes];
         refuse(
-            single.into_iter().any(|kind| self.gates.gates.has(kind)),
+            GateKind::ALL.into_iter().any(|kind| kind.is_of_one_tessellation() && self.gates.gates.has(kind)),
             "--fail-on above-tolerance, triangles and bytes judge one tessellation, and stability runs many: use render or \
                  tessellate",
         )?;

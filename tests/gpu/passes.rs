@@ -20,7 +20,7 @@ use gpu::chunks_an_arena;
 /// Width and height in px.
 const VIEWPORT: glam::Vec2 = glam::vec2(640.0, 480.0);
 
-const SURFACES: [Surface; 8] = Surface::ALL;
+const SURFACES: [Surface; Surface::ALL.len()] = Surface::ALL;
 
 /// The passes of a mesh that is neither deformed nor displaced.
 pub(super) const RIGID_PASSES: [&str; 7] = ["nets", "factors", "counts", "scan", "chunks", "emit", "draw"];

@@ -27,7 +27,7 @@ const VIEWPORT: Vec2 = glam::vec2(SIZE[0] as f32, SIZE[1] as f32);
 /// Room for output: little, so that a large factor takes several chunks.
 const ARENA: u64 = 1 << 20;
 
-const SURFACES: [Surface; 8] = Surface::ALL;
+const SURFACES: [Surface; Surface::ALL.len()] = Surface::ALL;
 
 /// A mesh on the device, its points welded within `weld` of its diagonal.
 pub(super) fn scene_of(mesh: Mesh, weld: f32) -> Scene {

@@ -73,20 +73,48 @@ impl GateKind {
         }
     }
 
-    /// Whether it judges the mesh as loaded, whatever is done to it and from wherever it is seen.
+    /// What it judges.
+    pub const fn subject(self) -> GateSubject {
+        match self {
+            Self::TJunctions | Self::Warnings => GateSubject::Mesh,
+            Self::Cracks | Self::Factors | Self::Leaks | Self::Folds => GateSubject::Survey,
+            Self::AboveTolerance => GateSubject::Error,
+            Self::Triangles | Self::Bytes => GateSubject::Budget,
+        }
+    }
+
+    /// Whether it judges one tessellation, so that it says nothing of many.
+    pub const fn is_of_one_tessellation(self) -> bool {
+        matches!(self.subject(), GateSubject::Error | GateSubject::Budget)
+    }
+
+    /// Whether it judges the mesh as it was loaded.
     pub const fn is_of_mesh(self) -> bool {
-        matches!(self, Self::TJunctions | Self::Warnings)
+        matches!(self.subject(), GateSubject::Mesh)
     }
 
     /// Whether it judges how much there is, so that a limit of 0 would make no sense.
     const fn is_budget(self) -> bool {
-        matches!(self, Self::Triangles | Self::Bytes)
+        matches!(self.subject(), GateSubject::Budget)
     }
 
     /// Whether it is judged by what a survey of the emitted mesh finds.
     pub const fn needs_survey(self) -> bool {
-        matches!(self, Self::Cracks | Self::Factors | Self::Leaks | Self::Folds)
+        matches!(self.subject(), GateSubject::Survey)
     }
+}
+
+/// What a gate judges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GateSubject {
+    /// The mesh as it was loaded.
+    Mesh,
+    /// What a survey of the emitted mesh finds.
+    Survey,
+    /// How far triangles are from their surface on screen.
+    Error,
+    /// How much is emitted.
+    Budget,
 }
 
 /// A limit that a result is held to.

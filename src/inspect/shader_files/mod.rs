@@ -14,7 +14,7 @@ mod translation;
 
 use thiserror::Error;
 
-use geometry::tessellate::{Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
+use geometry::tessellate::{Edges, Partitioning, Tessellation};
 use gpu::WgslModule;
 
 use crate::settings::{Choice, choices};
@@ -77,23 +77,19 @@ pub fn shader_files(
 
 /// Returns the number of indices that a patch of these shaders has: 3, 9 or 18.
 pub fn indices_per_patch(language: Language, tessellation: &Tessellation) -> usize {
-    if tessellation.displacement != Displacement::Off {
+    if tessellation.displacement.is_on() {
         return 18;
     }
-    let looks_across = match tessellation.surface {
-        Surface::Flat => false,
-        Surface::PnAen | Surface::PnCrease | Surface::PhongAen | Surface::NagataAen => true,
-        // The sides of an edge have curves of different lengths, of which both take the longer one's factor.
-        Surface::Pn | Surface::Phong | Surface::Nagata => {
-            tessellation.edges == Edges::PerEdge && matches!(tessellation.lod, Lod::Paper | Lod::EdgeLength)
-        }
-    };
+    let surface = tessellation.surface;
+    // Where a surface tears, the sides of an edge have curves of different lengths, of which both take the longer one's factor.
+    let takes_both = tessellation.edges == Edges::PerEdge && tessellation.used_lod().reads().control_points;
+    let looks_across = if surface.tears() { takes_both } else { !surface.is_flat() };
     if looks_across || language == Language::Wgsl { 9 } else { 3 }
 }
 
 fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderError> {
     let refuse = |what, why, instead| Err(ShaderError::Unexportable { what, why, instead });
-    if tessellation.used_lod() == Lod::Error {
+    if tessellation.used_lod().is_by_error() {
         return refuse(
             "LOD by error",
             "it searches over all patches that share an edge",
@@ -122,7 +118,7 @@ fn choices_of(own: &Tessellation) -> [(&'static str, String); 10] {
     fn constant(kind: &str, value: impl Choice) -> String {
         format!("{kind}_{}", value.name()).to_uppercase().replace('-', "_")
     }
-    let is_displaced = own.displacement != Displacement::Off;
+    let is_displaced = own.displacement.is_on();
     // Displaced patches may show their fronts where the surface shows its back, so they are never culled.
     let culling = if own.cull_back_faces && !is_displaced { "CULLING_ON" } else { "CULLING_OFF" };
     [
