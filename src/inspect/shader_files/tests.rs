@@ -1,7 +1,7 @@
 //! What texts of exported shaders have, and what they leave out.
 
 use super::*;
-use geometry::tessellate::{Displacement, Lod, Surface};
+use geometry::tessellate::{Clip, Displacement, Lod, Surface};
 
 /// All texts of the files that run on tessellation stages.
 fn text(language: Language, own: &Tessellation) -> String {
