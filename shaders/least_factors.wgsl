@@ -228,7 +228,7 @@ struct Chosen {
     inner: f32,
 }
 
-// What the factors of a patch's edges are that are looked for: what the patch requests factors of its edges for, what it would have if no
+// Which factors of a patch's edges are looked for: those that the patch requests for its edges, those that it would have if no
 // neighbour requested anything, or what its edges have, beside which only the inside is looked for.
 const GOAL_REQUESTS: u32 = 0u;
 const GOAL_MINIMUM: u32 = 1u;
@@ -341,7 +341,7 @@ fn fewest_triangles(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning
     return best;
 }
 
-// Returns whether a patch requests factors of its edges again: beside what other patches requested, its inside factor is much larger than
+// Returns whether a patch requests factors for its edges again: beside what other patches requested, its inside factor is much larger than
 // the one that it has chosen.
 fn requests_again(chosen: f32, inside: f32) -> bool {
     return inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0;

@@ -291,7 +291,7 @@ fn points_inside(edges: vec3<f32>, inside: f32) -> f32 {
     return f32(point_count(factors) - outer_count(factors));
 }
 
-// Returns whether a patch requests factors of its edges again: beside what other patches requested, it has many more points inside than with
+// Returns whether a patch requests factors for its edges again: beside what other patches requested, it has many more points inside than with
 // what it has chosen.
 fn rows_request_again(chosen: f32, points: f32) -> bool {
     return points > 1.1 * chosen + 2.0;

@@ -1,10 +1,10 @@
-// LOD by error: every patch requests factors of its edges for factors, of which they get the largest; then every patch takes the least inside
+// LOD by error: every patch requests factors for its edges, which get the largest; then every patch takes the least inside
 // factor that is enough beside them. Beside factors that other patches requested, a patch may need a much larger inside factor than
 // it has chosen, or find none that is enough. Then it requests again, for no less than what its edges have. There are a few such rounds.
 //
 // A round takes three passes. In the first an invocation looks at each patch: one whose edges have changed is done if one triangle
 // shows it, and else put on a list. In the second a workgroup searches an inside factor for one patch on the list after another; in
-// the third those are searched that request again. Before the rounds each patch asks: then there is no second pass.
+// the third those are searched that request again. Before the rounds each patch requests: then there is no second pass.
 
 // The counters. The numbers of large and of small patches are those of the patches that ask; after them come those of the patches
 // whose edges have their factors.

@@ -24,7 +24,7 @@ pub struct Gpu {
     made: Arc<AtomicU64>,
 }
 
-/// What a device is requested: WebGPU's default limits, but buffers and textures as large as the adapter has them, and
+/// What is requested of a device: WebGPU's default limits, but buffers and textures as large as the adapter has them, and
 /// timestamps if the adapter has them. The timestamps of software drivers are wrong for compute passes, so they aren't used.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     let has = adapter.limits();

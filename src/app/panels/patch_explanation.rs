@@ -159,7 +159,7 @@ impl ShownExplanation<'_> {
         ui.label(dense(format!("{:<12}{:>6} triangles", "minimum", least.triangles))).on_hover_text(hover);
         let has = triangle_count(factors);
         let times = f64::from(has) / f64::from(least.triangles.max(1));
-        let hover = "The triangles that are drawn, and and how many times the minimum that is. The overlay of excess \
+        let hover = "The triangles that are drawn, and how many times the minimum that is. The overlay of excess \
                      triangles shows this number for all patches.";
         ui.label(dense(format!("{:<12}{has:>6} triangles{times:>5.2}x", "drawn"))).on_hover_text(hover);
     }

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::factors::{MOST_ROWS, ROW_BASE_STEP, last_factor};
-use super::{Convention, Partitioning, PatchFactors, domain_side, factor_side, patch_is_culled, process, round_pow2};
+use super::{Convention, Partitioning, PatchFactors, domain_side, factor_side, patch_is_culled, process};
 
 /// A patch's tessellation factors before the tessellator clamps and rounds them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -34,10 +34,8 @@ impl HullFactors {
     /// Returns the factors as a shader compiler passes them to the tessellator: under pow2 they are rounded up to
     /// powers of two.
     pub fn rounded(self, partitioning: Partitioning) -> Self {
-        if partitioning != Partitioning::Pow2 {
-            return self;
-        }
-        Self { edges: self.edges.map(round_pow2), inside: round_pow2(self.inside) }
+        let rounded = |factor| partitioning.hull_factor(factor);
+        Self { edges: self.edges.map(rounded), inside: rounded(self.inside) }
     }
 
     /// Returns the clamped and rounded factors that the tessellator works with.

@@ -211,7 +211,7 @@ pub(super) struct ChosenFactors {
 /// What the factors of a patch's edges are that are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SearchGoal {
-    /// What the patch requests factors of its edges for. Every segment of an edge is a triangle's side in this patch and in its neighbour.
+    /// What the patch requests for its edges. Every segment of an edge is a triangle's side in this patch and in its neighbour.
     Requests,
     /// What it would have if no neighbour requested anything.
     Own,
@@ -332,7 +332,7 @@ pub(super) fn fewest_triangles(
     best
 }
 
-/// Returns whether a patch requests factors of its edges again: beside what other patches requested, its inside factor is much larger
+/// Returns whether a patch requests factors for its edges again: beside what other patches requested, its inside factor is much larger
 /// than the one that it has chosen.
 pub(super) fn requests_again(chosen: f32, inside: f32) -> bool {
     inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0

@@ -311,7 +311,7 @@ fn points_inside(edges: [f32; 3], inside: f32) -> f32 {
     (point_count(factors) - outer_count(factors)) as f32
 }
 
-/// Returns whether a patch requests factors of its edges again: beside what other patches requested, it has many more points inside than with
+/// Returns whether a patch requests factors for its edges again: beside what other patches requested, it has many more points inside than with
 /// what it has chosen.
 pub(super) fn rows_request_again(chosen: &ChosenFactors, edges: [f32; 3], inside: f32) -> bool {
     inside == BEYOND_LAST || points_inside(edges, inside) > 1.1 * points_inside(chosen.edges, chosen.inside) + 2.0

@@ -82,7 +82,7 @@ pub struct LodView {
     pub half_viewport: Vec2,
     /// The largest distance in object units by which displacement moves a point: tessellation finds it.
     pub(super) reach: f32,
-    /// The position of the eye in object units. Only LOD by distance reads it.
+    /// The position of the eye in object units. Only LOD by distance and LOD shaders read it.
     pub eye: Vec3,
     /// The mesh's bounding radius in object units, in which LOD by distance counts.
     pub radius: f32,
@@ -114,6 +114,7 @@ impl LodView {
         let towards = y_axis.cross(w_axis) * x.w + w_axis.cross(x_axis) * y.w + x_axis.cross(y_axis) * w.w;
         let volume = x_axis.dot(y_axis.cross(w_axis));
         let eye = (towards / -volume).as_vec3();
+        // Squares of distances to it are still numbers of 32 bits.
         let far = Vec3::splat(f32::MAX.sqrt() * 1e-3);
         let columns = [0, 1, 2, 3].map(|column| {
             let own = clip_from_object.col(column);

@@ -59,7 +59,7 @@ impl Tessellator {
         reports.iter().find(|(_, report)| is_stopped(report)).map(|(name, _)| *name)
     }
 
-    /// These inputs with a surface that does what control points of the user's own request: a cubic one, which they may tear.
+    /// These inputs with a surface that does what control points of the user's own need: a cubic one, which they may tear.
     pub(super) fn with_user_surface(&self, inputs: &Inputs) -> Inputs {
         let surface = if self.user_surface.is_some() { Surface::OF_USER_SHADER } else { inputs.tessellation.surface };
         Inputs { tessellation: Tessellation { surface, ..inputs.tessellation }, ..*inputs }
