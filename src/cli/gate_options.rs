@@ -2,9 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValue, TypedValueParser};
+
+use super::options::listed;
 use super::{CliError, make_folder, refuse};
 use geometry::progress::Progress;
 use inspect::gates::{Gate, GateKind, Judgement};
+use inspect::settings::Choice;
 use inspect::shot::{Shot, write_picture};
 
 #[derive(Clone, Debug, Default, clap::Args)]
@@ -19,11 +23,15 @@ pub struct GateOptions {
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct FailOnOption {
-    /// Fail (exit code 1) if one of these is found: cracks, factors (both sides of an edge were given different ones), leaks,
-    /// folds, t-junctions, warnings (of loading), above-tolerance (patches whose error on screen is above --tolerance),
-    /// triangles:N or bytes:N (more than N). NAME:N allows up to N of any. A gate that can't be judged fails: leaks of an open mesh
-    #[arg(long, value_name = "GATE,..", value_delimiter = ',')]
+    /// Fail (exit code 1) if one of these is found; NAME:N allows up to N of any. A gate that can't be judged fails: leaks of an
+    /// open mesh
+    #[arg(long, value_name = "GATE,..", value_delimiter = ',', value_parser = gate())]
     pub fail_on: Vec<Gate>,
+}
+
+fn gate() -> impl TypedValueParser<Value = Gate> {
+    let names = GateKind::ALL.map(|kind| PossibleValue::new(kind.placeholder()).help(kind.label()));
+    listed(str::parse::<Gate>, names.into())
 }
 
 impl FailOnOption {

@@ -26,7 +26,9 @@ use load::format::known_extensions;
 
 pub(crate) use cameras::{CamerasOption, NamedView};
 use declared::GivenTessellation;
-pub(crate) use declared::{Declared, ImportOptions, PictureOptions, TessellationOptions, choice, named, number_of};
+pub(crate) use declared::{
+    Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,
+};
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{CameraOption, Position, Size, model, picture, source, whole, whole_from, within};

@@ -10,6 +10,7 @@ use super::adapters::AdapterOption;
 use super::gate_options::GateOptions;
 use super::options::{SurfaceOptions, WeldOption};
 use super::shot_options::ShotOptions;
+use inspect::gates::GateKind;
 use load::markdown::{listed, table};
 
 const BEGINS: &str = "<!-- options of ";
@@ -164,4 +165,15 @@ fn the_manuals_tables_of_options_are_those_of_the_commands() {
     } else {
         assert!(kept == page, "commands.md is out of date; PNAEN_UPDATE_PAGES=1 writes it");
     }
+}
+
+#[test]
+fn the_manuals_table_of_gates_has_each_gate_once() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/manual/measuring.md");
+    let page = std::fs::read_to_string(&path).unwrap();
+    let (_, section) = page.split_once("| gate | counts |\n| --- | --- |\n").expect("the table");
+    let rows = section.lines().take_while(|line| line.starts_with('|'));
+    let named = rows.filter_map(|row| row.split('|').nth(1)).flat_map(|cell| cell.split(", "));
+    let named: Vec<_> = named.map(|gate| gate.trim().trim_matches('`').to_owned()).collect();
+    assert_eq!(named, GateKind::ALL.map(GateKind::placeholder));
 }

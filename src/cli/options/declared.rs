@@ -177,7 +177,10 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
             let value = |name: String| declaration.kind.named(&name).map_or(Value::Unset, Value::Name);
             ValueParser::new(Trimmed(PossibleValuesParser::new(all().into_iter().map(possible)).map(value)))
         }
-        Kind::NameOrNumber { .. } => ValueParser::new(NameOrNumber(declaration)),
+        kind @ Kind::NameOrNumber { .. } => {
+            let names = kind.descriptions().into_iter().map(possible).collect();
+            ValueParser::new(listed(move |text: &str| kind.parse(text), names))
+        }
         kind => ValueParser::new(move |text: &str| kind.parse(text)),
     }
 }
@@ -198,19 +201,29 @@ impl<P: TypedValueParser> TypedValueParser for Trimmed<P> {
     }
 }
 
-/// Reads a named value or a number. Help texts list the names.
+/// Reads a value as `parser` does. Help texts list these names, though there are more values than they.
+pub(crate) fn listed<P: TypedValueParser>(
+    parser: P,
+    names: Vec<PossibleValue>,
+) -> impl TypedValueParser<Value = P::Value> {
+    Listed { parser, names }
+}
+
 #[derive(Clone)]
-struct NameOrNumber(&'static Declaration);
+struct Listed<P> {
+    parser: P,
+    names: Vec<PossibleValue>,
+}
 
-impl TypedValueParser for NameOrNumber {
-    type Value = Value;
+impl<P: TypedValueParser> TypedValueParser for Listed<P> {
+    type Value = P::Value;
 
-    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<Value, Error> {
-        (|text: &str| self.0.kind.parse(text)).parse_ref(command, arg, value)
+    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<P::Value, Error> {
+        self.parser.parse_ref(command, arg, value)
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        Some(Box::new(self.0.kind.descriptions().into_iter().map(possible)))
+        Some(Box::new(self.names.iter().cloned()))
     }
 }
 

@@ -7,6 +7,7 @@ use super::place::{EdgeSpot, Place, Spot};
 use super::{Gate, GateKind, allowed};
 use crate::measure::{CrackedEdge, EdgeSide, Measured, PatchesAbove};
 use crate::render::{Leak, Leaks};
+use geometry::choice::Choice;
 use geometry::mesh::{TJunction, Topology};
 use geometry::names::shown;
 use geometry::numbers::{exact, grouped, hundredths, short};

@@ -12,67 +12,35 @@ pub use judgement::{Facts, Judgement, judge};
 pub use place::{EdgeSpot, PatchSpot, Place, Spot};
 pub use standpoint::Standpoints;
 
-use geometry::names::every;
+use crate::settings::Overlay;
+use geometry::choice::{Choice, choices};
 use geometry::numbers::grouped;
 
-/// What a gate counts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GateKind {
-    /// Edges whose sides have points at different positions.
-    Cracks,
-    /// Edges whose sides were given different factors.
-    Factors,
-    /// Px through which one can see into a closed mesh.
-    Leaks,
-    /// Triangles that face away from the side that their patch faces.
-    Folds,
-    /// T-junctions of the mesh.
-    TJunctions,
-    /// Warnings that loading gave.
-    Warnings,
-    /// Patches that are farther from their surface than the tolerance, in px on screen.
-    AboveTolerance,
-    /// Emitted triangles.
-    Triangles,
-    /// The memory of emitted vertices and indices, in bytes.
-    Bytes,
+choices! {
+    /// What a gate counts, which its label says, and what passing it means, which its text says.
+    pub enum GateKind {
+        Cracks => "cracks", "Edges whose sides have points at different positions",
+            "Both sides of every edge have the same points and the same factors.";
+        Factors => "factors", "Edges whose sides were given different factors",
+            "Both sides of every edge were given the same factor.";
+        Leaks => "leaks", "Px through which one can see into a closed mesh",
+            "No pixel shows the inside of a closed mesh.";
+        Folds => "folds", "Triangles that face away from the side that their patch faces",
+            "No triangle faces away from the side that its patch faces.";
+        TJunctions => "t-junctions", "T-junctions of the mesh",
+            "No point of the mesh lies between the ends of another triangle's open edge.";
+        Warnings => "warnings", "Warnings of loading",
+            "Loading repaired nothing and left nothing out.";
+        AboveTolerance => "above-tolerance", "Patches whose error on screen is above --tolerance",
+            "No patch is farther from its surface on screen than the tolerance.";
+        Triangles => "triangles", "Emitted triangles",
+            "There are no more triangles than allowed.";
+        Bytes => "bytes", "Bytes of emitted vertices and indices",
+            "Vertices and indices take no more memory than allowed.";
+    }
 }
 
 impl GateKind {
-    pub const ALL: [Self; 9] = every![
-        GateKind: Cracks, Factors, Leaks, Folds, TJunctions, Warnings, AboveTolerance, Triangles, Bytes
-    ];
-
-    /// The name on the command line and in reports.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Cracks => "cracks",
-            Self::Factors => "factors",
-            Self::Leaks => "leaks",
-            Self::Folds => "folds",
-            Self::TJunctions => "t-junctions",
-            Self::Warnings => "warnings",
-            Self::AboveTolerance => "above-tolerance",
-            Self::Triangles => "triangles",
-            Self::Bytes => "bytes",
-        }
-    }
-
-    /// What passing the gate means, in a sentence.
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Cracks => "Both sides of every edge have the same points and the same factors.",
-            Self::Factors => "Both sides of every edge were given the same factor.",
-            Self::Leaks => "No pixel shows the inside of a closed mesh.",
-            Self::Folds => "No triangle faces away from the side that its patch faces.",
-            Self::TJunctions => "No point of the mesh lies between the ends of another triangle's open edge.",
-            Self::Warnings => "Loading repaired nothing and left nothing out.",
-            Self::AboveTolerance => "No patch is farther from its surface on screen than the tolerance.",
-            Self::Triangles => "There are no more triangles than allowed.",
-            Self::Bytes => "Vertices and indices take no more memory than allowed.",
-        }
-    }
-
     /// What it judges.
     pub const fn subject(self) -> GateSubject {
         match self {
@@ -81,6 +49,24 @@ impl GateKind {
             Self::AboveTolerance => GateSubject::Error,
             Self::Triangles | Self::Bytes => GateSubject::Budget,
         }
+    }
+
+    /// The overlays that show what it found. At most one of them colours the surface.
+    pub(crate) const fn overlays(self) -> &'static [Overlay] {
+        match self {
+            Self::Cracks => &[Overlay::Wireframe, Overlay::Cracks],
+            Self::Factors => &[Overlay::Wireframe, Overlay::Factors],
+            Self::Leaks => &[Overlay::Cracks],
+            Self::Folds => &[Overlay::Wireframe, Overlay::Folds],
+            Self::TJunctions => &[Overlay::Patches, Overlay::TJunctions],
+            Self::AboveTolerance => &[Overlay::Wireframe, Overlay::Patches],
+            Self::Warnings | Self::Triangles | Self::Bytes => &[],
+        }
+    }
+
+    /// How it is written on the command line: its name, and that of the number that it needs.
+    pub fn placeholder(self) -> String {
+        if self.is_budget() { format!("{}:N", self.name()) } else { self.name().to_owned() }
     }
 
     /// Whether it judges one tessellation, so that it says nothing of many.
@@ -133,8 +119,7 @@ impl FromStr for Gate {
         let text = text.trim();
         let (name, limit) = text.split_once(':').map_or((text, None), |(name, limit)| (name, Some(limit)));
         let names = || GateKind::ALL.map(GateKind::name).join(", ");
-        let kind = GateKind::ALL.into_iter().find(|kind| kind.name() == name);
-        let kind = kind.ok_or_else(|| format!("expected one of {}", names()))?;
+        let kind = GateKind::named(name).ok_or_else(|| format!("expected one of {}", names()))?;
         let limit = match limit {
             Some(limit) => limit.parse().ok(),
             None if kind.is_budget() => None,
@@ -163,10 +148,12 @@ impl fmt::Display for Gate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::settings::Overlays;
 
     #[test]
     fn gates_are_read_as_they_are_written() {
         for kind in GateKind::ALL {
+            assert!(Overlays::new(kind.overlays()).is_some(), "{kind:?}: two overlays colour the surface");
             for limit in [0, 7, u64::MAX] {
                 let gate = Gate { kind, limit };
                 assert_eq!(gate.to_string().parse(), Ok(gate));

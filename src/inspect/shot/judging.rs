@@ -8,7 +8,7 @@ use crate::engine::Measurements;
 use crate::gates::{Facts, Gate, GateKind, Judgement, Spot, Standpoints, judge};
 use crate::measure::Sight;
 use crate::render::{Camera, Leaks, worst_lines};
-use crate::settings::{Overlay, Overlays, Settings, SplitSide};
+use crate::settings::{Overlays, Settings, SplitSide};
 use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
 use geometry::tessellate::Inputs;
@@ -109,7 +109,8 @@ impl Shot {
         self.view.camera = camera;
         // So close, the frustum of the camera of LOD would only hide the place. Factors are computed for it all the same.
         self.view.lod_camera = None;
-        self.subject.settings = Settings { overlays: overlays_of(judgement.kind), split: None, ..settings };
+        let overlays = Overlays::new(judgement.kind.overlays()).unwrap_or_default();
+        self.subject.settings = Settings { overlays, split: None, ..settings };
         if let Some(at) = place.spot.at() {
             // The error has a line to where the emitted point should be.
             let worst = self.error_place.filter(|_| judgement.kind == GateKind::AboveTolerance);
@@ -137,19 +138,4 @@ impl Shot {
         self.engine.visit(&mut self.scene, &mut [&mut sight])?;
         Ok(standpoints.clearest(sight.clear()))
     }
-}
-
-/// The overlays that show what a gate found.
-fn overlays_of(kind: GateKind) -> Overlays {
-    let shown: &[Overlay] = match kind {
-        GateKind::Cracks => &[Overlay::Wireframe, Overlay::Cracks],
-        GateKind::Leaks => &[Overlay::Cracks],
-        GateKind::Factors => &[Overlay::Wireframe, Overlay::Factors],
-        GateKind::Folds => &[Overlay::Wireframe, Overlay::Folds],
-        GateKind::TJunctions => &[Overlay::Patches, Overlay::TJunctions],
-        GateKind::AboveTolerance => &[Overlay::Wireframe, Overlay::Patches],
-        GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => &[],
-    };
-    // None of these lists has two overlays that colour the surface.
-    Overlays::new(shown).unwrap_or_default()
 }

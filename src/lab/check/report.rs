@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use geometry::numbers::grouped;
 use inspect::gates::{GateKind, Judgement, Place};
+use inspect::settings::Choice;
 use inspect::shot::Numbers;
 
 /// What a check found.

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 use super::report::{Asset, Report, gate_title};
 use inspect::gates::GateKind;
+use inspect::settings::Choice;
 
 /// The rule of assets that couldn't be checked.
 const BROKEN: &str = "opens";

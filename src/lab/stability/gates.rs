@@ -1,6 +1,7 @@
 //! Holds the rows of a run to gates.
 
-use super::{Method, Quantity, Row, Tried};
+use super::{Method, Row, Tried};
+use geometry::choice::Choice;
 use geometry::numbers::{grouped, short};
 use inspect::gates::{Gate, GateKind, allowed};
 
@@ -16,25 +17,9 @@ pub struct Failure {
     pub tried: Option<Tried>,
 }
 
-/// The quantity that a gate judges; none if rows don't have it.
-fn quantity(kind: GateKind) -> Option<Quantity> {
-    match kind {
-        GateKind::Cracks => Some(Quantity::Points),
-        GateKind::Factors => Some(Quantity::Factors),
-        GateKind::Leaks => Some(Quantity::Leaks),
-        GateKind::Folds => Some(Quantity::Folds),
-        GateKind::TJunctions
-        | GateKind::Warnings
-        | GateKind::AboveTolerance
-        | GateKind::Triangles
-        | GateKind::Bytes => None,
-    }
-}
-
 /// Whether the rows of a case have what a gate judges, for each of these methods.
 pub fn are_judged(kind: GateKind, methods: &[Method], rows: &[Row]) -> bool {
-    let has =
-        |method: &Method| rows.iter().any(|row| row.method == method.name() && Some(row.quantity) == quantity(kind));
+    let has = |method: &Method| rows.iter().any(|row| row.method == method.name() && row.quantity.gate() == Some(kind));
     methods.iter().all(has)
 }
 
@@ -44,8 +29,7 @@ pub fn failures(gates: &[Gate], rows: &[Row]) -> Vec<Failure> {
 }
 
 fn failure(Gate { kind, limit }: &Gate, rows: &[Row]) -> Option<Failure> {
-    let quantity = quantity(*kind)?;
-    let fails = |row: &&Row| row.quantity == quantity && row.measured > *limit as f64;
+    let fails = |row: &&Row| row.quantity.gate() == Some(*kind) && row.measured > *limit as f64;
     let worst = rows.iter().filter(fails).reduce(|a, b| if b.measured > a.measured { b } else { a })?;
     let mut methods: Vec<&str> = Vec::new();
     for row in rows.iter().filter(fails).filter(|row| row.case == worst.case) {
@@ -69,6 +53,7 @@ fn failure(Gate { kind, limit }: &Gate, rows: &[Row]) -> Option<Failure> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Quantity;
     use super::*;
     use geometry::tessellate::Surface;
 

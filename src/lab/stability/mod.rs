@@ -24,6 +24,7 @@ use serde::Serialize;
 
 use geometry::mesh::{Mesh, Moment};
 use geometry::tessellate::{Clip, Displacement, Edges, Lod, Partitioning, Surface, Tessellation};
+use inspect::gates::GateKind;
 use inspect::render::Camera;
 use inspect::settings::{Choice, Settings};
 
@@ -160,6 +161,24 @@ impl Quantity {
             Self::OpenEdges => "open edges left",
             Self::Jump => "of the diagonal (the largest jump in a fractional step)",
             Self::Pop => "of the diagonal (the largest pop)",
+        }
+    }
+
+    /// The gate that judges it, if there is one.
+    pub(crate) const fn gate(self) -> Option<GateKind> {
+        match self {
+            Self::Points => Some(GateKind::Cracks),
+            Self::Factors => Some(GateKind::Factors),
+            Self::Leaks => Some(GateKind::Leaks),
+            Self::Folds => Some(GateKind::Folds),
+            Self::Normals
+            | Self::NotFinite
+            | Self::Missing
+            | Self::Segment
+            | Self::TJunctions
+            | Self::OpenEdges
+            | Self::Jump
+            | Self::Pop => None,
         }
     }
 
