@@ -38,6 +38,25 @@ fn stats_have_counts_cracks_memory_and_times() {
 }
 
 #[test]
+fn the_manual_names_every_number_of_the_stats() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/manual/measuring.md");
+    let page = std::fs::read_to_string(path).expect("the page");
+    let is_named = |names: [String; 2]| names.iter().any(|name| page.contains(&format!("`{name}")));
+    let stats = stats(&["shape:cube-split", "--surface", "pn"]);
+    for key in stats.as_object().expect("an object").keys() {
+        assert!(is_named([format!("{key}`"), format!("{key}.")]), "measuring.md doesn't name {key}");
+    }
+    for group in ["cracks", "seams"] {
+        for key in stats[group].as_object().expect("an object").keys() {
+            assert!(
+                is_named([format!("{group}.{key}`"), format!(".{key}`")]),
+                "measuring.md doesn't name {group}.{key}"
+            );
+        }
+    }
+}
+
+#[test]
 fn pn_cracks_on_split_normals_and_pn_aen_does_not() {
     let drawn = |surface| stats(&["shape:cube-split", "--surface", surface]);
     let (pn, pn_aen, flat) = (drawn("pn"), drawn("pn-aen"), drawn("flat"));

@@ -8,7 +8,7 @@ use geometry::mesh::Bounds;
 
 /// A camera in numbers.
 #[derive(Clone, Debug, Serialize)]
-pub struct ViewStats {
+pub(super) struct ViewStats {
     /// `perspective` or `orthographic`.
     kind: &'static str,
     /// In object units; none in an orthographic view.
@@ -26,7 +26,7 @@ pub struct ViewStats {
 
 impl ViewStats {
     /// The camera that draws a picture of a mesh with these bounds.
-    pub fn new(camera: &Camera, viewport: [u32; 2], bounds: &Bounds) -> Self {
+    pub(super) fn new(camera: &Camera, viewport: [u32; 2], bounds: &Bounds) -> Self {
         let mut matrix = camera.clip_from_object(viewport.map(|side| side as f32).into(), bounds);
         if camera.is_mirrored() {
             // What was drawn was mirrored afterwards.

@@ -34,16 +34,12 @@ pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
 pub use user_shader_report::{not_numbers_said, report_user_lod, report_user_surface, straight_sides_said};
 
-use camera_stats::ViewStats;
 use files::{to_json, write_text};
 use legend::draw_legend;
-use outline_stats::SilhouetteStats;
 use picture_file::write_stamped;
 use reference_surface::{AccuracyStats, DeviationStats};
-use stats::{AnimationStats, LeftStats};
-use user_shader_report::{LodShaderStats, SurfaceShaderStats};
 
-use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs, SilhouetteView};
+use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, SilhouetteView};
 use crate::gates::Judgement;
 use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges, patch_width};
 use crate::render::{
@@ -450,50 +446,6 @@ impl Shot {
         self.results(half)?.deviation.as_ref().map(|field| DeviationStats::new(field, self.scale))
     }
 
-    /// The stats of the picture, which must have been drawn with stats wanted; none if nothing was measured. Draws it several
-    /// times more to time it.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn stats(&mut self) -> Result<Option<Stats>, ShotError> {
-        let (view, accuracy) = (self.view(), self.accuracy(SplitSide::Right));
-        let Self { engine, scene, target, lod_view, results, .. } = self;
-        let (settings, camera, moment) = (&self.subject.settings, &self.view.camera, self.subject.moment);
-        let Some(results) = &results[SplitSide::Right as usize] else { return Ok(None) };
-        let Some(measured) = &results.survey else { return Ok(None) };
-        // Only the right half is timed.
-        let alone = Settings { split_surface: None, ..*settings };
-        let passes = engine.time(scene, target, camera, *lod_view, &alone, Runs::default())?;
-        let leaks = engine.leaks(scene, measured, target.size, camera)?;
-        let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
-        let lod_shader = LodShaderStats::new(engine, scene)?;
-        let surface_shader = SurfaceShaderStats::new(engine, scene)?;
-        let mut stats = Stats::new(engine, &self.posed, scene, measured, settings, view, &passes);
-        (stats.triangles_in_view, stats.triangles_below_3_px) =
-            results.sizes.map_or((0, 0), |sizes| (sizes.in_view, sizes.small));
-        stats.leaks = leaks;
-        stats.max_error_px = results.screen_error.map(|worst| worst.px);
-        stats.patches_flat = results.flat_patches;
-        if let Some(tolerance_px) = stats.max_error_px.map(|px| px as f32).filter(|px| *px > 0.0) {
-            let inputs = settings.inputs(*lod_view);
-            let triangles = engine.triangles_by_error(scene, &inputs, tolerance_px)?;
-            stats.lod_comparison = triangles.map(|triangles| stats.compared(tolerance_px, triangles));
-        }
-        (stats.factors_capped, stats.lod_shader, stats.surface_shader) = (factors_capped, lod_shader, surface_shader);
-        stats.accuracy = accuracy;
-        stats.deviation = self.deviation(SplitSide::Right);
-        let mirrored = self.view.camera.is_mirrored().then_some(self.view.size[0]);
-        stats.silhouette = self.silhouette.as_ref().map(|silhouette| SilhouetteStats::new(silhouette, mirrored));
-        stats.camera = Some(ViewStats::new(&self.view.camera, self.view.size, &self.scene.bounds));
-        stats.left = self.left_stats();
-        stats.judged(self.judged.clone(), settings.tessellation.tolerance);
-        stats.animation = moment.zip(self.subject.loaded.mesh.rig.as_ref()).map(|(Moment { clip, time }, rig)| {
-            let name = rig.clip_name(clip);
-            AnimationStats { name, time }
-        });
-        Ok(Some(stats))
-    }
-
     /// Writes the [stats](Self::stats), and what was found about a file of factors, as JSON.
     ///
     /// # Errors
@@ -502,16 +454,5 @@ impl Shot {
         let Some(mut stats) = self.stats()? else { return Ok(()) };
         stats.factors_file = factors_file;
         write_text(path, &to_json(&stats)?)
-    }
-
-    /// The stats of another surface left of the split.
-    fn left_stats(&self) -> Option<LeftStats> {
-        let (scene, settings) = self.scene.half(SplitSide::Left).zip(self.subject.settings.half(SplitSide::Left))?;
-        let results = self.results(SplitSide::Left)?;
-        let mut stats = LeftStats::new(scene, results.survey.as_ref()?, &settings, self.view());
-        stats.max_error_px = results.screen_error.map(|worst| worst.px);
-        stats.accuracy = self.accuracy(SplitSide::Left);
-        stats.deviation = self.deviation(SplitSide::Left);
-        Some(stats)
     }
 }

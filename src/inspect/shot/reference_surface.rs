@@ -38,7 +38,7 @@ impl ReferenceSurface {
 
 /// The sampled distance of everything that was emitted from the reference surface.
 #[derive(Debug, Serialize)]
-pub struct AccuracyStats {
+pub(super) struct AccuracyStats {
     reference_surface: String,
     /// The diagonal of the reference surface's bounding box, in object units.
     diagonal: f64,
@@ -73,7 +73,7 @@ struct AngleStats {
 
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
-    pub fn new(reference_shape: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
+    pub(super) fn new(reference_shape: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
         let distances = |distances: Distances, Sampling { samples, spacing }| {
             let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
@@ -93,7 +93,7 @@ impl AccuracyStats {
 
 /// What the deviation overlay shows, in object units.
 #[derive(Debug, Serialize)]
-pub struct DeviationStats {
+pub(super) struct DeviationStats {
     max: f64,
     rms: f64,
     /// The distances of the first and the last colour, if distances are in object units; the scale is logarithmic.
@@ -113,7 +113,7 @@ struct WorstStats {
 }
 
 impl DeviationStats {
-    pub fn new(field: &DeviationField, scale: Scale) -> Self {
+    pub(super) fn new(field: &DeviationField, scale: Scale) -> Self {
         let max = field.worst().map_or(0.0, |worst| worst.value);
         let worst = field.worst().map(|worst| {
             let [emitted, reference_surface] =

@@ -10,17 +10,19 @@ use super::outline_stats::SilhouetteStats;
 use super::reference::ReferenceStats;
 use super::reference_surface::{AccuracyStats, DeviationStats};
 use super::user_shader_report::{LodShaderStats, SurfaceShaderStats};
-use crate::engine::{Engine, Loaded};
+use super::{Shot, ShotError};
+use crate::engine::{Engine, Loaded, Runs};
 use crate::gates::{GateKind, Judgement};
 use crate::measure::{Measured, SeamTurns, Seams};
 use crate::render::Scene;
-use crate::settings::{Choice, Declaration, Settings, options};
-use geometry::mesh::{EdgeCounts, Topology};
+use crate::settings::{Choice, Declaration, Settings, SplitSide, options};
+use geometry::mesh::{EdgeCounts, Moment, Rig, Topology};
+use geometry::tessellate::Inputs;
 use geometry::view::{ScreenView, ulp};
-use gpu::PassTime;
+use gpu::{GpuError, PassTime};
 
 /// What was done and what it cost. Times are medians in ms.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Serialize)]
 pub struct Stats {
     /// The name of the view, if there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -43,50 +45,50 @@ pub struct Stats {
     patches_below_factor_2: u32,
     triangles_out: u64,
     /// Emitted triangles that are neither wholly outside one side of the view nor cut by its near plane.
-    pub triangles_in_view: u64,
+    triangles_in_view: u64,
     /// Those of them that cover less than 4.5 px² (half of a square of 3 px).
-    pub triangles_below_3_px: u64,
+    triangles_below_3_px: u64,
     vertices_out: u64,
     bytes: Bytes,
     cracks: CrackStats,
     seams: SeamStats,
     /// Px through which one can see into the mesh; none if it is open, reaches the near plane, or patches that face away were
     /// left out.
-    pub leaks: Option<u64>,
+    leaks: Option<u64>,
     /// Triangles that face away from the side that their patch faces.
     folds: u64,
     /// Vertices with a position or uv that is no finite number.
     not_finite: u64,
     /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
     /// nothing is in view.
-    pub max_error_px: Option<f64>,
+    max_error_px: Option<f64>,
     /// Patches that LOD by error shows as one triangle because their surface is flat, though its points slide: their error is
     /// the distance to the nearest point of the surface. None if errors weren't measured.
-    pub patches_flat: Option<u64>,
+    patches_flat: Option<u64>,
     /// What LOD by error would have needed; none if the error wasn't measured, is 0, or is less than LOD by error reaches
     /// with the segments that there are.
-    pub lod_comparison: Option<LodComparison>,
+    lod_comparison: Option<LodComparison>,
     /// Factors that ask for more segments than the partitioning has: those of edges, or of sides if factors are as published
     /// or from a file; under LOD by error, inside factors as well.
-    pub factors_capped: u64,
+    factors_capped: u64,
     /// What was found about the factors of a file, if they came from one.
     pub factors_file: Option<FactorsFile>,
     /// What was found about the factors of an LOD shader, if they came from one.
-    pub lod_shader: Option<LodShaderStats>,
+    lod_shader: Option<LodShaderStats>,
     /// What was found about the control points of a surface shader, if they came from one.
-    pub surface_shader: Option<SurfaceShaderStats>,
+    surface_shader: Option<SurfaceShaderStats>,
     /// The distance to the reference surface, if there is one.
-    pub accuracy: Option<AccuracyStats>,
+    accuracy: Option<AccuracyStats>,
     /// What the deviation overlay shows, if it is on.
-    pub deviation: Option<DeviationStats>,
+    deviation: Option<DeviationStats>,
     /// How far the outline is from others, if the silhouette is shown.
-    pub silhouette: Option<SilhouetteStats>,
+    silhouette: Option<SilhouetteStats>,
     /// The left half of a split view, if it has another surface; all else here is about the right half.
-    pub left: Option<LeftStats>,
+    left: Option<LeftStats>,
     /// None at rest.
-    pub animation: Option<AnimationStats>,
+    animation: Option<AnimationStats>,
     /// Where it is seen from.
-    pub camera: Option<ViewStats>,
+    camera: Option<ViewStats>,
     /// How the picture differs from its reference, if it has one.
     pub reference: Option<ReferenceStats>,
     /// How the gates of `--fail-on` judged.
@@ -95,7 +97,7 @@ pub struct Stats {
 }
 
 /// What was drawn, in the options' names.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Serialize)]
 struct SettingsStats {
     surface: &'static str,
     /// Of Phong tessellation alone.
@@ -124,11 +126,13 @@ struct SettingsStats {
 }
 
 impl SettingsStats {
-    /// `has_shader`: a surface shader takes the place of the surface.
-    fn new(settings: &Settings, has_shader: bool) -> Self {
+    /// `has_shader`: a surface shader takes the place of the surface. One of the gates that `judged` may compare with a tolerance
+    /// that LOD doesn't use.
+    fn new(settings: &Settings, has_shader: bool, judged: &[Judgement]) -> Self {
         let own = &settings.tessellation;
         let has_effect = |option: &Declaration| (option.no_effect)(settings).is_none();
         let is_displaced = own.displacement.is_on();
+        let is_compared = judged.iter().any(|gate| gate.kind == GateKind::AboveTolerance);
         Self {
             surface: if has_shader { "surface-shader" } else { own.surface.name() },
             alpha: own.surface.is_phong().then_some(own.alpha),
@@ -138,7 +142,7 @@ impl SettingsStats {
             lod: own.used_lod().name(),
             factor: own.factor,
             pixels: has_effect(&options::PIXELS).then_some(own.pixels),
-            tolerance: has_effect(&options::TOLERANCE).then_some(own.tolerance),
+            tolerance: (has_effect(&options::TOLERANCE) || is_compared).then_some(own.tolerance),
             near: has_effect(&options::DISTANCES).then_some(own.near),
             far: has_effect(&options::DISTANCES).then_some(own.far),
             clip: own.clip.name(),
@@ -152,14 +156,20 @@ impl SettingsStats {
 }
 
 #[derive(Debug, Serialize)]
-pub struct AnimationStats {
-    pub name: String,
+struct AnimationStats {
+    name: String,
     /// s.
-    pub time: f64,
+    time: f64,
+}
+
+impl AnimationStats {
+    fn new((Moment { clip, time }, rig): (Moment, &Rig)) -> Self {
+        Self { name: rig.clip_name(clip), time }
+    }
 }
 
 /// Memory, in bytes.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Serialize)]
 struct Bytes {
     /// Corners and triangles as loaded.
     input: u64,
@@ -169,7 +179,17 @@ struct Bytes {
     arena: u64,
 }
 
-#[derive(Debug, Default, Serialize)]
+impl Bytes {
+    fn new(Loaded { mesh, .. }: &Loaded, scene: &Scene) -> Self {
+        Self {
+            input: (size_of_val(&mesh.corners[..]) + size_of_val(&mesh.triangles[..])) as u64,
+            topology: scene.tessellator.buffers().bytes() + scene.work_bytes(),
+            arena: scene.tessellator.arena_bytes(),
+        }
+    }
+}
+
+#[derive(Debug, Serialize)]
 pub(crate) struct CrackStats {
     edge_points: u64,
     edges_compared: u64,
@@ -203,7 +223,7 @@ impl CrackStats {
 }
 
 /// Angles between the shading normals of both sides of uv seams and split normals.
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Serialize)]
 struct SeamStats {
     #[serde(flatten)]
     shading: SeamTurnStats,
@@ -211,7 +231,7 @@ struct SeamStats {
     mapped: Option<SeamTurnStats>,
 }
 
-#[derive(Debug, Default, Serialize)]
+#[derive(Debug, Serialize)]
 struct SeamTurnStats {
     edges: u64,
     points: u64,
@@ -248,55 +268,9 @@ impl SeamTurnStats {
     }
 }
 
-impl Stats {
-    /// The stats that every picture has, seen from `view`. The others are left empty.
-    pub fn new(
-        engine: &Engine,
-        loaded: &Loaded,
-        scene: &Scene,
-        measured: &Measured,
-        settings: &Settings,
-        view: ScreenView,
-        passes: &[PassTime],
-    ) -> Self {
-        let (mesh, topology) = (&loaded.mesh, &loaded.topology);
-        let (vertices_out, triangles_out) = scene.tessellator.totals();
-        let mut ms: BTreeMap<_, _> = passes.iter().map(|time| (time.pass, time.ms)).collect();
-        ms.extend([("load", loaded.load_ms), ("topology", loaded.topology_ms)]);
-        Self {
-            adapter: engine.gpu.info.name.clone(),
-            settings: SettingsStats::new(settings, scene.tessellator.surface_shader().is_some()),
-            triangles_in: mesh.triangles.len() as u64,
-            points: topology.points.len() as u64,
-            corners: mesh.corners.len() as u64,
-            edges: topology.edge_counts(),
-            degenerate: topology.degenerate,
-            normals_made: loaded.read.repairs.normals_made,
-            patches: topology.patches.len() as u64,
-            patches_culled: measured.culled.total(),
-            patches_out_of_view: measured.culled.out_of_view,
-            patches_facing_away: measured.culled.facing_away,
-            patches_below_factor_2: measured.patches_low,
-            triangles_out,
-            vertices_out,
-            bytes: Bytes {
-                input: (size_of_val(&mesh.corners[..]) + size_of_val(&mesh.triangles[..])) as u64,
-                topology: scene.tessellator.buffers().bytes() + scene.work_bytes(),
-                arena: scene.tessellator.arena_bytes(),
-            },
-            cracks: CrackStats::new(measured, topology, view),
-            seams: SeamStats::new(&measured.seams),
-            folds: measured.folds,
-            not_finite: measured.not_finite,
-            ms,
-            ..Self::default()
-        }
-    }
-}
-
 /// What was emitted beside what LOD by error would have emitted for the same largest error.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct LodComparison {
+struct LodComparison {
     /// The measured error, taken as LOD by error's tolerance, in px.
     tolerance_px: f32,
     /// What LOD by error emits.
@@ -305,49 +279,128 @@ pub struct LodComparison {
     times: Option<f64>,
 }
 
-impl Stats {
-    /// Takes how gates judged, of which one may compare with a tolerance that LOD doesn't use.
-    pub fn judged(&mut self, gates: Vec<Judgement>, tolerance: f32) {
-        let is_compared = gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance);
-        self.settings.tolerance = self.settings.tolerance.or(is_compared.then_some(tolerance));
-        self.gates = gates;
-    }
-
-    /// Compares with LOD by error, which emits so many triangles at this tolerance.
-    pub fn compared(&self, tolerance_px: f32, triangles: u64) -> LodComparison {
-        let times = (triangles > 0).then(|| self.triangles_out as f64 / triangles as f64);
-        LodComparison { tolerance_px, triangles, times }
+impl LodComparison {
+    /// Compares what the scene emits with what LOD by error would emit within this tolerance.
+    ///
+    /// # Errors
+    /// The device was lost.
+    fn new(engine: &Engine, scene: &mut Scene, inputs: &Inputs, tolerance_px: f32) -> Result<Option<Self>, GpuError> {
+        let (_, triangles_out) = scene.tessellator.totals();
+        let triangles = engine.triangles_by_error(scene, inputs, tolerance_px)?;
+        let times = |triangles| (triangles > 0).then(|| triangles_out as f64 / triangles as f64);
+        Ok(triangles.map(|triangles| Self { tolerance_px, triangles, times: times(triangles) }))
     }
 }
 
 /// The stats of another surface left of the split.
 #[derive(Debug, Serialize)]
-pub struct LeftStats {
+struct LeftStats {
     surface: &'static str,
     triangles_out: u64,
     vertices_out: u64,
     cracks: CrackStats,
     seams: SeamStats,
     folds: u64,
-    pub max_error_px: Option<f64>,
-    pub accuracy: Option<AccuracyStats>,
-    pub deviation: Option<DeviationStats>,
+    max_error_px: Option<f64>,
+    accuracy: Option<AccuracyStats>,
+    deviation: Option<DeviationStats>,
 }
 
-impl LeftStats {
-    /// The stats of a scene that is tessellated with these settings and seen from `view`.
-    pub fn new(scene: &Scene, measured: &Measured, settings: &Settings, view: ScreenView) -> Self {
+impl Shot {
+    /// The stats of the picture, which must have been drawn with stats wanted; none if nothing was measured. Draws it several
+    /// times more to time it.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub fn stats(&mut self) -> Result<Option<Stats>, ShotError> {
+        let view = self.view();
+        let (engine, target, scene) = (&self.engine, &self.target, &mut self.scene);
+        let (settings, camera, lod_view) = (&self.subject.settings, &self.view.camera, self.lod_view);
+        let Some(results) = &self.results[SplitSide::Right as usize] else { return Ok(None) };
+        let Some(measured) = &results.survey else { return Ok(None) };
+        // Only the right half is timed.
+        let alone = Settings { split_surface: None, ..*settings };
+        let passes = engine.time(scene, target, camera, lod_view, &alone, Runs::default())?;
+        let leaks = engine.leaks(scene, measured, target.size, camera)?;
+        let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
+        let lod_shader = LodShaderStats::new(engine, scene)?;
+        let surface_shader = SurfaceShaderStats::new(engine, scene)?;
+        let bytes = Bytes::new(&self.posed, scene);
         let (vertices_out, triangles_out) = scene.tessellator.totals();
-        Self {
+        let max_error_px = results.screen_error.map(|worst| worst.px);
+        let lod_comparison = match max_error_px.map(|px| px as f32).filter(|px| *px > 0.0) {
+            Some(px) => LodComparison::new(engine, scene, &settings.inputs(lod_view), px)?,
+            None => None,
+        };
+        let (scene, Loaded { mesh, topology, .. }) = (&self.scene, &self.posed);
+        let mirrored = camera.is_mirrored().then_some(self.view.size[0]);
+        Ok(Some(Stats {
+            // The name of the view, the reference picture and the factors file are known to those who draw.
+            view: None,
+            reference: None,
+            factors_file: None,
+            adapter: engine.gpu.info.name.clone(),
+            settings: SettingsStats::new(settings, scene.tessellator.surface_shader().is_some(), &self.judged),
+            triangles_in: mesh.triangles.len() as u64,
+            points: topology.points.len() as u64,
+            corners: mesh.corners.len() as u64,
+            edges: topology.edge_counts(),
+            degenerate: topology.degenerate,
+            normals_made: self.posed.read.repairs.normals_made,
+            patches: topology.patches.len() as u64,
+            patches_culled: measured.culled.total(),
+            patches_out_of_view: measured.culled.out_of_view,
+            patches_facing_away: measured.culled.facing_away,
+            patches_below_factor_2: measured.patches_low,
+            triangles_out,
+            triangles_in_view: results.sizes.map_or(0, |sizes| sizes.in_view),
+            triangles_below_3_px: results.sizes.map_or(0, |sizes| sizes.small),
+            vertices_out,
+            bytes,
+            cracks: CrackStats::new(measured, topology, view),
+            seams: SeamStats::new(&measured.seams),
+            leaks,
+            folds: measured.folds,
+            not_finite: measured.not_finite,
+            max_error_px,
+            patches_flat: results.flat_patches,
+            lod_comparison,
+            factors_capped,
+            lod_shader,
+            surface_shader,
+            accuracy: self.accuracy(SplitSide::Right),
+            deviation: self.deviation(SplitSide::Right),
+            silhouette: self.silhouette.as_ref().map(|silhouette| SilhouetteStats::new(silhouette, mirrored)),
+            left: self.left_stats(),
+            animation: self.subject.moment.zip(self.subject.loaded.mesh.rig.as_deref()).map(AnimationStats::new),
+            camera: Some(ViewStats::new(camera, self.view.size, &scene.bounds)),
+            gates: self.judged.clone(),
+            ms: milliseconds(&passes, &self.posed),
+        }))
+    }
+
+    /// The stats of another surface left of the split.
+    fn left_stats(&self) -> Option<LeftStats> {
+        let (scene, settings) = self.scene.half(SplitSide::Left).zip(self.subject.settings.half(SplitSide::Left))?;
+        let results = self.results(SplitSide::Left)?;
+        let measured = results.survey.as_ref()?;
+        let (vertices_out, triangles_out) = scene.tessellator.totals();
+        Some(LeftStats {
             surface: settings.tessellation.surface.name(),
             triangles_out,
             vertices_out,
-            cracks: CrackStats::new(measured, scene.tessellator.topology(), view),
+            cracks: CrackStats::new(measured, scene.tessellator.topology(), self.view()),
             seams: SeamStats::new(&measured.seams),
             folds: measured.folds,
-            max_error_px: None,
-            accuracy: None,
-            deviation: None,
-        }
+            max_error_px: results.screen_error.map(|worst| worst.px),
+            accuracy: self.accuracy(SplitSide::Left),
+            deviation: self.deviation(SplitSide::Left),
+        })
     }
+}
+
+/// The times of passes, of loading and of finding the topology.
+fn milliseconds(passes: &[PassTime], loaded: &Loaded) -> BTreeMap<&'static str, f64> {
+    let of_mesh = [("load", loaded.load_ms), ("topology", loaded.topology_ms)];
+    passes.iter().map(|time| (time.pass, time.ms)).chain(of_mesh).collect()
 }

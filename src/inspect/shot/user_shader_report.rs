@@ -100,7 +100,7 @@ fn edge_text(topology: &Topology, edge: &PointsDisagreement) -> String {
 
 /// How the factors of an LOD shader disagree, as JSON.
 #[derive(Debug, Serialize)]
-pub struct LodShaderStats {
+pub(super) struct LodShaderStats {
     edges_compared: u64,
     edges_different: u64,
     patches_culled: u64,
@@ -115,7 +115,7 @@ impl LodShaderStats {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn new(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
+    pub(super) fn new(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
         let topology = scene.tessellator.topology();
         Ok(agreement(engine, scene)?.map(|Agreement { edges_compared, patches_culled, edges, .. }| Self {
             edges_compared,
@@ -129,7 +129,7 @@ impl LodShaderStats {
 
 /// How the control points of a surface shader disagree, as JSON.
 #[derive(Debug, Serialize)]
-pub struct SurfaceShaderStats {
+pub(super) struct SurfaceShaderStats {
     edges_compared: u64,
     edges_different: u64,
     /// The largest distance between control points that should be the same, in object units.
@@ -154,7 +154,7 @@ impl SurfaceShaderStats {
     ///
     /// # Errors
     /// The device was lost.
-    pub fn new(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
+    pub(super) fn new(engine: &Engine, scene: &Scene) -> Result<Option<Self>, GpuError> {
         let topology = scene.tessellator.topology();
         let edge = |&PointsDisagreement { edge, distance, triangles }: &PointsDisagreement| EdgePointsStats {
             points: end_points(topology, edge),
