@@ -4,6 +4,7 @@
 
 // The choices of an export, which src/inspect/shader_files puts in place of these.
 const CHOSEN_SURFACE: u32 = SURFACE_PN_AEN;
+const CHOSEN_TEARING: u32 = TEARING_OFF;
 const CHOSEN_EDGES: u32 = EDGES_PER_EDGE;
 const CHOSEN_LOD: u32 = LOD_UNIFORM;
 const CHOSEN_PARTITIONING: u32 = PARTITIONING_FRACTIONAL_ODD;
@@ -11,6 +12,10 @@ const CHOSEN_CLIP: u32 = CLIP_OFF;
 const CHOSEN_CULLING: u32 = CULLING_OFF;
 const CHOSEN_CONVENTION: u32 = CONVENTION_D3D11;
 const CHOSEN_NORMALS: u32 = NORMALS_LINEAR;
+
+// Whether the sides of an edge have curves of their own, so that the surface tears where their normals differ.
+const TEARING_OFF: u32 = 0u;
+const TEARING_ON: u32 = 1u;
 
 // Whether patches that show only their backs are left out.
 const CULLING_OFF: u32 = 0u;
@@ -116,7 +121,7 @@ fn shared_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, one: SideNormals, other:
 
 // Returns the curve of a patch's side: shared with the side across the edge if the surface doesn't tear, else the patch's own.
 fn side_curve(alpha: f32, a: vec3<f32>, b: vec3<f32>, own: SideNormals, across: SideNormals, reversed: bool) -> CurveNet {
-    if CHOSEN_SURFACE == SURFACE_FLAT || CHOSEN_SURFACE == SURFACE_PN || CHOSEN_SURFACE == SURFACE_PHONG || CHOSEN_SURFACE == SURFACE_NAGATA {
+    if CHOSEN_SURFACE == SURFACE_FLAT || CHOSEN_TEARING == TEARING_ON {
         return unshared_curve(alpha, a, b, own);
     }
     // The side that runs along the edge first, so that both sides add up in the same order.
@@ -154,7 +159,7 @@ fn hull_side_factor(
     if CHOSEN_EDGES == EDGES_AS_PUBLISHED || CHOSEN_LOD == LOD_UNIFORM || CHOSEN_LOD == LOD_DISTANCE {
         return own;
     }
-    if CHOSEN_SURFACE == SURFACE_PN || CHOSEN_SURFACE == SURFACE_PHONG || CHOSEN_SURFACE == SURFACE_NAGATA {
+    if CHOSEN_TEARING == TEARING_ON {
         return max(own, edge_curve_factor(constants, a, unshared_curve(constants.alpha, a, b, across), b));
     }
     return own;

@@ -4,11 +4,15 @@ use std::path::PathBuf;
 
 use super::options::TessellationOptions;
 use super::{CliError, make_folder, options, refuse, write_text};
+use geometry::tessellate::Lod;
+use inspect::settings::Choice;
+use inspect::settings::options::LOD;
 use inspect::shader_files::{Language, shader_files};
 
+// LOD by error, which is usual elsewhere, can't be exported.
 #[derive(Debug, clap::Args)]
+#[command(mut_arg(LOD.name, |lod| lod.default_value(Lod::Uniform.name())))]
 pub struct Args {
-    // Comes before the language, which stands for uniform LOD: an argument is gone from what was given once it was read.
     #[command(flatten)]
     pub tessellation: TessellationOptions,
     /// Language of the shaders

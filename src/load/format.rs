@@ -4,23 +4,16 @@ use std::path::Path;
 
 use geometry::choice::choices;
 
-/// The extensions of files that can be read, in lower case, each with its format.
-pub const EXTENSIONS: [(&str, Format); 9] = [
-    ("gltf", Format::Gltf),
-    ("glb", Format::Gltf),
-    ("vrm", Format::Gltf),
-    ("fbx", Format::Fbx),
-    ("obj", Format::Obj),
-    ("stl", Format::Stl),
-    ("ply", Format::Ply),
-    ("off", Format::Off),
-    ("3mf", Format::ThreeMf),
-];
+/// The extensions of files that can be read, in lower case.
+pub fn extensions() -> Vec<&'static str> {
+    Format::ALL.iter().flat_map(|format| format.extensions()).copied().collect()
+}
 
 /// The extensions of files that can be read, for messages: ".gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf".
 pub fn known_extensions() -> String {
-    let [others @ .., last] = EXTENSIONS.map(|(extension, _)| format!(".{extension}"));
-    format!("{} or {last}", others.join(", "))
+    let mut all: Vec<_> = extensions().iter().map(|extension| format!(".{extension}")).collect();
+    let last = all.pop().unwrap_or_default();
+    format!("{} or {last}", all.join(", "))
 }
 
 /// The extension of a file's name, in lower case.
@@ -42,9 +35,22 @@ choices! {
 }
 
 impl Format {
+    /// The extensions of its files, in lower case.
+    pub const fn extensions(self) -> &'static [&'static str] {
+        match self {
+            Self::Gltf => &["gltf", "glb", "vrm"],
+            Self::Fbx => &["fbx"],
+            Self::Obj => &["obj"],
+            Self::Stl => &["stl"],
+            Self::Ply => &["ply"],
+            Self::Off => &["off"],
+            Self::ThreeMf => &["3mf"],
+        }
+    }
+
     /// Returns the format that a file's name says, by its extension.
     pub fn from_name(path: &Path) -> Option<Self> {
         let extension = extension_of(path)?;
-        EXTENSIONS.into_iter().find(|(known, _)| extension == *known).map(|(_, format)| format)
+        Self::ALL.into_iter().find(|format| format.extensions().contains(&&*extension))
     }
 }

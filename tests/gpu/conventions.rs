@@ -18,22 +18,27 @@ use crate::{engine, loaded, scene};
 const CONSISTENT: [Convention; 3] = [Convention::D3d11, Convention::AmdPn, Convention::EdgeOrder];
 const MISTAKES: [Convention; 2] = [Convention::Rotated, Convention::Mirrored];
 
-/// Adaptive, in every form; factors differ from edge to edge.
-fn adaptive() -> [Settings; 4] {
-    let paper = Settings::from(Tessellation { lod: Lod::Paper, pixels: 14.0, ..Tessellation::default() });
-    [
-        paper,
-        paper.with(Tessellation { lod: Lod::Error, tolerance: 0.3, ..paper.tessellation }),
-        paper.with(Tessellation {
-            lod: Lod::Distance,
-            near: 3.0,
-            far: 4.5,
-            factor: 12.0,
-            surface: Surface::Pn,
-            ..paper.tessellation
-        }),
-        paper.with(Tessellation { edges: Edges::AsPublished, ..paper.tessellation }),
-    ]
+/// Settings with a LOD, under which factors differ from edge to edge unless it is uniform.
+fn by(lod: Lod) -> Settings {
+    let own = Tessellation { lod, ..Tessellation::default() };
+    Settings::from(match lod {
+        Lod::Uniform => Tessellation { factor: 5.3, ..own },
+        Lod::Error => Tessellation { tolerance: 0.3, ..own },
+        Lod::EdgeLength | Lod::Paper => Tessellation { pixels: 14.0, ..own },
+        Lod::Distance => Tessellation { near: 3.0, far: 4.5, factor: 12.0, surface: Surface::Pn, ..own },
+    })
+}
+
+/// The LODs under which factors differ from edge to edge.
+fn adaptive_lods() -> impl Iterator<Item = Lod> {
+    Lod::ALL.into_iter().filter(|lod| lod.follows_view())
+}
+
+/// Adaptive, in every form.
+fn adaptive() -> impl Iterator<Item = Settings> {
+    let paper = by(Lod::Paper);
+    let as_published = paper.with(Tessellation { edges: Edges::AsPublished, ..paper.tessellation });
+    adaptive_lods().map(by).chain([as_published])
 }
 
 fn on_cpu(loaded: &Loaded, inputs: &Inputs) -> (Tessellated, Measured) {
@@ -78,9 +83,7 @@ fn assert_one_mesh(loaded: &Loaded, settings: Settings, mut run: impl FnMut(&Inp
 fn consistent_conventions_give_the_same_outlines_on_both_devices() {
     for shape in [Shape::Torus, Shape::CubeSplit, Shape::Moebius, Shape::Cone] {
         let (loaded, mut scene) = scene(shape);
-        for settings in
-            adaptive().into_iter().chain([Settings::from(Tessellation { factor: 5.3, ..Tessellation::default() })])
-        {
+        for settings in adaptive().chain([by(Lod::Uniform)]) {
             for partitioning in Partitioning::ALL {
                 let settings = settings.with(Tessellation { partitioning, ..settings.tessellation });
                 assert_one_mesh(&loaded, settings, |inputs| on_device(&mut scene, inputs));
@@ -96,14 +99,13 @@ fn mistakes_crack_as_soon_as_factors_differ() {
         let (loaded, mut scene) = scene(shape);
         for convention in MISTAKES {
             for partitioning in Partitioning::DIRECT3D {
-                for lod in [Lod::Paper, Lod::EdgeLength, Lod::Error] {
-                    let settings = adaptive()[0].with(Tessellation {
+                for settings in adaptive_lods().map(by) {
+                    let settings = settings.with(Tessellation {
                         convention,
                         partitioning,
-                        lod,
                         pixels: 5.0,
                         tolerance: 0.05,
-                        ..adaptive()[0].tessellation
+                        ..settings.tessellation
                     });
                     let inputs = inputs(&loaded, &settings);
                     for cracks in [on_device(&mut scene, &inputs).1.cracks, on_cpu(&loaded, &inputs).1.cracks] {
@@ -131,15 +133,15 @@ fn both_devices_agree_under_every_convention() {
         let (loaded, mut scene) = scene(shape);
         for convention in Convention::ALL {
             for partitioning in Partitioning::ALL {
-                for lod in [Lod::Paper, Lod::EdgeLength] {
+                // The bounds of LOD by error may fall on either of two levels.
+                for settings in adaptive_lods().filter(|lod| !lod.is_by_error()).map(by) {
                     for edges in [Edges::PerEdge, Edges::AsPublished] {
-                        let settings = adaptive()[0].with(Tessellation {
+                        let settings = settings.with(Tessellation {
                             convention,
                             partitioning,
-                            lod,
                             edges,
                             clip: Clip::Frustum,
-                            ..adaptive()[0].tessellation
+                            ..settings.tessellation
                         });
                         let inputs = inputs(&loaded, &settings);
                         let gpu = on_gpu(&mut scene, &inputs);
@@ -264,8 +266,9 @@ fn a_side_is_cut_by_the_factor_that_the_convention_puts_there() {
 #[test]
 fn lod_by_error_asks_for_the_same_inside_under_consistent_conventions() {
     let (loaded, mut scene) = scene(Shape::Moebius);
+    let by_error = by(Lod::Error);
     let insides = CONSISTENT.map(|convention| {
-        let inputs = inputs(&loaded, &adaptive()[1].with(Tessellation { convention, ..adaptive()[1].tessellation }));
+        let inputs = inputs(&loaded, &by_error.with(Tessellation { convention, ..by_error.tessellation }));
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
         let written = scene.tessellator.hull_factors().expect("a readback");
         written.iter().map(|patch| patch.inside).collect::<Vec<_>>()

@@ -14,11 +14,10 @@ use crate::engine;
 use crate::exported::{assert_part_of_page, vulkan};
 use crate::exported_displaced::{Passes, assert_all_agree, assert_displaced_agrees, assert_near, shifted};
 use crate::vulkan::agreement::{Agreement, shared_points};
-use crate::vulkan::exported::{DISPLACEMENTS, LANGUAGES, Subject, VIEWPORT, rows_by_view, table_by_view, wavy};
+use crate::vulkan::exported::{
+    DISPLACEMENTS, LANGUAGES, Subject, VIEWPORT, lods_by_view, rows_by_view, table_by_view, wavy,
+};
 use crate::vulkan::stages::CapturedCorner;
-
-/// The LODs that depend on the view.
-const BY_VIEW: [Lod; 3] = [Lod::Distance, Lod::EdgeLength, Lod::Paper];
 
 /// A tessellation whose edges have factors of about 2 to 6, so that neighbours read clearly different levels.
 fn usual(lod: Lod) -> Tessellation {
@@ -43,9 +42,9 @@ fn every_surface_displaced_by_the_view_agrees_and_the_page_says_so() {
         let what = format!("{:?} {:?} {:?}", row.lod, row.displacement, row.language);
         assert_agrees(&row.agreement, row.displacement != Displacement::On, &what);
     }
-    assert_eq!(rows.len(), 3 * 3 * 2);
+    assert_eq!(rows.len(), lods_by_view().count() * DISPLACEMENTS.len() * LANGUAGES.len());
     assert_part_of_page("docs/results/shaders.md", "table of agreement by the view", &table_by_view(&rows));
-    for (surface, lod) in Surface::ALL.into_iter().zip(BY_VIEW.into_iter().cycle()) {
+    for (surface, lod) in Surface::ALL.into_iter().zip(lods_by_view().cycle()) {
         for language in LANGUAGES {
             let own = Tessellation { surface, ..usual(lod) };
             let agreement = subject.agreement(language, &own, &|weights| weights).expect("shaders that run");
@@ -65,15 +64,16 @@ fn assert_agrees(own: &Agreement, tears: bool, what: &str) {
 #[test]
 fn partitionings_conventions_normals_and_edges_agree_by_the_view_too() {
     let partitionings = [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalEven];
-    let mut tried: Vec<_> = BY_VIEW
-        .into_iter()
+    let mut tried: Vec<_> = lods_by_view()
+        .cycle()
         .zip(partitionings)
         .map(|(lod, partitioning)| Tessellation { partitioning, ..usual(lod) })
         .collect();
-    for (lod, convention) in BY_VIEW.into_iter().zip([Convention::AmdPn, Convention::EdgeOrder, Convention::Rotated]) {
+    for (lod, convention) in lods_by_view().cycle().zip([Convention::AmdPn, Convention::EdgeOrder, Convention::Rotated])
+    {
         tried.push(Tessellation { convention, ..usual(lod) });
     }
-    for (lod, normals) in BY_VIEW.into_iter().zip([Normals::Quadratic, Normals::Surface]) {
+    for (lod, normals) in lods_by_view().cycle().zip([Normals::Quadratic, Normals::Surface]) {
         tried.push(Tessellation { normals, ..usual(lod) });
     }
     tried.push(Tessellation { edges: Edges::AsPublished, ..usual(Lod::Distance) });
@@ -92,7 +92,7 @@ fn changed(own: &Tessellation, name: &str, piece: &str, other: &str) -> Vec<Shad
 #[test]
 fn levels_of_a_patchs_own_edges_would_tear() {
     let mut subject = Subject::new(engine(), &vulkan(), wavy(Shape::CubeSplit.build())).expect("a small mesh");
-    for lod in BY_VIEW {
+    for lod in lods_by_view() {
         // A corner's sides are the one that begins there and the one before.
         let own_edges = "relief.corner_levels = min(side_levels, side_levels.zxy);";
         let files = changed(&usual(lod), "patch.tese", "relief.corner_levels = corner_levels;", own_edges);
@@ -118,7 +118,8 @@ fn patches_that_clipping_leaves_out_count_at_points() {
     let mut subject = Subject::new(engine(), &vulkan(), mesh).expect("a small mesh");
     subject.view = view;
     let weights = |weights| weights;
-    for (lod, clip) in BY_VIEW.into_iter().zip([Clip::Frustum, Clip::Paper, Clip::Frustum]) {
+    let by_frustum = lods_by_view().map(|lod| (lod, Clip::Frustum));
+    for (lod, clip) in by_frustum.chain([(Lod::EdgeLength, Clip::Paper)]) {
         let whole = Tessellation { partitioning, ..usual(lod) };
         let own = Tessellation { clip, ..whole };
         let all = subject.agreement(Language::Glsl, &whole, &weights).expect("shaders that run");
@@ -199,10 +200,10 @@ fn exported_compute_passes_displace_by_the_view_as_the_cpu_does() {
     let view = Camera::framing(&mesh.bounds(), VIEWPORT).lod_view(VIEWPORT, &mesh.bounds());
     // Subtriangulation has a factor for the whole mesh.
     let partitionings = Partitioning::ALL.into_iter().filter(|own| *own != Partitioning::Subtriangulation);
-    for (turn, partitioning) in partitionings.enumerate() {
+    for ((turn, partitioning), lod) in partitionings.enumerate().zip(lods_by_view().cycle()) {
         let displacement = DISPLACEMENTS[turn % 3];
         let normals = [Normals::Linear, Normals::Surface][turn % 2];
-        let own = Tessellation { partitioning, normals, ..usual(BY_VIEW[turn % 3]) };
+        let own = Tessellation { partitioning, normals, ..usual(lod) };
         assert_passes_agree(&mesh, &own, view);
         assert_passes_agree(&mesh, &Tessellation { displacement, ..own }, view);
     }
@@ -212,7 +213,7 @@ fn exported_compute_passes_displace_by_the_view_as_the_cpu_does() {
 fn patches_that_clipping_leaves_out_count_in_compute_passes() {
     let mesh = shifted(Shape::Torus, 0.37);
     let view = partly_seen(&mesh);
-    for lod in BY_VIEW {
+    for lod in lods_by_view() {
         let whole = Tessellation { partitioning: Partitioning::Integer, ..usual(lod) };
         let all = assert_passes_agree(&mesh, &whole, view);
         let seen = assert_passes_agree(&mesh, &Tessellation { clip: Clip::Frustum, ..whole }, view);

@@ -232,9 +232,9 @@ fn is_nagata(settings: &Settings) -> bool {
 
 pub(super) fn any_trial() -> impl Strategy<Value = Trial> {
     let scale = prop::sample::select(vec![1e-36, 1e-6, 1.0, 1.0, 1e6, 9e36]);
-    let lod = prop::sample::select(vec![Lod::Uniform, Lod::Paper, Lod::EdgeLength, Lod::Error, Lod::Distance]);
-    let clip = prop::sample::select(vec![Clip::Off, Clip::Paper, Clip::Frustum]);
-    let normals = prop::sample::select(vec![Normals::Linear, Normals::Quadratic, Normals::Surface]);
+    let lod = prop::sample::select(Lod::ALL.to_vec());
+    let clip = prop::sample::select(Clip::ALL.to_vec());
+    let normals = prop::sample::select(Normals::ALL.to_vec());
     // Segments of 2 px take hundreds to an edge, more than there are.
     let rest = (clip, normals, 0f32..=1.0);
     let settings =

@@ -41,7 +41,12 @@ pub(crate) const VIEWPORT: Vec2 = Vec2::new(640.0, 480.0);
 
 /// The LODs that can be exported: all but that by error, which searches.
 fn lods() -> impl Iterator<Item = Lod> {
-    Lod::ALL.into_iter().filter(|lod| *lod != Lod::Error)
+    Lod::ALL.into_iter().filter(|lod| !lod.is_by_error())
+}
+
+/// Those of them that depend on the view.
+pub(crate) fn lods_by_view() -> impl Iterator<Item = Lod> + Clone {
+    Lod::ALL.into_iter().filter(|lod| lod.follows_view() && !lod.is_by_error())
 }
 
 /// The languages that run on tessellation stages.
@@ -254,8 +259,7 @@ pub(crate) fn displaced_rows(subject: &mut Subject) -> Result<Vec<Row>, Exported
 /// # Errors
 /// A shader doesn't compile, or the device was lost.
 pub(crate) fn rows_by_view(subject: &mut Subject) -> Result<Vec<Row>, ExportedError> {
-    let by_view = lods().filter(|lod| *lod != Lod::Uniform);
-    let kinds = by_view.flat_map(|lod| DISPLACEMENTS.map(|displacement| (lod, displacement)));
+    let kinds = lods_by_view().flat_map(|lod| DISPLACEMENTS.map(|displacement| (lod, displacement)));
     compared(subject, &[Surface::PnAen], &kinds.collect::<Vec<_>>())
 }
 

@@ -317,7 +317,7 @@ fn a_patch_says_why_it_has_its_factors() {
         assert!(has[0] >= least && (has[1] - has[0] / least).abs() < 0.01, "{least} {has:?}");
         assert!(row(&harness, "Pattern: ").ends_with(&format!(" {} triangles", has[0])));
     }
-    assert!(decided.iter().any(|by| by == "curve") || decided.iter().any(|by| by == "own"), "{decided:?}");
+    assert!(decided.iter().any(|by| by == "curve") || decided.iter().any(|by| by == "this"), "{decided:?}");
     assert!(decided.len() >= 6, "{decided:?}");
     // Under another LOD the same patch is compared with the same tolerance.
     let least = row(&harness, "minimum");

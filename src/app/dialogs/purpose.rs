@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::commands::{CompanionFile, Purpose, Written};
 use load::Source;
 use load::environment_file::ENVIRONMENT_EXTENSIONS;
-use load::format::{EXTENSIONS, known_extensions};
+use load::format::{extensions, known_extensions};
 
 /// A kind of file: its name, and how names of such files end.
 type Kind = (&'static str, Vec<&'static str>);
@@ -76,7 +76,7 @@ pub(super) fn kinds(purpose: Purpose) -> Vec<Kind> {
     match purpose {
         // A mesh is told by its content, so it may have any name.
         Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape) => {
-            vec![("Meshes", EXTENSIONS.map(|(extension, _)| extension).to_vec()), ("All files", vec!["*"])]
+            vec![("Meshes", extensions()), ("All files", vec!["*"])]
         }
         Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => {
             vec![("Images", vec!["png", "jpg", "jpeg", "webp"])]

@@ -39,17 +39,20 @@ impl ShownExplanation<'_> {
     }
 
     fn header(&self, ui: &mut Ui) {
-        let px = "Px: an upper bound of how far the triangles in the row along the edge, or along no edge, are from the surface on \
-                  screen.";
+        let error = "Error: an upper bound, in px on screen, of how far the triangles in the row along the edge, or along no edge, are \
+                     from the surface.";
         let (text, hover) = if self.by_error {
-            let asked = "Own: the factor that this patch asks the edge for. Others: the largest that a patch across the edge asks \
-                         for. Got: the largest of both. By: whose request that was; \u{201c}curve\u{201d} if nobody asked for more \
-                         than the edge's curve, or the heights on it, need by themselves.";
-            (row("edge", "own", "others", "got", "by", "px"), format!("{asked} {px}"))
+            let asked = "This asks: the factor that this patch asks the edge for. Others ask: the largest that a patch across the edge \
+                         asks for. Gets: the largest of both. From: whose request that was; \u{201c}curve\u{201d} if nobody asked \
+                         for more than the edge's curve, or the heights on it, need by themselves.";
+            (
+                HEADINGS.map(|[edge, own, others, got, from, px]| row(edge, own, others, got, from, px)),
+                format!("{asked} {error}"),
+            )
         } else {
-            (row("edge", "", "", "", "", "px"), px.to_owned())
+            (HEADINGS.map(|[edge, .., px]| row(edge, "", "", "", "", px)), error.to_owned())
         };
-        ui.label(dense(text).weak()).on_hover_text(hover);
+        ui.label(dense(text.join("\n")).weak()).on_hover_text(hover);
     }
 
     fn edge_row(&self, ui: &mut Ui, k: usize) {
@@ -125,7 +128,7 @@ impl ShownExplanation<'_> {
         };
         let px = errors.map(|errors| errors.inside);
         let seen = px.map_or_else(|| UNKNOWN.to_owned(), px_text);
-        self.label(ui, &format!("{name:<15}{cut:>5} {:<6}{seen:>7}", ""), px).on_hover_text(hover);
+        self.label(ui, &format!("{name:<16}{cut:>5} {:<6}{seen:>6}", ""), px).on_hover_text(hover);
     }
 
     fn tolerance_row(&self, ui: &mut Ui) {
@@ -137,7 +140,7 @@ impl ShownExplanation<'_> {
         if !self.by_error {
             hover += " The LOD that is used doesn't keep it.";
         }
-        ui.label(dense(format!("{:<27}{tolerance:>7}", "tolerance"))).on_hover_text(hover);
+        ui.label(dense(format!("{:<28}{tolerance:>6}", "tolerance"))).on_hover_text(hover);
     }
 
     fn least_rows(&self, ui: &mut Ui) {
@@ -178,16 +181,20 @@ const UNKNOWN: &str = "…";
 /// How many patches across an edge are listed.
 const LISTED: usize = 8;
 
-/// The columns of a row: the edge, what the patch and others ask for, what the edge got by whom, and px.
-fn row(edge: &str, own: &str, others: &str, got: &str, by: &str, px: &str) -> String {
-    format!("{edge:<4}{own:>4}{others:>7}{got:>5} {by:<6}{px:>7}")
+/// The headings of the columns, on two lines.
+const HEADINGS: [[&str; 6]; 2] =
+    [["", "this", "others", "", "", "error"], ["edge", "asks", "ask", "gets", "from", "px"]];
+
+/// The columns of a row: the edge, what this patch and others ask for, what the edge gets from whom, and px.
+fn row(edge: &str, own: &str, others: &str, got: &str, from: &str, px: &str) -> String {
+    format!("{edge:<4}{own:>5}{others:>7}{got:>5} {from:<6}{px:>6}")
 }
 
 fn by_text(edge: &ExplainedEdge) -> &'static str {
     match edge.decided_by() {
         DecidedBy::Curve => "curve",
-        DecidedBy::Own => "own",
-        DecidedBy::Other => "other",
+        DecidedBy::Own => "this",
+        DecidedBy::Other => "others",
         DecidedBy::Both => "both",
         DecidedBy::Again => "again",
         DecidedBy::All => "all",
@@ -216,8 +223,8 @@ mod tests {
     fn numbers_fit_their_columns() {
         assert_eq!([0.0, 0.4871, 12.34, 4321.0, f32::INFINITY].map(px_text), ["0.000", "0.487", "12.3", "4e3", "∞"]);
         assert_eq!([1.0, 64.0, 127.5].map(factor_text), ["1", "64", ">max"]);
-        let rows =
-            [row("edge", "own", "others", "got", "by", "px"), row("0-1", ">max", ">max", ">max", "curve", "0.487")];
+        let headings = HEADINGS.map(|[edge, own, others, got, from, px]| row(edge, own, others, got, from, px));
+        let rows = [&headings[..], &[row("0-1", ">max", ">max", ">max", "others", "0.487")]].concat();
         assert!(rows.iter().all(|row| row.chars().count() == 34), "{rows:?}");
     }
 }

@@ -51,9 +51,8 @@ impl Default for GivenTessellation {
 
 const WITHOUT_DISPLACEMENT: &str =
     "By default on with --height, else off. Without --height, the materials' images are the height map";
-/// Arguments that say factors, or that leave no room for LOD by error: a factor, a file or a shader of factors, and the language of
-/// written shaders.
-const WITHOUT_LOD: [&str; 4] = ["factor", "given", "lod_shader", "language"];
+/// Arguments that say factors: a factor, and a file or a shader of factors.
+const WITHOUT_LOD: [&str; 3] = ["factor", "given", "lod_shader"];
 const USUAL_LOD: &str = "With --factor it is uniform, unless this option says otherwise";
 const USUAL_PARTITIONING: &str = "By default rows under LOD by error, else fractional-odd";
 

@@ -114,7 +114,7 @@ fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderEr
 }
 
 /// Returns the constants that a tessellation decides, each with the name of its value, as the shaders have them.
-fn choices_of(own: &Tessellation) -> [(&'static str, String); 10] {
+fn choices_of(own: &Tessellation) -> [(&'static str, String); 11] {
     fn constant(kind: &str, value: impl Choice) -> String {
         format!("{kind}_{}", value.name()).to_uppercase().replace('-', "_")
     }
@@ -123,6 +123,7 @@ fn choices_of(own: &Tessellation) -> [(&'static str, String); 10] {
     let culling = if own.cull_back_faces && !is_displaced { "CULLING_ON" } else { "CULLING_OFF" };
     [
         ("CHOSEN_SURFACE", constant("surface", own.surface)),
+        ("CHOSEN_TEARING", if own.surface.tears() { "TEARING_ON" } else { "TEARING_OFF" }.to_owned()),
         ("CHOSEN_EDGES", constant("edges", own.edges)),
         ("CHOSEN_LOD", constant("lod", own.used_lod())),
         ("CHOSEN_PARTITIONING", constant("partitioning", own.partitioning)),

@@ -41,6 +41,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (
         &[
             "CHOSEN_SURFACE",
+            "CHOSEN_TEARING",
             "CHOSEN_EDGES",
             "CHOSEN_LOD",
             "CHOSEN_PARTITIONING",
@@ -52,6 +53,8 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
             "PATCH_INDICES",
             "CULLING_OFF",
             "CULLING_ON",
+            "TEARING_OFF",
+            "TEARING_ON",
             "EXPORTED_WORKGROUP",
             "SCAN_WORKGROUP",
         ],

@@ -214,11 +214,15 @@ fn unused_options_have_no_effect() {
         "split-surface",
     ];
     let with = |own: &[&'static str]| -> Vec<_> { own.iter().copied().chain(elsewhere).collect() };
-    assert_eq!(idle(&lod(Lod::Uniform)), with(&["alpha", "pixels", "tolerance", "distances"]));
-    assert_eq!(idle(&lod(Lod::Distance)), with(&["alpha", "pixels", "tolerance"]));
-    assert_eq!(idle(&lod(Lod::Paper)), with(&["alpha", "factor", "tolerance", "distances"]));
-    assert_eq!(idle(&lod(Lod::EdgeLength)), with(&["alpha", "factor", "tolerance", "distances"]));
-    assert_eq!(idle(&lod(Lod::Error)), with(&["alpha", "factor", "pixels", "distances"]));
+    for value in Lod::ALL {
+        let own: &[_] = match value {
+            Lod::Uniform => &["alpha", "pixels", "tolerance", "distances"],
+            Lod::Distance => &["alpha", "pixels", "tolerance"],
+            Lod::Paper | Lod::EdgeLength => &["alpha", "factor", "tolerance", "distances"],
+            Lod::Error => &["alpha", "factor", "pixels", "distances"],
+        };
+        assert_eq!(idle(&lod(value)), with(own), "{value:?}");
+    }
     let mut excess = lod(Lod::Paper);
     excess.overlays.colors = Colors::Excess;
     let mut expected = with(&["alpha", "factor", "distances"]);
