@@ -13,7 +13,6 @@ use geometry::mesh::{EdgeCounts, NormalFaults, Repairs, TJunction, Topology, Wel
 use geometry::names::{on_one_line, shown};
 use geometry::numbers::exact;
 use geometry::progress::{Cancelled, Progress};
-use geometry::view::ulp_at;
 use inspect::engine::Loaded;
 use load::parts::Part;
 
@@ -114,7 +113,7 @@ impl Info {
             weld,
             crease_band: loaded.crease_band,
             degenerate: topology.degenerate,
-            collinear: collinear(topology),
+            collinear: (0..topology.patches.len() as u32).filter(|patch| topology.is_in_line(*patch)).count() as u32,
             corners: mesh.corners.len() as u32,
             points: topology.points.len() as u32,
             materials: mesh.materials.iter().map(MaterialInfo::new).collect(),
@@ -259,18 +258,6 @@ fn animations(rig: &Rig) -> Vec<AnimationInfo> {
         moved: rig.animated_counts(clip),
     };
     rig.clips.iter().map(animation).collect()
-}
-
-/// The number of patches whose three corners lie in line, to within a unit in the last place of their largest coordinate.
-fn collinear(topology: &Topology) -> u32 {
-    let is_in_line = |patch: &u32| {
-        let corners = topology.patch_positions(*patch);
-        let unit = ulp_at(corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f32::max));
-        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
-        let longest = [a.distance(b), b.distance(c), c.distance(a)].into_iter().fold(0.0, f64::max);
-        (b - a).cross(c - a).length() <= unit * longest
-    };
-    (0..topology.patches.len() as u32).filter(is_in_line).count() as u32
 }
 
 /// Points in use - edges + patches: 2 for a sphere, 0 for a torus.

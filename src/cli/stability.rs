@@ -125,6 +125,7 @@ impl Args {
         let junctions = t_junctions(&topology, &Progress::new())?;
         let leaks = Leaks::uncounted(&topology).unwrap_or(Leaks::InNoView);
         let facts = Facts {
+            mesh: Some((&subject.mesh, &topology)),
             junctions: Some(&junctions),
             warnings: Some(warnings),
             leaks: Some(&leaks),

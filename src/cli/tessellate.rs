@@ -215,6 +215,7 @@ impl Ready<'_> {
             warnings: Some(&self.mesh.posed.warnings),
             emitted: Some((out.vertices.len() as u64, out.triangles.len() as u64)),
             measured: measured.as_ref(),
+            mesh: Some((&self.mesh.loaded.mesh, &self.mesh.loaded.topology)),
             junctions: junctions.as_deref(),
             above: above.as_ref(),
             ..Facts::from_mesh(topology)

@@ -79,6 +79,9 @@ pub fn split<T>(mut list: &mut [T], lengths: impl Iterator<Item = usize>) -> Vec
 /// # Errors
 /// The system can't start another thread.
 pub fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> Result<R, ThreadPoolBuildError> {
+    if threads == rayon::current_num_threads() {
+        return Ok(work());
+    }
     Ok(ThreadPoolBuilder::new().num_threads(threads).build()?.install(work))
 }
 

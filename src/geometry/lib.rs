@@ -5,6 +5,7 @@ pub mod choice;
 pub mod cores;
 pub mod mesh;
 pub mod names;
+pub mod near;
 pub mod numbers;
 pub mod progress;
 pub mod tessellate;

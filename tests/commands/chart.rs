@@ -133,7 +133,7 @@ fn an_interrupt_keeps_what_is_done() {
     assert!(table.ends_with('\n'));
     let mut reader = csv::Reader::from_reader(table.as_bytes());
     let rows = reader.records().map(|record| record.expect("a whole row").len()).collect::<Vec<_>>();
-    assert!((2..4000).contains(&rows.len()) && rows.iter().all(|fields| *fields == 18), "{}", rows.len());
+    assert!((2..4000).contains(&rows.len()) && rows.iter().all(|fields| *fields == 19), "{}", rows.len());
     assert!(std::fs::read_to_string(&svg).expect("a picture of what was done").contains("</svg>"));
     let said = std::io::read_to_string(child.stderr.take().expect("piped")).expect("UTF-8");
     assert!(said.contains(&format!("interrupted after {} of 4000 settings", rows.len())), "{said}");

@@ -2,6 +2,7 @@
 
 use super::measure_job::MeasureError;
 use super::walk::{Parts, Walk};
+use geometry::near::Interval;
 use geometry::tessellate::{PosedMesh, Surface};
 use gpu::{Gpu, GpuError};
 use inspect::measure::{DeviationField, DeviationMeasurement, DeviationTarget, WorstPoint};
@@ -32,19 +33,14 @@ pub(crate) struct DeviationBasis {
 #[derive(Clone, Copy)]
 pub(crate) struct DeviationResult {
     of: DeviationBasis,
-    /// None if nothing was emitted.
+    /// The largest distance, in object units; 0 if nothing was emitted.
+    pub largest: Interval,
+    /// Where its lower end is; none if nothing was emitted.
     pub worst: Option<WorstPoint>,
     /// Object units.
     pub rms: f64,
     /// Triangles without a colour, because there were too many.
     pub left_out: u64,
-}
-
-impl DeviationResult {
-    /// Object units; 0 if nothing was emitted.
-    pub(crate) fn largest(&self) -> f64 {
-        self.worst.map_or(0.0, |worst| worst.value)
-    }
 }
 
 impl DeviationJob {
@@ -106,11 +102,12 @@ impl DeviationJob {
         match walk.go_on(gpu, scene)? {
             Some(Ok(Some(field))) => {
                 self.walk = None;
-                let scale = deviation_scale(field.worst().map_or(0.0, |worst| worst.value), scene.ulp());
+                let largest = field.largest();
+                let scale = deviation_scale(largest.at_least, scene.ulp());
                 scene.set_deviation(gpu, Some((&field, scale)));
                 self.generation += 1;
                 let (worst, rms, left_out) = (field.worst(), field.rms(), field.left_out);
-                self.found = Some(DeviationResult { of, worst, rms, left_out });
+                self.found = Some(DeviationResult { of, largest, worst, rms, left_out });
             }
             Some(Ok(None)) => self.do_without(gpu, scene),
             Some(Err(stopped)) => {

@@ -10,6 +10,7 @@ use crate::app::painting::panel_frame;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{dense, list, switch_button, text_width, unclicked};
 use crate::commands::{Purpose, Written};
+use geometry::near::Interval;
 use geometry::tessellate::Surface;
 use inspect::settings::Choice;
 use lab::chart::{Cost, LodKind, MethodStyle, Plan, Probe, Setting, dash, method_styles};
@@ -216,8 +217,10 @@ fn named(setting: &Setting) -> String {
 fn facts(charted: &Charted, probe: &Probe) -> String {
     let mut lines = Vec::new();
     if let (Some(errors), Some(diagonal)) = (probe.errors, charted.diagonal) {
-        let (part, units) = (short(100.0 * errors.largest), short(errors.largest * diagonal));
-        lines.push(format!("largest error {part} % of the diagonal, {units} units"));
+        let Interval { at_least, at_most } = errors.largest;
+        let [least, most] = [at_least, at_most].map(|part| short(100.0 * part));
+        let units = [at_least, at_most].map(|part| short(part * diagonal)).join(" to ");
+        lines.push(format!("largest error {least} to {most} % of the diagonal, {units} units"));
     }
     if let Some(px) = probe.max_error_px {
         lines.push(format!("{} px on screen", short(px)));

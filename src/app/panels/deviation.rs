@@ -90,8 +90,10 @@ impl App {
     fn deviation_scale(&self) -> Option<Scale> {
         let scene = &self.document.as_ref()?.scene;
         let shown = SplitSide::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
-        let largest =
-            shown.filter_map(|half| self.deviating(half)?.found()).map(DeviationResult::largest).reduce(f64::max)?;
+        let largest = shown
+            .filter_map(|half| self.deviating(half)?.found())
+            .map(|found| found.largest.at_least)
+            .reduce(f64::max)?;
         Some(deviation_scale(largest, scene.ulp()))
     }
 
@@ -137,7 +139,7 @@ impl App {
             return None;
         }
         let (number, unit) = match self.settings.deviation_in {
-            DeviationUnit::Units => (self.known_deviation(half).map(DeviationResult::largest), "units"),
+            DeviationUnit::Units => (self.known_deviation(half).map(|found| found.largest.at_least), "units"),
             DeviationUnit::Px => (self.deviation_px(half), "px"),
         };
         Some(format!("{} {unit}", number.map_or_else(|| "…".into(), short)))
@@ -193,8 +195,14 @@ impl App {
     fn deviation_rows(&self, ui: &mut egui::Ui, half: SplitSide, place: &str) -> bool {
         let found = self.known_deviation(half);
         let text = |number: Option<f64>, unit| format!("{} {unit}", number.map_or_else(|| "…".into(), short));
-        let hover = "The largest distance between the emitted triangles and the reference surface, in object units.";
-        fact(ui, "Largest", &text(found.map(DeviationResult::largest), "units"), hover);
+        let hover = "The largest distance that was found between the emitted triangles and the reference surface, in object units.";
+        fact(ui, "Largest", &text(found.map(|found| found.largest.at_least), "units"), hover);
+        let hover = "No emitted point is farther from the reference surface, for certain. Distances to a limit surface are \
+                     sampled, so that none is known.";
+        match found.map(|found| found.largest.at_most) {
+            Some(unknown) if unknown.is_infinite() => fact(ui, "At most", "unknown", hover),
+            at_most => fact(ui, "At most", &text(at_most, "units"), hover),
+        }
         let hover =
             "The distance on screen between the worst point and the nearest point of the reference surface, in px.";
         fact(ui, "", &text(self.deviation_px(half), "px"), hover);

@@ -9,7 +9,7 @@ use crate::cli::gate_options::write_evidence_of;
 use geometry::mesh::Topology;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded as LoadedMesh};
-use inspect::gates::Gate;
+use inspect::gates::{Gate, Limit};
 use inspect::settings::ARENA_BYTES;
 use inspect::shot::{Shot, ShotView, Subject as ShotSubject};
 use lab::stability::{Failure, Subject, Tried, viewport};
@@ -24,7 +24,7 @@ pub(super) fn write(folder: &Path, engine: &Engine, all: &[Loaded], failed: &[Fa
         let tried = failure.tried.unwrap_or_else(|| Tried::from_mesh(&own.subject));
         let mut shot = shot(engine, own, tried)?;
         // The sentence has the numbers of the run; here only the place counts, which is the worst for any limit.
-        let gate = Gate { kind: failure.kind, limit: 0 };
+        let gate = Gate { kind: failure.kind, limit: Limit::Count(0) };
         let tolerance = tried.settings.tessellation.tolerance;
         for judgement in shot.judge(&[gate], tolerance, &Progress::new())? {
             write_evidence_of(&mut shot, &judgement, folder, file_name(&own.subject.name).as_ref())?;

@@ -17,6 +17,7 @@ use super::weld::{WELD_BYTES, weld_alike};
 use super::{Corner, Mesh};
 use crate::casts::to_u32;
 use crate::progress::{Cancelled, Progress};
+use crate::view::ulp_at;
 
 /// How many patches have their volumes computed on all cores before these are added up.
 const BLOCK: usize = 1 << 16;
@@ -242,6 +243,16 @@ impl Topology {
             [a, b] => a.reversed() != b.reversed(),
             _ => true,
         })
+    }
+
+    /// Returns whether the three corners of a patch lie in line, to within a unit in the last place of their largest
+    /// coordinate.
+    pub fn is_in_line(&self, patch: u32) -> bool {
+        let corners = self.patch_positions(patch);
+        let unit = ulp_at(corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f32::max));
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+        let longest = [a.distance(b), b.distance(c), c.distance(a)].into_iter().fold(0.0, f64::max);
+        (b - a).cross(c - a).length() <= unit * longest
     }
 
     /// Returns whether the mesh has an inside.

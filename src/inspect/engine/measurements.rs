@@ -83,7 +83,7 @@ impl Engine {
         let from = |target| DeviationMeasurement::new(target, &mesh, &topology, triangles, progress);
         let mut deviation = wanted.deviation.map(from);
         let of_reference_shape =
-            |(reference_shape, view, options)| AccuracyMeasurement::new(reference_shape, Some(view), options);
+            |(reference_shape, view, options)| AccuracyMeasurement::new(reference_shape, Some(view), options, progress);
         let mut accuracy = wanted.accuracy.map(of_reference_shape);
         let mut sizes = wanted.sizes.map(Sizes::new);
         let mut visitors: Vec<&mut dyn Visitor> = Vec::new();
@@ -98,7 +98,7 @@ impl Engine {
             flat_patches: screen_error.as_ref().map(ScreenErrorMeasurement::flat_patches),
             screen_error: screen_error.and_then(|measurement| measurement.worst()),
             deviation: deviation.and_then(|measurement| measurement.finish().ok()),
-            accuracy: accuracy.and_then(AccuracyMeasurement::finish),
+            accuracy: accuracy.and_then(|measurement| measurement.finish().ok().flatten()),
             sizes,
         })
     }

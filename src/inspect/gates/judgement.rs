@@ -3,13 +3,15 @@
 use glam::Vec3;
 use serde::Serialize;
 
+use super::mesh_defects::Defects;
 use super::place::{EdgeSpot, Place, Spot};
-use super::{Gate, GateKind, allowed};
-use crate::measure::{CrackedEdge, EdgeSide, Measured, PatchesAbove};
+use super::{Gate, GateKind, Limit};
+use crate::measure::{CrackedEdge, EdgeSide, Measured, PatchesAbove, WorstPoint};
 use crate::render::{Leak, Leaks};
 use geometry::choice::Choice;
-use geometry::mesh::{TJunction, Topology};
+use geometry::mesh::{Mesh, TJunction, Topology};
 use geometry::names::shown;
+use geometry::near::Interval;
 use geometry::numbers::{exact, grouped, hundredths, short};
 use geometry::tessellate::Vertex;
 use geometry::view::ScreenView;
@@ -23,18 +25,34 @@ pub struct Facts<'a> {
     /// The numbers of emitted vertices and triangles.
     pub emitted: Option<(u64, u64)>,
     pub measured: Option<&'a Measured>,
+    /// The mesh as it was loaded, and its topology.
+    pub mesh: Option<(&'a Mesh, &'a Topology)>,
     pub junctions: Option<&'a [TJunction]>,
     pub leaks: Option<&'a Leaks>,
     /// The view that leaks were counted in.
     pub view: Option<ScreenView>,
     pub above: Option<&'a PatchesAbove>,
+    /// The distance from the reference surface, or why there is none.
+    pub deviation: Option<Result<Deviation, &'static str>>,
+}
+
+/// The largest distance between what was emitted and a reference surface, both ways.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviation {
+    /// In object units.
+    pub distance: Interval,
+    /// Of the reference surface's bounding box.
+    pub diagonal: f64,
+    /// Where the lower end was found.
+    pub worst: WorstPoint,
 }
 
 impl<'a> Facts<'a> {
     /// Facts of a mesh that nothing was measured of.
     pub fn from_mesh(topology: &'a Topology) -> Self {
-        let (warnings, emitted, measured, junctions) = (None, None, None, None);
-        Self { topology, warnings, emitted, measured, junctions, leaks: None, view: None, above: None }
+        let (warnings, emitted, measured, junctions, leaks) = (None, None, None, None, None);
+        let (mesh, view, above, deviation) = (None, None, None, None);
+        Self { topology, warnings, emitted, measured, mesh, junctions, leaks, view, above, deviation }
     }
 }
 
@@ -46,15 +64,23 @@ pub struct Judgement {
     #[serde(skip)]
     pub kind: GateKind,
     /// The largest number that passes.
-    pub limit: u64,
-    /// What was counted; none if nothing could be, and then the gate failed.
-    pub found: Option<u64>,
+    pub limit: Limit,
+    /// What was counted or measured; none if nothing could be, and then the gate failed.
+    pub found: Option<Found>,
     pub passed: bool,
     /// What was found, or why nothing could be counted, in a sentence without its end.
     pub text: String,
     /// The worst place of a gate that failed, if it is about a place.
     #[serde(rename = "where")]
     pub place: Option<Place>,
+}
+
+/// What a gate found: a number, or a length in object units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Found {
+    Count(u64),
+    Length(Interval),
 }
 
 impl Judgement {
@@ -67,14 +93,18 @@ impl Judgement {
     pub fn sentence(&self) -> String {
         let place = self.place.as_ref().map(|place| format!("; {}", place.text)).unwrap_or_default();
         match self.found {
-            Some(_) => format!("{}, {}{place}", self.text, allowed(self.limit)),
+            Some(_) => format!("{}, {}{place}", self.text, self.limit.allowed()),
             None => self.text.clone(),
         }
     }
 }
 
 /// What was counted for a gate: the number with its words; or why there is none, and what to do.
-type Count = Result<(u64, String), &'static str>;
+type Count = Result<(Found, String), &'static str>;
+
+/// What a gate says whose limit lies between the ends of what was measured. Such a gate fails.
+const UNDECIDED: &str = ", so that it isn't decided whether that is more than the limit, which a limit above the second number \
+                         would pass for certain";
 
 /// Judges by each gate.
 pub fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
@@ -82,11 +112,22 @@ pub fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
 }
 
 fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
-    let (found, text) = match count(kind, facts) {
+    let (found, mut text) = match count(kind, facts) {
         Ok((found, text)) => (Some(found), text),
         Err(why) => (None, why.to_owned()),
     };
-    let passed = found.is_some_and(|found| found <= limit);
+    let passed = match (found, limit) {
+        (Some(Found::Count(count)), Limit::Count(limit)) => count <= limit,
+        (Some(Found::Length(length)), Limit::Length(limit)) => {
+            let diagonal = facts.deviation.and_then(Result::ok).map_or(0.0, |deviation| deviation.diagonal);
+            let limit = limit.in_units(diagonal);
+            if (length.at_least..length.at_most).contains(&limit) {
+                text += UNDECIDED;
+            }
+            length.at_most <= limit
+        }
+        _ => false,
+    };
     let place = if passed { None } else { worst(kind, facts) };
     Judgement { gate: kind.name(), kind, limit, found, passed, text, place }
 }
@@ -94,7 +135,7 @@ fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
 fn count(kind: GateKind, facts: &Facts) -> Count {
     let some = |number: u64, one: &str, several: &str| {
         let words = if number == 1 { one } else { several };
-        Ok((number, words.replace('#', &grouped(number))))
+        Ok((Found::Count(number), words.replace('#', &grouped(number))))
     };
     match kind {
         GateKind::Cracks => {
@@ -128,7 +169,27 @@ fn count(kind: GateKind, facts: &Facts) -> Count {
             let junctions = known(facts.junctions)?.len() as u64;
             some(junctions, "the mesh has # T-junction", "the mesh has # T-junctions")
         }
-        GateKind::Warnings => Ok(warnings(known(facts.warnings)?)),
+        GateKind::Warnings => {
+            let (count, text) = warnings(known(facts.warnings)?);
+            Ok((Found::Count(count), text))
+        }
+        GateKind::NonManifold
+        | GateKind::Boundary
+        | GateKind::Winding
+        | GateKind::NormalsAgainstFaces
+        | GateKind::Degenerate
+        | GateKind::Duplicates
+        | GateKind::NearSeam
+        | GateKind::HardEdges => {
+            let (mesh, topology) = known(facts.mesh)?;
+            let (found, [one, several]) = known(Defects::find(kind, mesh, topology).zip(Defects::words(kind)))?;
+            some(found.count() as u64, one, several)
+        }
+        GateKind::Deviation => {
+            let Interval { at_least, at_most } = known(facts.deviation)??.distance;
+            let text = format!("the largest distance is {} to {} object units", short(at_least), short(at_most));
+            Ok((Found::Length(Interval { at_least, at_most }), text))
+        }
         GateKind::AboveTolerance => {
             let PatchesAbove { patches, tolerance_px, .. } = *known(facts.above)?;
             let beyond = |words: &str| format!("{words} farther than {} px from its surface", exact(tolerance_px));
@@ -178,6 +239,15 @@ fn worst(kind: GateKind, facts: &Facts) -> Option<Place> {
         GateKind::Folds => worst_fold(facts),
         GateKind::TJunctions => worst_junction(facts),
         GateKind::AboveTolerance => worst_error(facts),
+        GateKind::NonManifold
+        | GateKind::Boundary
+        | GateKind::Winding
+        | GateKind::NormalsAgainstFaces
+        | GateKind::Degenerate
+        | GateKind::Duplicates
+        | GateKind::NearSeam
+        | GateKind::HardEdges => worst_defect(kind, facts),
+        GateKind::Deviation => worst_deviation(facts),
         GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => None,
     }
 }
@@ -299,6 +369,46 @@ fn worst_junction(facts: &Facts) -> Option<Place> {
     Some(place.with(text))
 }
 
+/// The longest edge or the largest triangle that has a defect.
+fn worst_defect(kind: GateKind, facts: &Facts) -> Option<Place> {
+    let (mesh, topology) = facts.mesh?;
+    match Defects::find(kind, mesh, topology)? {
+        Defects::Edges(edges) => {
+            let length = |edge: &u32| {
+                let [a, b] = topology.edge_points(&topology.edges[*edge as usize]);
+                topology.points[a as usize].distance_squared(topology.points[b as usize])
+            };
+            let longest = edges.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)))?;
+            let place = EdgePlace::new(topology, longest, None);
+            let text = format!("the longest is {}", place.words());
+            Some(place.with(text))
+        }
+        Defects::Triangles(triangles) => {
+            let corners =
+                |triangle: u32| mesh.triangles[triangle as usize].map(|corner| mesh.corners[corner as usize].position);
+            let longest = |triangle: &u32| {
+                let [a, b, c] = corners(*triangle);
+                a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
+            };
+            let triangle = triangles.into_iter().max_by(|a, b| longest(a).total_cmp(&longest(b)))?;
+            let corners = corners(triangle);
+            let at = corners.iter().sum::<Vec3>() / 3.0;
+            let text = format!("the longest is triangle {triangle} at {}", position(at));
+            Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
+        }
+    }
+}
+
+fn worst_deviation(facts: &Facts) -> Option<Place> {
+    let Deviation { worst, .. } = facts.deviation?.ok()?;
+    let corners = facts.topology.patch_positions(worst.patch);
+    let triangle = facts.topology.patches[worst.patch as usize].triangle;
+    let (at, reference_shape) = (worst.emitted.as_vec3(), worst.reference_shape.as_vec3());
+    let (at_words, other) = (position(at), position(reference_shape));
+    let text = format!("the farthest is of triangle {triangle} at {at_words}, and on the reference surface at {other}");
+    Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
+}
+
 fn worst_error(facts: &Facts) -> Option<Place> {
     let worst = facts.above?.worst?;
     let corners = facts.topology.patch_positions(worst.patch);
@@ -315,7 +425,7 @@ mod tests {
     #[test]
     fn a_gate_without_the_fact_that_it_needs_fails() {
         let topology = Topology::default();
-        let gates = GateKind::ALL.map(|kind| Gate { kind, limit: u64::MAX });
+        let gates = GateKind::ALL.map(|kind| Gate { kind, limit: Limit::Count(u64::MAX) });
         for judgement in judge(&gates, &Facts::from_mesh(&topology)) {
             assert_eq!((judgement.found, judgement.passed), (None, false), "{judgement:?}");
             let sentence = judgement.sentence_of("a.glb");

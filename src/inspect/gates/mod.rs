@@ -2,19 +2,21 @@
 //! the measurements; this room compares them with the limits, and says where the worst place is.
 
 mod judgement;
+mod limit;
+mod mesh_defects;
 mod place;
 mod standpoint;
 
 use std::fmt;
 use std::str::FromStr;
 
-pub use judgement::{Facts, Judgement, judge};
+pub use judgement::{Deviation, Facts, Found, Judgement, judge};
+pub use limit::{Length, Limit, Unit};
 pub use place::{EdgeSpot, PatchSpot, Place, Spot};
 pub use standpoint::Standpoints;
 
 use crate::settings::Overlay;
 use geometry::choice::{Choice, choices};
-use geometry::numbers::grouped;
 
 choices! {
     /// What a gate counts, which its label says, and what passing it means, which its text says.
@@ -33,6 +35,24 @@ choices! {
             "Loading repaired nothing and left nothing out.";
         AboveTolerance => "above-tolerance", "Patches whose error on screen is above --tolerance",
             "No patch is farther from its surface on screen than the tolerance.";
+        NonManifold => "non-manifold", "Edges of three triangles or more",
+            "Every edge of the mesh belongs to at most two triangles.";
+        Boundary => "boundary", "Edges of only one triangle",
+            "The mesh has no open edge: no hole and no border.";
+        Winding => "winding", "Edges whose two triangles are wound opposite ways",
+            "Triangles that meet at an edge of the mesh are wound the same way.";
+        NormalsAgainstFaces => "normals-against-faces", "Triangles with a normal that points behind them",
+            "No normal of the mesh points to the back of its triangle, where a curved surface would fold.";
+        Degenerate => "degenerate", "Triangles without an area",
+            "Every triangle of the mesh has an area.";
+        Duplicates => "duplicates", "Triangles with the corners of an earlier one",
+            "No two triangles of the mesh have the same three corners.";
+        NearSeam => "near-seam", "Open edges that nearly meet another one",
+            "No open edge of the mesh nearly meets another one: one that should be welded.";
+        HardEdges => "hard-edges", "Edges whose triangles have different normals",
+            "No edge of the mesh has two normals at an end, along which an engine that displaces would tear it open.";
+        Deviation => "deviation", "Largest distance from --reference-surface, or back, for certain",
+            "No point is farther from the reference surface, or from what was emitted, than the limit.";
         Triangles => "triangles", "Emitted triangles",
             "There are no more triangles than allowed.";
         Bytes => "bytes", "Bytes of emitted vertices and indices",
@@ -44,7 +64,17 @@ impl GateKind {
     /// What it judges.
     pub const fn subject(self) -> GateSubject {
         match self {
-            Self::TJunctions | Self::Warnings => GateSubject::Mesh,
+            Self::TJunctions
+            | Self::Warnings
+            | Self::NonManifold
+            | Self::Boundary
+            | Self::Winding
+            | Self::NormalsAgainstFaces
+            | Self::Degenerate
+            | Self::Duplicates
+            | Self::NearSeam
+            | Self::HardEdges => GateSubject::Mesh,
+            Self::Deviation => GateSubject::Distance,
             Self::Cracks | Self::Factors | Self::Leaks | Self::Folds => GateSubject::Survey,
             Self::AboveTolerance => GateSubject::Error,
             Self::Triangles | Self::Bytes => GateSubject::Budget,
@@ -60,18 +90,28 @@ impl GateKind {
             Self::Folds => &[Overlay::Wireframe, Overlay::Folds],
             Self::TJunctions => &[Overlay::Patches, Overlay::TJunctions],
             Self::AboveTolerance => &[Overlay::Wireframe, Overlay::Patches],
+            Self::NonManifold | Self::Boundary | Self::Winding | Self::NearSeam | Self::HardEdges => {
+                &[Overlay::Wireframe, Overlay::Adjacency]
+            }
+            Self::NormalsAgainstFaces => &[Overlay::Patches, Overlay::Normals],
+            Self::Degenerate | Self::Duplicates => &[Overlay::Patches],
+            Self::Deviation => &[Overlay::Wireframe, Overlay::Deviation],
             Self::Warnings | Self::Triangles | Self::Bytes => &[],
         }
     }
 
     /// How it is written on the command line: its name, and that of the number that it needs.
     pub fn placeholder(self) -> String {
-        if self.is_budget() { format!("{}:N", self.name()) } else { self.name().to_owned() }
+        match self.subject() {
+            GateSubject::Budget => format!("{}:N", self.name()),
+            GateSubject::Distance => format!("{}:LENGTH", self.name()),
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Error => self.name().to_owned(),
+        }
     }
 
     /// Whether it judges one tessellation, so that it says nothing of many.
     pub const fn is_of_one_tessellation(self) -> bool {
-        matches!(self.subject(), GateSubject::Error | GateSubject::Budget)
+        matches!(self.subject(), GateSubject::Error | GateSubject::Budget | GateSubject::Distance)
     }
 
     /// Whether it judges the mesh as it was loaded.
@@ -79,9 +119,12 @@ impl GateKind {
         matches!(self.subject(), GateSubject::Mesh)
     }
 
-    /// Whether it judges how much there is, so that a limit of 0 would make no sense.
-    const fn is_budget(self) -> bool {
-        matches!(self.subject(), GateSubject::Budget)
+    /// The limit where none is given; none if one must be.
+    fn usual_limit(self) -> Option<Limit> {
+        match self.subject() {
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Error => Some(Limit::Count(0)),
+            GateSubject::Budget | GateSubject::Distance => None,
+        }
     }
 
     /// Whether it is judged by what a survey of the emitted mesh finds.
@@ -101,17 +144,19 @@ pub enum GateSubject {
     Error,
     /// How much is emitted.
     Budget,
+    /// The distance from a reference surface.
+    Distance,
 }
 
 /// A limit that a result is held to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gate {
     pub kind: GateKind,
     /// The largest number that passes.
-    pub limit: u64,
+    pub limit: Limit,
 }
 
-/// Reads `NAME`, which allows none, or `NAME:N`, which allows up to N. Budgets need their N.
+/// Reads `NAME`, which allows none, or `NAME:N`, which allows up to N. Budgets need their N, and distances a length.
 impl FromStr for Gate {
     type Err = String;
 
@@ -120,27 +165,28 @@ impl FromStr for Gate {
         let (name, limit) = text.split_once(':').map_or((text, None), |(name, limit)| (name, Some(limit)));
         let names = || GateKind::ALL.map(GateKind::name).join(", ");
         let kind = GateKind::named(name).ok_or_else(|| format!("expected one of {}", names()))?;
-        let limit = match limit {
-            Some(limit) => limit.parse().ok(),
-            None if kind.is_budget() => None,
-            None => Some(0),
+        let is_length = kind.subject() == GateSubject::Distance;
+        let read = |text: &str| match is_length {
+            true => text.parse().ok().map(Limit::Length),
+            false => text.parse().ok().map(Limit::Count),
         };
-        let expected = || format!("expected a whole number after {name}, such as {name}:100000");
-        Ok(Self { kind, limit: limit.ok_or_else(expected)? })
+        let expected = || match is_length {
+            true => format!(
+                "expected a length after {name}, such as {name}:0.2mm, {name}:0.1% (of the diagonal) or {name}:0.003"
+            ),
+            false => format!("expected a whole number after {name}, such as {name}:100000"),
+        };
+        let limit = limit.map_or(kind.usual_limit(), read).ok_or_else(expected)?;
+        Ok(Self { kind, limit })
     }
-}
-
-/// What a limit says, as the end of a clause.
-pub fn allowed(limit: u64) -> String {
-    format!("where {} {} allowed", grouped(limit), if limit == 1 { "is" } else { "are" })
 }
 
 /// Writes the gate as the command line takes it.
 impl fmt::Display for Gate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.limit {
-            0 if !self.kind.is_budget() => f.write_str(self.kind.name()),
-            limit => write!(f, "{}:{limit}", self.kind.name()),
+        match self.kind.usual_limit() == Some(self.limit) {
+            true => f.write_str(self.kind.name()),
+            false => write!(f, "{}:{}", self.kind.name(), self.limit),
         }
     }
 }
@@ -154,13 +200,27 @@ mod tests {
     fn gates_are_read_as_they_are_written() {
         for kind in GateKind::ALL {
             assert!(Overlays::new(kind.overlays()).is_some(), "{kind:?}: two overlays colour the surface");
-            for limit in [0, 7, u64::MAX] {
+            let counts = [0, 7, u64::MAX].map(Limit::Count);
+            let lengths = ["0", "0.2mm", "0.1%"].map(|text| Limit::Length(text.parse().expect("a length")));
+            for limit in if kind == GateKind::Deviation { lengths } else { counts } {
                 let gate = Gate { kind, limit };
                 assert_eq!(gate.to_string().parse(), Ok(gate));
             }
         }
-        assert_eq!("cracks".parse(), Ok(Gate { kind: GateKind::Cracks, limit: 0 }));
-        for bad in ["", "crack", "triangles", "bytes:", "cracks:-1", "cracks:1.5", "triangles:1e6", "cracks:0:0"] {
+        assert_eq!("cracks".parse(), Ok(Gate { kind: GateKind::Cracks, limit: Limit::Count(0) }));
+        for bad in [
+            "",
+            "crack",
+            "triangles",
+            "bytes:",
+            "cracks:-1",
+            "cracks:1.5",
+            "triangles:1e6",
+            "cracks:0:0",
+            "deviation",
+            "deviation:-1",
+            "deviation:1px",
+        ] {
             assert!(bad.parse::<Gate>().is_err(), "{bad}");
         }
         let said = "odd".parse::<Gate>().expect_err("no such gate");

@@ -2,8 +2,8 @@
 //! normals.
 
 mod emitted;
-mod from_reference;
-mod peaks;
+mod largest;
+mod mean_square;
 mod to_reference;
 
 use std::ops::Range;
@@ -14,25 +14,35 @@ use glam::{DVec3, Vec3};
 
 use super::screen_error::Screen;
 use super::visitor::{EmittedChunk, Visitor};
-use crate::reference_shape::{EdgePoints, ReferenceShape};
-use emitted::Emitted;
+use crate::reference_shape::ReferenceShape;
+use geometry::cores::on_threads;
+use geometry::near::Interval;
+use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{LodView, Vertex};
-use peaks::{Peaks, climb};
 use to_reference::Sums;
 
+pub(crate) use emitted::Emitted;
+pub use largest::Narrow;
+pub(crate) use largest::{Comparison, Largest};
+pub(crate) use mean_square::MeanSquare;
+pub use mean_square::Rms;
+
 /// How finely accuracy is measured.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccuracyOptions {
-    /// The number of samples that are spread over the reference surface by area. Its vertices, and points along its edges, are
-    /// taken besides. What was emitted gets about as many, but at least four per triangle and the middle of every edge.
+    /// The number of samples that are spread over the reference surface by area, for means. What was emitted gets about as
+    /// many, but at least four per triangle.
     pub samples: usize,
+    /// When the intervals of the largest distances are narrow enough.
+    pub narrow: Narrow,
     /// The number of threads. The result doesn't depend on it.
     pub threads: usize,
 }
 
 impl Default for AccuracyOptions {
     fn default() -> Self {
-        Self { samples: 100_000, threads: thread::available_parallelism().map_or(1, |cores| cores.get()) }
+        let threads = thread::available_parallelism().map_or(1, |cores| cores.get());
+        Self { samples: 100_000, narrow: Narrow::default(), threads }
     }
 }
 
@@ -42,60 +52,38 @@ impl Default for AccuracyOptions {
 pub(crate) struct AccuracyMeasurement<'a> {
     reference_shape: &'a ReferenceShape,
     options: AccuracyOptions,
+    progress: &'a Progress,
     screen: Option<Screen>,
-    /// What collects the worst places, still without any.
-    no_peaks: Peaks,
-    /// Points of the reference surface: first those that are spread by area, then those of its vertices and edges.
-    points: Vec<DVec3>,
-    spread: usize,
-    /// The spacing of points that are spread by area, in object units: the side of the square that each stands for.
-    spacing: f64,
-    /// How finely `points` sample the reference surface.
-    sampling: Sampling,
-    /// What was emitted so far, while it is no more than [`MOST_KEPT`] triangles.
     emitted: Emitted,
     most_kept: usize,
-    /// The emitted point that is nearest to each of `points`, in the chunks that aren't kept. Empty if all are kept.
-    nearest: Vec<Option<WorstPoint>>,
+    /// The largest distance from the triangles that weren't kept, and whether there were any.
+    largest: Option<Largest>,
     sums: Sums,
-}
-
-/// How finely one direction was sampled.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Sampling {
-    /// The number of points whose distance was measured, before the search around the worst of them.
-    pub samples: u64,
-    /// Their largest spacing, in object units: that of neighbours on an edge, or the side of the square that a point inside a
-    /// triangle stands for.
-    pub spacing: f64,
-}
-
-impl Sampling {
-    fn with(self, other: Self) -> Self {
-        Self { samples: self.samples + other.samples, spacing: self.spacing.max(other.spacing) }
-    }
+    cancelled: Option<Cancelled>,
 }
 
 /// Distances in one direction, in object units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Distances {
-    pub largest: f64,
-    /// Root mean square over the area.
-    pub rms: f64,
+    /// The largest distance is in this interval for certain.
+    pub largest: Interval,
+    /// Root mean square over the area, from samples.
+    pub rms: Rms,
 }
 
-/// Angles between normals, in degrees.
+/// Angles between normals, in degrees, from samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Angles {
+    /// The largest one of the samples.
     pub largest: f64,
     /// Root mean square over the area of what was emitted.
-    pub rms: f64,
+    pub rms: Rms,
 }
 
 /// The place where a distance or angle is largest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WorstPoint {
-    /// The largest value, in object units, px or degrees.
+    /// The largest value that was found, in object units, px or degrees.
     pub value: f64,
     /// The patch that emitted the point.
     pub patch: u32,
@@ -119,33 +107,43 @@ pub struct Accuracy {
     pub diagonal: f64,
     /// From what was emitted to the reference surface.
     pub to_reference: Distances,
-    pub to_reference_sampling: Sampling,
     pub worst_to_reference: WorstPoint,
-    /// From the reference surface to what was emitted.
-    pub from_reference: Distances,
-    pub from_reference_sampling: Sampling,
-    pub worst_from_reference: WorstPoint,
-    /// The largest distance on screen between an emitted point and the nearest point of the reference surface; `None` if no
-    /// point is in view, or there is no view.
+    /// From the reference surface to what was emitted, and the farthest place; `None` if more than [`MOST_KEPT`] triangles
+    /// were emitted.
+    pub from_reference: Option<(Distances, WorstPoint)>,
+    /// The largest distance on screen between an emitted point and the nearest point of the reference surface, of all samples
+    /// and the worst place; `None` if no such point is in view, or there is no view.
     pub worst_px: Option<WorstPoint>,
     /// Between shading normals and the normals of the reference surface at the nearest points.
     pub normals: Angles,
     pub worst_normal: WorstPoint,
+    /// The number of samples for means and angles, in both directions.
+    pub samples: u64,
     /// The number of vertices with infinite or NaN coordinates. Their triangles are left out.
     pub not_finite: u64,
 }
 
 impl Accuracy {
-    /// Combines both directions: the larger of the largest distances, and the root of the mean of both mean squares.
+    /// Combines both directions, if both are known: the larger of the largest distances, and the root of the mean of both mean
+    /// squares.
     pub fn both_ways(&self) -> Distances {
-        let [a, b] = [self.to_reference, self.from_reference];
-        Distances { largest: a.largest.max(b.largest), rms: a.rms.hypot(b.rms) / 2.0_f64.sqrt() }
+        let a = self.to_reference;
+        let Some((b, _)) = self.from_reference else { return a };
+        let value = a.rms.value.hypot(b.rms.value) / 2.0_f64.sqrt();
+        // Errors of the squares, which are twice the values times the values' errors.
+        let squares = (a.rms.value * a.rms.error).hypot(b.rms.value * b.rms.error);
+        let error = if value > 0.0 { squares / (2.0 * value) } else { 0.0 };
+        Distances { largest: a.largest.or(b.largest), rms: Rms { value, error } }
     }
 
     /// Distances as parts of [`Self::diagonal`].
     pub fn relative(&self, distances: Distances) -> Distances {
         let part = |x: f64| if self.diagonal > 0.0 { x / self.diagonal } else { 0.0 };
-        Distances { largest: part(distances.largest), rms: part(distances.rms) }
+        let Distances { largest: Interval { at_least, at_most }, rms: Rms { value, error } } = distances;
+        Distances {
+            largest: Interval { at_least: part(at_least), at_most: part(at_most) },
+            rms: Rms { value: part(value), error: part(error) },
+        }
     }
 }
 
@@ -153,129 +151,123 @@ impl Accuracy {
 /// they don't depend on the number of threads.
 const BLOCKS: usize = 256;
 const LARGEST_BLOCK: usize = 1024;
-/// The most triangles that are kept until all are emitted: as many as a chunk has under the largest limit of output memory.
-/// They take about 100 bytes each.
-const MOST_KEPT: usize = 1 << 23;
-/// One place in so many samples is searched for a larger distance nearby, [`MOST_CLIMBS`] at most.
-const SAMPLES_A_CLIMB: usize = 3000;
-const MOST_CLIMBS: usize = 32;
-/// The number of regions along the reference surface's diagonal, each of which counts with its worst place.
-const REGIONS: f64 = 32.0;
+
+/// The most triangles that are kept until all are emitted. They take about 130 bytes each.
+pub const MOST_KEPT: usize = 1 << 24;
 
 impl<'a> AccuracyMeasurement<'a> {
     /// Starts a measurement. With a view, distances are also measured in px.
-    pub(crate) fn new(reference_shape: &'a ReferenceShape, view: Option<&LodView>, options: AccuracyOptions) -> Self {
-        let spread = reference_shape.samples(options.samples).into_iter().map(|sample| sample.point);
-        let EdgePoints { points: of_edges, spacing: of_neighbours } = reference_shape.edge_points(options.samples);
-        let points: Vec<DVec3> = spread.chain(of_edges).collect();
-        let spacing = reference_shape.spacing(options.samples);
-        let most = (options.samples / SAMPLES_A_CLIMB).clamp(1, MOST_CLIMBS);
-        let no_peaks = Peaks::new(most, reference_shape.diagonal() / REGIONS);
+    pub(crate) fn new(
+        reference_shape: &'a ReferenceShape,
+        view: Option<&LodView>,
+        options: AccuracyOptions,
+        progress: &'a Progress,
+    ) -> Self {
         Self {
             reference_shape,
             options,
+            progress,
             screen: view.map(Screen::new),
-            spread: options.samples,
-            spacing,
-            sampling: Sampling { samples: points.len() as u64, spacing: spacing.max(of_neighbours) },
-            points,
             emitted: Emitted::default(),
             most_kept: MOST_KEPT,
-            nearest: Vec::new(),
-            sums: Sums::new(&no_peaks),
-            no_peaks,
+            largest: None,
+            sums: Sums::default(),
+            cancelled: None,
         }
     }
 
-    /// The worst place on the way uphill from every one of `peaks`, or the worst of these if triangles weren't kept. `at` is the
-    /// point of a place that is moved.
-    fn summit(
-        &self,
-        peaks: &Peaks,
-        at: impl Fn(&WorstPoint) -> DVec3 + Sync,
-        measure: impl Fn(DVec3, f64) -> Option<WorstPoint> + Sync,
-    ) -> Option<WorstPoint> {
-        if !self.nearest.is_empty() {
-            return peaks.places().next();
-        }
-        let starts: Vec<WorstPoint> = peaks.places().collect();
-        let climbed = blocks(starts.len(), self.options.threads, |range| {
-            starts[range].iter().map(|start| climb(*start, self.spacing, &at, &measure)).collect::<Vec<_>>()
+    /// How the triangles that are kept are compared. The largest distance of samples says how finely.
+    fn comparison(&self) -> Comparison<'_> {
+        let rough = self.sums.largest;
+        let Self { reference_shape, emitted, options: AccuracyOptions { narrow, .. }, .. } = self;
+        Comparison { reference_shape, emitted, narrow: *narrow, rough }
+    }
+
+    /// The largest distance from all triangles so far.
+    fn largest_to_reference(&self) -> Result<Option<Largest>, Cancelled> {
+        let found = self.comparison().to_reference(self.progress)?;
+        Ok(self.largest.into_iter().chain(found).reduce(Largest::or))
+    }
+
+    /// The distances from the reference surface to the triangles that are kept, and the number of samples.
+    fn from_reference(&self) -> Result<Option<(Distances, WorstPoint, u64)>, Cancelled> {
+        let Some(tree) = self.emitted.tree() else { return Ok(None) };
+        let points = self.reference_shape.samples(self.options.samples);
+        let sums = blocks(points.len(), self.options.threads, |range| {
+            self.progress.check()?;
+            let (mut sums, mut hint) = (MeanSquare::default(), 0);
+            for sample in &points[range] {
+                let closest = tree.closest_near(sample.point, &mut hint);
+                sums.add(closest.distance, 1.0);
+            }
+            Ok(sums)
         });
-        climbed.into_iter().flatten().reduce(worse)
-    }
-
-    /// The worst place from what was emitted to the reference surface, among those on the way uphill from `peaks`. `value` is the
-    /// value of a place with a distance.
-    fn worst_to_reference(
-        &self,
-        peaks: &Peaks,
-        value: impl Fn(WorstPoint) -> Option<WorstPoint> + Sync,
-    ) -> Option<WorstPoint> {
-        let measure = |p: DVec3, _: f64| {
-            let place = self.emitted.closest(p, f64::INFINITY)?;
-            let (reference_shape, distance) = self.reference_shape.closest_point(place.point);
-            value(WorstPoint { value: distance, patch: place.patch, emitted: place.point, reference_shape })
+        let sums = sums.into_iter().try_fold(MeanSquare::default(), |sum, next| Ok(sum.with(next?)))?;
+        let Some(Largest { distance, place }) = self.comparison().from_reference(&tree, self.progress)? else {
+            return Ok(None);
         };
-        self.summit(peaks, |place| place.emitted, measure)
-    }
-
-    /// The worst place from the reference surface to what was emitted, among those on the way uphill from `peaks`.
-    fn worst_from_reference(&self, peaks: &Peaks) -> Option<WorstPoint> {
-        let measure = |p: DVec3, enough: f64| {
-            let (reference_shape, _) = self.reference_shape.closest_point(p);
-            self.emitted
-                .closest_or_within(reference_shape, enough, &mut Vec::new())
-                .map(|found| found.from(reference_shape))
-        };
-        self.summit(peaks, |place| place.reference_shape, measure)
+        let rms = sums.rms().unwrap_or_default();
+        Ok(Some((Distances { largest: distance, rms }, place, points.len() as u64)))
     }
 
     /// The results; `None` if nothing with an area was emitted.
-    pub(crate) fn finish(mut self) -> Option<Accuracy> {
-        if !self.nearest.is_empty() {
-            self.drop_kept();
+    ///
+    /// # Errors
+    /// The progress was cancelled.
+    pub(crate) fn finish(self) -> Result<Option<Accuracy>, Cancelled> {
+        if let Some(cancelled) = self.cancelled {
+            return Err(cancelled);
         }
-        let (squares_from_reference, peaks) = self.measure_from_reference();
-        let worst_from_reference = self.worst_from_reference(&peaks)?;
-        let worst_to_reference = self.worst_to_reference(&self.sums.peaks, Some)?;
-        let in_px = |place: WorstPoint| place.in_px(self.screen.as_ref()?);
-        let worst_px = self.worst_to_reference(&self.sums.peaks_px, in_px);
-        let Sums { area, squares, angles, sampling, worst_normal, not_finite, .. } = self.sums;
-        if area <= 0.0 {
-            return None;
-        }
-        Some(Accuracy {
+        // Where the system starts no more threads, those that there are do the work.
+        on_threads(self.options.threads, || self.results()).unwrap_or_else(|_| self.results())
+    }
+
+    fn results(&self) -> Result<Option<Accuracy>, Cancelled> {
+        let (Some(rms), Some(angles)) = (self.sums.squares.rms(), self.sums.angles.rms()) else { return Ok(None) };
+        let (Some(Largest { distance, place }), Some(worst_normal)) =
+            (self.largest_to_reference()?, self.sums.worst_normal)
+        else {
+            return Ok(None);
+        };
+        let from_reference = if self.largest.is_none() { self.from_reference()? } else { None };
+        let in_px = self.screen.as_ref().and_then(|screen| place.in_px(screen));
+        Ok(Some(Accuracy {
             diagonal: self.reference_shape.diagonal(),
-            to_reference: Distances { largest: worst_to_reference.value, rms: (squares / area).sqrt() },
-            to_reference_sampling: sampling,
-            worst_to_reference,
-            from_reference: Distances {
-                largest: worst_from_reference.value,
-                rms: (squares_from_reference / self.spread as f64).sqrt(),
-            },
-            from_reference_sampling: self.sampling,
-            worst_from_reference,
-            worst_px,
-            normals: Angles { largest: worst_normal?.value, rms: (angles / area).sqrt() },
-            worst_normal: worst_normal?,
-            not_finite,
-        })
+            to_reference: Distances { largest: distance, rms },
+            worst_to_reference: place,
+            from_reference: from_reference.map(|(distances, place, _)| (distances, place)),
+            worst_px: self.sums.worst_px.into_iter().chain(in_px).reduce(worse),
+            normals: Angles { largest: worst_normal.value, rms: angles },
+            worst_normal,
+            samples: self.sums.samples + from_reference.map_or(0, |(_, _, samples)| samples),
+            not_finite: self.sums.not_finite,
+        }))
+    }
+
+    fn take_chunk(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Result<(), Cancelled> {
+        self.progress.check()?;
+        self.take_triangles(vertices, triangles);
+        self.emitted.add(vertices, triangles);
+        if self.emitted.soup().triangles.len() > self.most_kept {
+            self.largest = self.largest_to_reference()?;
+            self.emitted = Emitted::default();
+        }
+        Ok(())
     }
 }
 
 impl Visitor for AccuracyMeasurement<'_> {
+    /// Does nothing after it was cancelled.
     fn take(&mut self, chunk: &EmittedChunk) {
+        if self.cancelled.is_some() {
+            return;
+        }
         let EmittedChunk { vertices, triangles, .. } = *chunk;
         let is_finite = |vertex: &Vertex| Vec3::from(vertex.position).is_finite();
         self.sums.not_finite += vertices.iter().filter(|vertex| !is_finite(vertex)).count() as u64;
         let whole = |triangle: &&[u32; 3]| triangle.iter().all(|index| is_finite(&vertices[*index as usize]));
         let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
-        self.take_triangles(vertices, &triangles);
-        self.emitted.add(vertices, &triangles);
-        if self.emitted.triangles() > self.most_kept {
-            self.drop_kept();
-        }
+        self.cancelled = self.take_chunk(vertices, &triangles).err();
     }
 }
 

@@ -6,10 +6,11 @@ use std::thread;
 
 use glam::DVec3;
 
-use super::accuracy::{WorstPoint, blocks, worse};
+use super::accuracy::{Comparison, Emitted, Largest, Narrow, WorstPoint, blocks, worse};
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
 use geometry::mesh::{Mesh, Topology};
+use geometry::near::Interval;
 use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{FIXED_ONE, Inputs, LimitSurface, Vertex};
 
@@ -58,6 +59,8 @@ pub struct DeviationField {
     /// The number of triangles beyond [`MOST_TRIANGLES`], which weren't measured.
     pub left_out: u64,
     worst: Option<WorstPoint>,
+    /// A number that no distance exceeds for certain, in object units; infinite if none is known.
+    at_most: f64,
     area: f64,
     /// The sum of squared distances, each times its area.
     squares: f64,
@@ -74,6 +77,8 @@ pub struct DeviationMeasurement<'a> {
     /// Shows how far the measurement is, and can cancel it.
     progress: &'a Progress,
     field: DeviationField,
+    /// What was measured, if its largest distance is to be known for certain.
+    emitted: Emitted,
     /// Triangles in all chunks together.
     triangles: u64,
     /// How many more triangles may be measured.
@@ -91,15 +96,27 @@ impl<'a> DeviationMeasurement<'a> {
         progress: &'a Progress,
     ) -> Self {
         let (target, field) = (target.on(mesh, topology), DeviationField::unknown(triangles));
-        Self { target, progress, field, triangles, room: MOST_TRIANGLES, cancelled: None }
+        let emitted = Emitted::default();
+        Self { target, progress, field, emitted, triangles, room: MOST_TRIANGLES, cancelled: None }
     }
 
     /// The field, once all chunks are taken.
     ///
     /// # Errors
-    /// The progress was cancelled before all of a chunk was measured.
-    pub fn finish(self) -> Result<DeviationField, Cancelled> {
-        self.cancelled.map_or(Ok(self.field), Err)
+    /// The progress was cancelled before all was measured.
+    pub fn finish(mut self) -> Result<DeviationField, Cancelled> {
+        if let Some(cancelled) = self.cancelled {
+            return Err(cancelled);
+        }
+        if let TargetSurface::ReferenceShape(reference_shape) = self.target {
+            let (emitted, rough) = (&self.emitted, self.field.worst.map_or(0.0, |worst| worst.value));
+            let comparison = Comparison { reference_shape, emitted, narrow: Narrow::default(), rough };
+            if let Some(Largest { distance, place }) = comparison.to_reference(self.progress)? {
+                self.field.worst = self.field.worst.into_iter().chain([place]).reduce(worse);
+                self.field.at_most = distance.at_most;
+            }
+        }
+        Ok(self.field)
     }
 
     fn measure(&mut self, chunk: &EmittedChunk) -> Result<(), Cancelled> {
@@ -129,6 +146,11 @@ impl<'a> DeviationMeasurement<'a> {
             field.worst = field.worst.into_iter().chain(sums.worst).reduce(worse);
         }
         field.chunks.push(samples);
+        if matches!(self.target, TargetSurface::ReferenceShape(_)) {
+            let is_finite = |index: &u32| chunk.vertices[*index as usize].position.iter().all(|x| x.is_finite());
+            let finite = chunk.triangles[..taken].iter().filter(|triangle| triangle.iter().all(is_finite));
+            self.emitted.add(chunk.vertices, &finite.copied().collect::<Vec<_>>());
+        }
         Ok(())
     }
 }
@@ -147,7 +169,8 @@ impl DeviationField {
     fn unknown(triangles: u64) -> Self {
         let fits = |steps: &u32| triangles.saturating_mul(samples_of(*steps).into()) <= SAMPLES;
         let steps = STEPS.into_iter().find(fits).unwrap_or(0);
-        Self { steps, chunks: Vec::new(), left_out: 0, worst: None, area: 0.0, squares: 0.0 }
+        let (chunks, at_most) = (Vec::new(), f64::INFINITY);
+        Self { steps, chunks, left_out: 0, worst: None, at_most, area: 0.0, squares: 0.0 }
     }
 
     /// A field without triangles.
@@ -158,6 +181,14 @@ impl DeviationField {
     /// The place with the largest distance; `None` if nothing was emitted.
     pub fn worst(&self) -> Option<WorstPoint> {
         self.worst
+    }
+
+    /// The largest distance of what was measured. Its upper end is infinite where distances go to a limit surface: these are
+    /// sampled.
+    pub fn largest(&self) -> Interval {
+        let at_least = self.worst.map_or(0.0, |worst| worst.value);
+        let at_most = if self.worst.is_some() { self.at_most } else { 0.0 };
+        Interval { at_least, at_most: at_most.max(at_least) }
     }
 
     /// The root of the mean square over the area.

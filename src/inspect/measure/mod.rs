@@ -23,7 +23,7 @@ mod sweep;
 mod visitor;
 
 pub(crate) use accuracy::AccuracyMeasurement;
-pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, Sampling, WorstPoint};
+pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, MOST_KEPT, Narrow, Rms, WorstPoint};
 pub use agreement::{Agreement, Disagreement, Order};
 pub use cracks::{CrackedEdge, Cracks};
 pub use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget, MOST_TRIANGLES};

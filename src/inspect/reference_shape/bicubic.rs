@@ -96,6 +96,19 @@ impl Surface for Patches {
         let across = along_u.cross(along_v);
         (Sample { point, normal: across.normalize() }, across.length())
     }
+
+    /// The control points of a derivative are differences of a patch's (Farin, "Curves and surfaces for CAGD", section 14.6),
+    /// and it lies within their hull.
+    fn bends(&self, chart: usize) -> [f64; 3] {
+        let net = &self.patches[chart];
+        let twice = |net: &BezierNet| {
+            let second = |column: &[DVec3; 4], i: usize| (column[i + 2] - 2.0 * column[i + 1] + column[i]).length();
+            net.iter().flat_map(|column| [second(column, 0), second(column, 1)]).fold(0.0, f64::max)
+        };
+        let twist = |i: usize, j: usize| (net[i + 1][j + 1] - net[i + 1][j] - net[i][j + 1] + net[i][j]).length();
+        let mixed = (0..9).map(|k| twist(k / 3, k % 3)).fold(0.0, f64::max);
+        [6.0 * twice(&transposed(net)), 9.0 * mixed, 6.0 * twice(net)]
+    }
 }
 
 /// The nearest point found so far.

@@ -1,6 +1,6 @@
 //! Ellipsoids around the origin, with the sphere as a special case.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 
@@ -40,15 +40,18 @@ impl Surface for Ellipsoid {
         1
     }
 
-    /// Stretches the cylindrical equal-area map of the sphere.
+    /// Stretches the sphere with its latitude and longitude.
     fn at(&self, _: usize, s: f64, t: f64) -> (Sample, f64) {
-        let y = 2.0 * s - 1.0;
-        let across = (1.0 - y * y).sqrt();
+        let (across, y) = (PI * s).sin_cos();
         let (sin, cos) = (TAU * t).sin_cos();
         let unit = DVec3::new(across * sin, y, across * cos);
         let steep = unit / self.radii;
         let sample = Sample { point: unit * self.radii, normal: steep.normalize() };
-        (sample, 2.0 * TAU * self.radii.element_product() * steep.length())
+        (sample, PI * TAU * across.abs() * self.radii.element_product() * steep.length())
+    }
+
+    fn bends(&self, _: usize) -> [f64; 3] {
+        [PI * PI, PI * TAU, TAU * TAU].map(|bend| bend * self.radii.max_element())
     }
 }
 

@@ -1,5 +1,7 @@
 //! Exact surfaces, and which shape has which.
 
+use std::sync::{Mutex, PoisonError};
+
 use glam::{DVec2, DVec3};
 
 use super::bicubic::Patches;
@@ -8,19 +10,18 @@ use super::revolved::{Profile, Torus};
 use super::saddle::Saddle;
 use super::spread::{Spread, radical_inverse};
 use super::surface::Surface;
-use super::{EdgePoints, Nearest, Sample, segments};
+use super::{Facets, Nearest, Sample};
 use geometry::mesh::Shape;
 use geometry::mesh::shapes::polyhedra::ELLIPSOID;
 use geometry::mesh::shapes::revolved::{HALF_HEIGHT, MAJOR, MINOR, RADIUS};
 use geometry::mesh::shapes::sheets::SADDLE_HALF;
 
-/// The number of segments that approximate a border to find its length.
-const LENGTH_SEGMENTS: usize = 64;
-
 /// A surface whose nearest points are computed to about 1e-12 of its size.
 pub struct Exact {
     surface: Box<dyn Surface>,
     spread: Spread,
+    /// The triangles that stood for it last.
+    facets: Mutex<Option<(f64, Facets)>>,
 }
 
 /// Returns the surface that a shape's corners are samples of, for shapes that have [levels](Shape::has_levels).
@@ -43,7 +44,8 @@ pub fn of_shape(shape: Shape) -> Option<Exact> {
 
 impl Exact {
     fn new(surface: Box<dyn Surface>) -> Self {
-        Self { spread: Spread::new(surface.charts(), |chart, s, t| surface.at(chart, s, t).1), surface }
+        let spread = Spread::new(surface.charts(), |chart, s, t| surface.at(chart, s, t).1);
+        Self { spread, surface, facets: Mutex::default() }
     }
 
     /// Returns the nearest point of the surface.
@@ -74,27 +76,18 @@ impl Exact {
         (0..count).map(sample).collect()
     }
 
-    /// Returns points along the borders of all charts. All borders and creases of the surface are among these.
-    pub(super) fn edge_points(&self, spacing: f64) -> EdgePoints {
-        let mut edges = EdgePoints { points: Vec::new(), spacing: 0.0 };
-        for chart in 0..self.surface.charts() {
-            for side in [0.0, 1.0] {
-                edges.add(spacing, |t| self.surface.at(chart, side, t).0.point);
-                edges.add(spacing, |s| self.surface.at(chart, s, side).0.point);
+    /// Triangles that are at most `sag` away, or somewhat less.
+    pub(super) fn facets(&self, sag: f64) -> Facets {
+        // A comparison needs them twice.
+        let sag = sag.log2().floor().exp2();
+        let mut known = self.facets.lock().unwrap_or_else(PoisonError::into_inner);
+        match &*known {
+            Some((other, facets)) if *other == sag => facets.clone(),
+            _ => {
+                let facets = Facets::new(&*self.surface, sag);
+                *known = Some((sag, facets.clone()));
+                facets
             }
         }
-        edges
-    }
-}
-
-impl EdgePoints {
-    /// Adds points of a curve, whose parameter runs from 0 to 1.
-    fn add(&mut self, spacing: f64, at: impl Fn(f64) -> DVec3) {
-        let cut = |count: usize| -> Vec<DVec3> { (0..=count).map(|i| at(i as f64 / count as f64)).collect() };
-        let length: f64 = cut(LENGTH_SEGMENTS).windows(2).map(|ends| ends[0].distance(ends[1])).sum();
-        let points = cut(segments(length, spacing));
-        let widest = points.windows(2).map(|ends| ends[0].distance(ends[1])).fold(0.0, f64::max);
-        self.spacing = self.spacing.max(widest);
-        self.points.extend(points);
     }
 }

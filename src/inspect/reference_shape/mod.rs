@@ -6,20 +6,20 @@
 mod bicubic;
 mod ellipsoid;
 mod exact;
+mod facets;
 mod reference;
 mod revolved;
 mod root;
 mod saddle;
 mod spread;
 mod surface;
-mod triangles;
 
 use glam::DVec3;
 
 pub use exact::{Exact, of_shape};
+pub(crate) use facets::Facets;
 pub use reference::Reference;
 pub use spread::radical_inverse;
-pub use triangles::{Closest, Triangles, closest_on_triangle};
 
 use geometry::mesh::{Mesh, Shape};
 use geometry::progress::Progress;
@@ -42,13 +42,6 @@ pub struct Nearest {
 pub struct Sample {
     pub point: DVec3,
     pub normal: DVec3,
-}
-
-/// Places on a surface that points spread by area miss.
-pub struct EdgePoints {
-    pub points: Vec<DVec3>,
-    /// The largest distance between neighbouring points of an edge, in object units.
-    pub spacing: f64,
 }
 
 /// A reference surface: the surface that a tessellation should be.
@@ -114,20 +107,12 @@ impl ReferenceShape {
         }
     }
 
-    /// Returns a mesh's vertices, and points along its edges; or points along the borders and creases of an exact
-    /// surface. Neighbouring points of an edge are about as far apart as the neighbours among `count` points that are
-    /// spread by area, or farther if edges are so long that these would be more than about `count` points.
-    pub fn edge_points(&self, count: usize) -> EdgePoints {
+    /// Returns triangles that are the surface, or at most about `sag` away from it, in object units.
+    pub(crate) fn facets(&self, sag: f64) -> Facets {
         match self {
-            Self::Exact(exact) => exact.edge_points(self.spacing(count)),
-            Self::Mesh(mesh) => mesh.edge_points(self.spacing(count), count),
+            Self::Exact(exact) => exact.facets(sag),
+            Self::Mesh(mesh) => mesh.facets(),
         }
-    }
-
-    /// Returns the spacing of `count` points that are spread by area, in object units: the side of the square that each stands
-    /// for.
-    pub fn spacing(&self, count: usize) -> f64 {
-        (self.area() / count.max(1) as f64).sqrt()
     }
 
     /// Returns `count` points, spread evenly by area. They are the same every time.
@@ -154,12 +139,6 @@ impl ReferenceShape {
         };
         min.distance(max)
     }
-}
-
-/// Returns the number of segments, an even one, that cut an edge into pieces of at most `spacing`. Its middle is then one
-/// of the points between them. An edge that is no longer than `spacing` is one segment.
-fn segments(length: f64, spacing: f64) -> usize {
-    if length <= spacing { 1 } else { 2 * (length / (2.0 * spacing)).ceil() as usize }
 }
 
 /// The distance from a crease, relative to the surface's size, within which all normals of the crease count: a few

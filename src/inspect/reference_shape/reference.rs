@@ -5,13 +5,13 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use super::spread::{find, radical_inverse};
-use super::triangles::{Closest, Triangles};
-use super::{EdgePoints, Nearest, ON_CREASE, Sample, segments};
+use super::{Facets, Nearest, ON_CREASE, Sample};
 use geometry::mesh::{Corner, Mesh};
+use geometry::near::Closest;
 
 /// A mesh's flat triangles, with interpolated shading normals.
 pub struct Reference {
-    triangles: Triangles,
+    facets: Facets,
     /// The mesh's corners; `faces` has the three of each triangle.
     corners: Vec<Corner>,
     faces: Arc<Vec<[u32; 3]>>,
@@ -25,13 +25,13 @@ impl Reference {
     pub fn new(mesh: &Mesh) -> Option<Self> {
         let (corners, faces) = (mesh.corners.clone(), mesh.triangles.clone());
         let of = |triangle: &[u32; 3]| triangle.map(|corner| corners[corner as usize].position);
-        let triangles = Triangles::new(faces.iter().map(of))?;
+        let facets = Facets::from_mesh(corners.iter().map(|corner| corner.position).collect(), faces.clone())?;
         let areas = faces.iter().scan(0.0, |sum, triangle| {
             *sum += cross(&of(triangle)).length() / 2.0;
             Some(*sum)
         });
-        let (areas, [min, max]) = (areas.collect(), triangles.extent());
-        Some(Self { triangles, areas, diagonal: min.distance(max), corners, faces })
+        let (areas, [min, max]) = (areas.collect(), facets.tree.extent());
+        Some(Self { facets, areas, diagonal: min.distance(max), corners, faces })
     }
 
     fn triangle(&self, index: usize) -> [Corner; 3] {
@@ -44,7 +44,7 @@ impl Reference {
             normal: self.normal(closest.triangle as usize, closest.weights),
             distance: closest.distance,
         };
-        let all = self.triangles.all_closest(p, ON_CREASE * self.diagonal);
+        let all = self.facets.tree.all_closest(p, ON_CREASE * self.diagonal);
         // There is a nearest triangle, unless the place has a NaN coordinate.
         let nowhere = Nearest { point: p, normal: DVec3::Y, distance: f64::NAN };
         let Some(first) = all.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return nowhere };
@@ -57,7 +57,7 @@ impl Reference {
 
     /// Returns the nearest point and its distance.
     pub(super) fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
-        let found = self.triangles.closest(p, f64::INFINITY);
+        let found = self.facets.tree.closest(p, f64::INFINITY);
         // There is a nearest triangle, unless the place has a NaN coordinate.
         found.map_or((p, f64::NAN), |closest| (closest.point, closest.distance))
     }
@@ -88,38 +88,8 @@ impl Reference {
         (0..count).map(sample).collect()
     }
 
-    /// Returns the position of every corner that a triangle has, and points along the edges that are longer than
-    /// `spacing`. If that would be more than about `most` points on edges, these are farther apart.
-    pub(super) fn edge_points(&self, spacing: f64, most: usize) -> EdgePoints {
-        let at = |corner: u32| self.corners[corner as usize].position;
-        let position = |corner: u32| at(corner).as_dvec3();
-        let length = |[a, b]: [u32; 2]| position(a).distance(position(b));
-        let mut long = Vec::new();
-        for face in self.faces.iter() {
-            let [a, b, c] = face.map(at);
-            for (i, [from, to]) in [[a, b], [b, c], [c, a]].into_iter().enumerate() {
-                if from.as_dvec3().distance_squared(to.as_dvec3()) > spacing * spacing {
-                    let [from, to] = [face[i], face[(i + 1) % 3]];
-                    long.push([from.min(to), from.max(to)]);
-                }
-            }
-        }
-        long.sort_unstable();
-        long.dedup();
-        let whole: f64 = long.iter().map(|edge| length(*edge)).sum();
-        let spacing = spacing.max(whole / most.max(1) as f64);
-
-        let mut used = vec![false; self.corners.len()];
-        self.faces.iter().flatten().for_each(|corner| used[*corner as usize] = true);
-        let corners = (0..self.corners.len() as u32).filter(|corner| used[*corner as usize]);
-        let mut points: Vec<DVec3> = corners.map(position).collect();
-        let mut widest = 0.0_f64;
-        for edge in long {
-            let ([a, b], count) = (edge.map(position), segments(length(edge), spacing));
-            points.extend((1..count).map(|i| a.lerp(b, i as f64 / count as f64)));
-            widest = widest.max(length(edge) / count as f64);
-        }
-        EdgePoints { points, spacing: widest }
+    pub(super) fn facets(&self) -> Facets {
+        self.facets.clone()
     }
 
     pub(super) fn area(&self) -> f64 {
@@ -127,7 +97,7 @@ impl Reference {
     }
 
     pub(super) fn extent(&self) -> [DVec3; 2] {
-        self.triangles.extent()
+        self.facets.tree.extent()
     }
 }
 

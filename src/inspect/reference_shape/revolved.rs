@@ -56,6 +56,10 @@ impl Surface for Torus {
         let sample = Sample { point: turned(out, self.minor * sin, t), normal: turned(cos, sin, t) };
         (sample, TAU * out * TAU * self.minor)
     }
+
+    fn bends(&self, _: usize) -> [f64; 3] {
+        [self.minor, self.minor, self.major + self.minor].map(|radius| TAU * TAU * radius)
+    }
 }
 
 /// Line segments in the half-plane of distance from the axis and height. The outside is on their right.
@@ -122,5 +126,10 @@ impl Surface for Profile {
         let (at, normal) = (a.lerp(b, s), outward([a, b]));
         let sample = Sample { point: turned(at.x, at.y, t), normal: turned(normal.x, normal.y, t) };
         (sample, TAU * at.x * a.distance(b))
+    }
+
+    fn bends(&self, chart: usize) -> [f64; 3] {
+        let [a, b] = self.segments[chart];
+        [0.0, TAU * (b.x - a.x).abs(), TAU * TAU * a.x.max(b.x)]
     }
 }

@@ -54,6 +54,11 @@ impl Surface for Saddle {
         let area = 4.0 * self.half * self.half * (1.0 + x * x + z * z).sqrt();
         (Sample { point: point(x, z), normal: normal(x, z) }, area)
     }
+
+    fn bends(&self, _: usize) -> [f64; 3] {
+        let along = 4.0 * self.half * self.half;
+        [along, 0.0, along]
+    }
 }
 
 /// Returns the nearest point of the unbounded saddle to a p with x and z of 0 or more.

@@ -17,4 +17,7 @@ pub(super) trait Surface: Send + Sync {
 
     /// Returns the point at `s` and `t` (0 to 1) of a chart, and the surface's area there per area of the unit square.
     fn at(&self, chart: usize, s: f64, t: f64) -> (Sample, f64);
+
+    /// Returns lengths that the second derivatives by s twice, by s and t, and by t twice nowhere exceed in a chart.
+    fn bends(&self, chart: usize) -> [f64; 3];
 }

@@ -228,7 +228,7 @@ proptest! {
     ) {
         let triangles: Vec<_> = corners.iter().map(|t| t.map(|c| Vec3::from(c.map(f32::from)) * size)).collect();
         let p = DVec3::from(p) * f64::from(size);
-        let found = Triangles::new(triangles.iter().copied()).unwrap().closest(p, f64::INFINITY).unwrap();
+        let found = geometry::near::TriangleTree::new(triangles.iter().copied()).unwrap().closest(p, f64::INFINITY).unwrap();
         let on = |triangle: &[Vec3; 3], [a, b]: [f64; 2]| {
             let [x, y, z] = triangle.map(|corner| corner.as_dvec3());
             x * (1.0 - a - b) + y * a + z * b

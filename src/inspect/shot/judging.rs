@@ -3,10 +3,11 @@
 use image::RgbaImage;
 use serde::{Deserialize, Serialize};
 
+use super::reference_surface::ReferenceSurface;
 use super::{Shot, ShotError};
 use crate::engine::Measurements;
-use crate::gates::{Facts, Gate, GateKind, Judgement, Spot, Standpoints, judge};
-use crate::measure::Sight;
+use crate::gates::{Deviation, Facts, Gate, GateKind, Judgement, Limit, Spot, Standpoints, judge};
+use crate::measure::{Accuracy, AccuracyOptions, Narrow, Sight};
 use crate::render::{Camera, Leaks, worst_lines};
 use crate::settings::{Overlays, Settings, SplitSide};
 use geometry::mesh::t_junctions;
@@ -50,6 +51,9 @@ impl Shot {
         let is_compared = has(GateKind::AboveTolerance);
         let above = is_compared.then(|| engine.patches_above(scene, &inputs, tolerance_px)).transpose()?;
         self.error_place = above.and_then(|above| above.worst);
+        let deviation =
+            has(GateKind::Deviation).then(|| self.deviation_both_ways(gates, &inputs, progress)).transpose()?;
+        let Self { scene, .. } = self;
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
         let emitted = Some(scene.tessellator.totals());
@@ -60,13 +64,67 @@ impl Shot {
                 warnings: Some(&self.subject.loaded.warnings),
                 emitted,
                 measured: self.results(SplitSide::Right).and_then(|results| results.survey.as_ref()),
+                mesh: Some((&self.subject.loaded.mesh, &self.subject.loaded.topology)),
                 junctions: junctions.as_deref(),
                 leaks: leaks.as_ref(),
                 view: Some(self.view_of_picture()),
                 above: above.as_ref(),
+                deviation,
             },
         );
         Ok(self.judged.clone())
+    }
+
+    /// The largest distance from the reference surface and back, or why there is none. It is measured until it is decided whether
+    /// it is above the gates' limits, or as finely as is of use.
+    ///
+    /// # Errors
+    /// The device was lost, or `progress` was cancelled.
+    fn deviation_both_ways(
+        &mut self,
+        gates: &[Gate],
+        inputs: &Inputs,
+        progress: &Progress,
+    ) -> Result<Result<Deviation, &'static str>, ShotError> {
+        let Self { engine, scene, subject, .. } = self;
+        let reference_surface = subject.reference_surface.as_ref();
+        let Some((_, reference_shape)) = reference_surface.and_then(ReferenceSurface::reference_shape) else {
+            return Ok(Err("the distance isn't known without a reference surface: give one with --reference-surface"));
+        };
+        if engine.measure(scene)?.culled.total() > 0 {
+            return Ok(Err(
+                "the distance isn't known where patches are left out: judge it without clipping and culling",
+            ));
+        }
+        let mut deviation = Err("nothing was emitted that a distance could be measured from");
+        for narrow in [Narrow::default(), Narrow { relative: 1e-5, absolute: 1e-9 }] {
+            let options = AccuracyOptions { narrow, ..AccuracyOptions::default() };
+            let accuracy = Some((reference_shape, &inputs.view, options));
+            let wanted = Measurements { accuracy, ..Measurements::default() };
+            let accuracy = engine.measure_watched(scene, &wanted, progress)?.accuracy;
+            progress.check()?;
+            let Some(Accuracy { diagonal, to_reference, worst_to_reference: mut worst, from_reference, .. }) = accuracy
+            else {
+                break;
+            };
+            let Some((back, place)) = from_reference else {
+                return Ok(Err("the distance isn't known, since too many triangles were emitted to keep them"));
+            };
+            let [to, back] = [to_reference.largest, back.largest];
+            if back.at_least > to.at_least {
+                worst = place;
+            }
+            let distance = to.or(back);
+            deviation = Ok(Deviation { distance, diagonal, worst });
+            let lies_between = |gate: &Gate| match gate.limit {
+                Limit::Length(length) => (distance.at_least..distance.at_most).contains(&length.in_units(diagonal)),
+                Limit::Count(_) => false,
+            };
+            if !gates.iter().any(lies_between) {
+                break;
+            }
+        }
+        Ok(deviation)
     }
 
     /// The leaks of the picture, which a survey must have been made for. The scene must have been counted with `inputs`.

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use glam::DVec3;
 use serde::Serialize;
 
-use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Sampling};
+use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Rms, WorstPoint};
 use crate::reference_shape::ReferenceShape;
 use crate::render::Scale;
+use geometry::near::Interval;
 use geometry::tessellate::Inputs;
 
 /// The surface that a picture is compared with.
@@ -36,7 +36,7 @@ impl ReferenceSurface {
     }
 }
 
-/// The sampled distance of everything that was emitted from the reference surface.
+/// The distance of everything that was emitted from the reference surface.
 #[derive(Debug, Serialize)]
 pub(super) struct AccuracyStats {
     reference_surface: String,
@@ -44,49 +44,53 @@ pub(super) struct AccuracyStats {
     diagonal: f64,
     /// From what was emitted to the nearest points of the reference surface.
     to_reference: DistanceStats,
-    /// From the reference surface to the nearest points of what was emitted; none if patches were left out.
+    /// From the reference surface to the nearest points of what was emitted; none if patches were left out, or too many
+    /// triangles were emitted to keep them.
     from_reference: Option<DistanceStats>,
-    /// The largest distance on screen, in px; none if nothing is in view.
+    /// The largest distance on screen, in px, of the samples and the worst place; none if none of these is in view.
     max_px: Option<f64>,
-    /// Between shading normals and those of the reference surface, in degrees.
+    /// Between shading normals and those of the reference surface, in degrees; the largest one of the samples.
     normals: AngleStats,
+    /// The number of points that means and angles were sampled at.
+    samples: u64,
 }
 
-/// In object units, and as parts of the reference surface's diagonal.
+/// In object units, and as parts of the reference surface's diagonal. The largest distance lies between two numbers for
+/// certain; the root mean square has a standard error.
 #[derive(Debug, Serialize)]
 struct DistanceStats {
-    max: f64,
-    rms: f64,
-    max_of_diagonal: f64,
-    rms_of_diagonal: f64,
-    /// The number of points that were measured.
-    samples: u64,
-    /// The largest spacing of these points.
-    spacing: f64,
+    max: Interval,
+    rms: Rms,
+    max_of_diagonal: Interval,
+    rms_of_diagonal: Rms,
+    /// Where the lower end of the largest distance was found.
+    worst: WorstStats,
 }
 
 #[derive(Debug, Serialize)]
 struct AngleStats {
     max: f64,
-    rms: f64,
+    rms: Rms,
 }
 
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
     pub(super) fn new(reference_shape: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
-        let distances = |distances: Distances, Sampling { samples, spacing }| {
+        let distances = |distances: Distances, worst: WorstPoint| {
             let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
-            DistanceStats { max, rms, max_of_diagonal, rms_of_diagonal, samples, spacing }
+            DistanceStats { max, rms, max_of_diagonal, rms_of_diagonal, worst: worst.into() }
         };
         let Angles { largest, rms } = accuracy.normals;
+        let from_reference = accuracy.from_reference.filter(|_| is_whole);
         Self {
             reference_surface: reference_shape.to_owned(),
             diagonal: accuracy.diagonal,
-            to_reference: distances(accuracy.to_reference, accuracy.to_reference_sampling),
-            from_reference: is_whole.then(|| distances(accuracy.from_reference, accuracy.from_reference_sampling)),
+            to_reference: distances(accuracy.to_reference, accuracy.worst_to_reference),
+            from_reference: from_reference.map(|(from, worst)| distances(from, worst)),
             max_px: accuracy.worst_px.map(|worst| worst.value),
             normals: AngleStats { max: largest, rms },
+            samples: accuracy.samples,
         }
     }
 }
@@ -94,7 +98,8 @@ impl AccuracyStats {
 /// What the deviation overlay shows, in object units.
 #[derive(Debug, Serialize)]
 pub(super) struct DeviationStats {
-    max: f64,
+    /// The largest distance; its upper end is none where distances go to a limit surface, which are sampled.
+    max: Interval,
     rms: f64,
     /// The distances of the first and the last colour, if distances are in object units; the scale is logarithmic.
     scale: [f32; 2],
@@ -112,14 +117,16 @@ struct WorstStats {
     reference_surface: [f64; 3],
 }
 
+impl From<WorstPoint> for WorstStats {
+    fn from(worst: WorstPoint) -> Self {
+        let [emitted, reference_surface] = [worst.emitted, worst.reference_shape].map(|place| place.to_array());
+        Self { patch: worst.patch, emitted, reference_surface }
+    }
+}
+
 impl DeviationStats {
     pub(super) fn new(field: &DeviationField, scale: Scale) -> Self {
-        let max = field.worst().map_or(0.0, |worst| worst.value);
-        let worst = field.worst().map(|worst| {
-            let [emitted, reference_surface] =
-                [worst.emitted, worst.reference_shape].map(|place: DVec3| place.to_array());
-            WorstStats { patch: worst.patch, emitted, reference_surface }
-        });
+        let (max, worst) = (field.largest(), field.worst().map(WorstStats::from));
         Self { max, rms: field.rms(), scale: [scale.least, scale.most], worst, triangles_left_out: field.left_out }
     }
 }

@@ -81,7 +81,7 @@ impl Bench<'_> {
         probe.errors = accuracy.map(|accuracy| {
             let distances = accuracy.relative(accuracy.both_ways());
             let normal_degrees = accuracy.normals.largest;
-            Errors { largest: distances.largest, rms: distances.rms, normal_degrees }
+            Errors { largest: distances.largest, rms: distances.rms.value, normal_degrees }
         });
         Ok(Some(probe))
     }

@@ -27,6 +27,7 @@ pub use race::{front, has_converged};
 pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
+use geometry::near::Interval;
 use geometry::tessellate::Vertex;
 use gpu::{DRAWING, PassTime};
 use inspect::settings::Choice;
@@ -35,7 +36,7 @@ use inspect::settings::Choice;
 type Column = (&'static str, fn(&Row) -> String);
 
 /// The columns of a row written as CSV. Numbers read back exactly, and unknown values are empty.
-const COLUMNS: [Column; 18] = [
+const COLUMNS: [Column; 19] = [
     ("mesh", |row| row.mesh.clone()),
     ("adapter", |row| row.adapter.clone()),
     ("surface", |row| row.setting.method.surface.name().to_owned()),
@@ -49,11 +50,12 @@ const COLUMNS: [Column; 18] = [
     ("ms_tessellate", |row| row.probe.time.tessellate.to_string()),
     ("ms_draw", |row| row.probe.time.draw.to_string()),
     ("ms_total", |row| row.probe.time.total().to_string()),
-    ("max_error", |row| known(row.probe.errors.map(|errors| errors.largest))),
+    ("max_error", |row| known(row.probe.errors.map(|errors| errors.largest.at_most))),
     ("rms_error", |row| known(row.probe.errors.map(|errors| errors.rms))),
     ("max_error_px", |row| known(row.probe.max_error_px)),
     ("normal_error_deg", |row| known(row.probe.errors.map(|errors| errors.normal_degrees))),
     ("triangles_by_error", |row| known(row.probe.triangles_by_error)),
+    ("max_error_at_least", |row| known(row.probe.errors.map(|errors| errors.largest.at_least))),
 ];
 
 fn known(number: Option<impl ToString>) -> String {
@@ -61,7 +63,7 @@ fn known(number: Option<impl ToString>) -> String {
 }
 
 /// The names of the columns of [`Row::record`].
-pub fn columns() -> [&'static str; 18] {
+pub fn columns() -> [&'static str; 19] {
     COLUMNS.map(|(name, _)| name)
 }
 
@@ -103,7 +105,7 @@ pub struct Time {
 /// Distances in both directions, as parts of the reference surface's bounding diagonal, and the largest angle between normals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    pub largest: f64,
+    pub largest: Interval,
     pub rms: f64,
     pub normal_degrees: f64,
 }
@@ -131,7 +133,7 @@ impl Row {
     }
 
     /// The row as a record of CSV.
-    pub fn record(&self) -> [String; 18] {
+    pub fn record(&self) -> [String; 19] {
         COLUMNS.map(|(_, text)| text(self))
     }
 }
@@ -150,7 +152,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// The largest error of a row: a part of the reference surface's diagonal, or px without a reference surface.
+    /// What the largest error of a row is at most: a part of the reference surface's diagonal, or px without a reference surface.
     pub fn error(&self, row: &Row) -> Option<f64> {
         self.error_of(&row.probe)
     }
@@ -158,7 +160,7 @@ impl Subject {
     /// The largest error of any settings: see [`Self::error`].
     pub fn error_of(&self, probe: &Probe) -> Option<f64> {
         let error = match self.reference_shape {
-            Some(_) => probe.errors.map(|errors| errors.largest),
+            Some(_) => probe.errors.map(|errors| errors.largest.at_most),
             None => probe.max_error_px,
         };
         error.filter(|error| error.is_finite())

@@ -53,7 +53,7 @@ pub fn has_converged(rows: &[Row], method: Method) -> bool {
     let Some(last) = own.next() else { return false };
     let errors = |row: &Row| {
         let [largest, rms, degrees] =
-            row.probe.errors.map_or([0.0; 3], |errors| [errors.largest, errors.rms, errors.normal_degrees]);
+            row.probe.errors.map_or([0.0; 3], |errors| [errors.largest.at_least, errors.rms, errors.normal_degrees]);
         [largest, rms, degrees, row.probe.max_error_px.unwrap_or(0.0)]
     };
     let is_no_closer = |earlier: &Row| {

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use serde::{Deserialize, Serialize};
+use serde_json::{Value, json};
 
 use geometry::numbers::grouped;
 use inspect::gates::{GateKind, Judgement, Place};
@@ -51,10 +52,10 @@ pub struct View {
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GateResult {
     pub name: String,
-    /// The largest number that passes.
-    pub limit: u64,
-    /// None if nothing could be counted, and then the gate failed.
-    pub found: Option<u64>,
+    /// The largest number that passes: a count, or a length as text.
+    pub limit: Value,
+    /// A count, or a length as two numbers; null if nothing could be found out, and then the gate failed.
+    pub found: Value,
     pub passed: bool,
     /// What was found, and where if it failed, in a sentence without its end.
     pub text: String,
@@ -109,8 +110,8 @@ impl GateResult {
         };
         Self {
             name: judgement.gate.to_owned(),
-            limit: judgement.limit,
-            found: judgement.found,
+            limit: json!(judgement.limit),
+            found: json!(judgement.found),
             passed: judgement.passed,
             text: if judgement.passed { judgement.text.clone() } else { judgement.sentence() },
             place: judgement.place.as_ref().map(place),
@@ -219,7 +220,7 @@ fn asset_json(asset: &Asset) -> serde_json::Result<serde_json::Value> {
 pub(super) fn sample() -> Report {
     let gate = |name: &str, found: Option<u64>, text: &str| GateResult {
         name: name.into(),
-        found,
+        found: json!(found),
         passed: found == Some(0),
         text: text.into(),
         ..GateResult::default()

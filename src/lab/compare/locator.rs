@@ -7,17 +7,17 @@ use glam::{DVec3, Vec3};
 use super::net_mistakes::NetMistake;
 use super::patch_starts::patch_starts;
 use geometry::mesh::{Mesh, Topology};
+use geometry::near::{TriangleTree, closest_on_triangle};
 use geometry::tessellate::{
     ControlNet, FIXED_ONE, Inputs, LimitSurface, Partitioning, Tessellated, Tessellation, Vertex, tessellate,
 };
-use inspect::reference_shape::{Triangles, closest_on_triangle};
 
 /// Patches that are cut into triangles, with a hierarchy of boxes to find the nearest one.
 pub(super) struct Locator<'a> {
     cut: Cow<'a, Tessellated>,
     /// The first triangle of each patch, and the end.
     starts: Vec<u32>,
-    tree: Triangles,
+    tree: TriangleTree,
     /// The surface that the triangles approximate; `None` if they are the surface themselves.
     limit: Option<LimitSurface<'a>>,
     /// What is wrong with that surface's control points.
@@ -107,7 +107,7 @@ impl<'a> Locator<'a> {
         mistake: Option<NetMistake>,
     ) -> Option<Self> {
         let at = |index: u32| Vec3::from(cut.vertices[index as usize].position);
-        let tree = Triangles::new(cut.triangles.iter().map(|triangle| triangle.map(at)))?;
+        let tree = TriangleTree::new(cut.triangles.iter().map(|triangle| triangle.map(at)))?;
         let patches = cut.triangles.iter().map(|triangle| cut.vertices[triangle[0] as usize].patch());
         let starts = patch_starts(patches, topology.patches.len());
         let mut made = Self { starts, tree, limit, mistake, cut, sag: 0.0 };

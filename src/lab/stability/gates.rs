@@ -3,7 +3,7 @@
 use super::{Method, Row, Tried};
 use geometry::choice::Choice;
 use geometry::numbers::{grouped, short};
-use inspect::gates::{Gate, GateKind, allowed};
+use inspect::gates::{Gate, GateKind};
 
 /// A gate that failed.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,9 @@ pub fn failures(gates: &[Gate], rows: &[Row]) -> Vec<Failure> {
 }
 
 fn failure(Gate { kind, limit }: &Gate, rows: &[Row]) -> Option<Failure> {
-    let fails = |row: &&Row| row.quantity.gate() == Some(*kind) && row.measured > *limit as f64;
+    let fails = |row: &&Row| {
+        row.quantity.gate() == Some(*kind) && limit.count().is_some_and(|limit| row.measured > limit as f64)
+    };
     let worst = rows.iter().filter(fails).reduce(|a, b| if b.measured > a.measured { b } else { a })?;
     let mut methods: Vec<&str> = Vec::new();
     for row in rows.iter().filter(fails).filter(|row| row.case == worst.case) {
@@ -46,7 +48,7 @@ fn failure(Gate { kind, limit }: &Gate, rows: &[Row]) -> Option<Failure> {
     let sentence = format!(
         "{case} fails the gate {}: {method} has {number} {unit} with {partitioning} partitioning on {device}, {}{others}",
         kind.name(),
-        allowed(*limit),
+        limit.allowed(),
     );
     Some(Failure { kind: *kind, case: case.clone(), sentence, tried: worst.tried })
 }

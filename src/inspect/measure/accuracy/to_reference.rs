@@ -1,11 +1,8 @@
-//! The direction from what was emitted to the reference surface.
-
-use std::cmp::Reverse;
+//! Samples from what was emitted to the reference surface.
 
 use glam::{DVec3, Vec3};
 
-use super::peaks::Peaks;
-use super::{AccuracyMeasurement, Sampling, Screen, WorstPoint, blocks, worse};
+use super::{AccuracyMeasurement, MeanSquare, Screen, WorstPoint, blocks, worse};
 use crate::reference_shape::ReferenceShape;
 use geometry::tessellate::{Vertex, unpack_normal};
 
@@ -16,11 +13,10 @@ impl AccuracyMeasurement<'_> {
     /// Measures from the emitted triangles to the reference surface.
     pub(super) fn take_triangles(&mut self, vertices: &[Vertex], triangles: &[[u32; 3]]) {
         let this = &*self;
-        let none = || Sums::new(&this.no_peaks);
         let mut used = vec![false; vertices.len()];
         triangles.iter().flatten().for_each(|index| used[*index as usize] = true);
         let corners = blocks(vertices.len(), this.options.threads, |range| {
-            let mut sums = none();
+            let mut sums = Sums::default();
             for vertex in range.filter(|vertex| used[*vertex]).map(|vertex| &vertices[vertex]) {
                 let point = Point { position: position(vertex), normal: normal(vertex), patch: vertex.patch() };
                 sums.add(&point, 0.0, this.reference_shape, this.screen.as_ref());
@@ -28,21 +24,12 @@ impl AccuracyMeasurement<'_> {
             sums
         });
         let insides = blocks(triangles.len(), this.options.threads, |range| {
-            let mut sums = none();
+            let mut sums = Sums::default();
             let sampled = triangles[range].iter().map(|triangle| triangle.map(|index| &vertices[index as usize]));
             sampled.for_each(|corners| this.sample(corners, &mut sums));
             sums
         });
-        let edges = this.edges(vertices, triangles);
-        let on_edges = blocks(edges.len(), this.options.threads, |range| {
-            let mut sums = none();
-            for edge in &edges[range] {
-                let ends = edge.ends.map(|index| &vertices[index as usize]);
-                sums.add_edge(ends, edge.steps, this.reference_shape, this.screen.as_ref());
-            }
-            sums
-        });
-        self.sums = corners.into_iter().chain(insides).chain(on_edges).fold(std::mem::take(&mut self.sums), Sums::with);
+        self.sums = corners.into_iter().chain(insides).fold(std::mem::take(&mut self.sums), Sums::with);
     }
 
     /// The number of segments that a triangle's edges are cut into to sample its inside. It isn't a multiple of 3, since then
@@ -51,24 +38,6 @@ impl AccuracyMeasurement<'_> {
         let requested = (area * self.options.samples as f64 / self.reference_shape.area()).sqrt().ceil();
         let n = (requested as u32).clamp(2, MAX_STEPS);
         if n.is_multiple_of(3) { n + 1 } else { n }
-    }
-
-    /// The edges of triangles, each once. They are cut into segments that are no longer than the spacing of samples, but
-    /// into no more than twice as many as the triangle: a sliver has little area and long edges.
-    fn edges(&self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> Vec<Edge> {
-        let at = |index: u32| position(&vertices[index as usize]);
-        let of_triangle = |triangle: &[u32; 3]| {
-            let most = self.steps(area(triangle.map(at)));
-            let [a, b, c] = *triangle;
-            [[a, b], [b, c], [c, a]].map(|[a, b]| {
-                let halves = (at(a).distance(at(b)) / (2.0 * self.spacing)).ceil() as u32;
-                Edge { ends: [a.min(b), a.max(b)], steps: 2 * halves.clamp(1, most) }
-            })
-        };
-        let mut edges: Vec<Edge> = triangles.iter().flat_map(of_triangle).collect();
-        edges.sort_unstable_by_key(|edge| (edge.ends, Reverse(edge.steps)));
-        edges.dedup_by_key(|edge| edge.ends);
-        edges
     }
 
     /// Cuts a triangle into equal ones, n along each edge, and takes the middle of each.
@@ -104,14 +73,6 @@ fn area([a, b, c]: [DVec3; 3]) -> f64 {
     (b - a).cross(c - a).length() / 2.0
 }
 
-/// An edge of emitted triangles.
-struct Edge {
-    /// The indices of its ends, the lower one first.
-    ends: [u32; 2],
-    /// The number of segments that it is cut into for sampling.
-    steps: u32,
-}
-
 /// An emitted point, and its shading normal.
 struct Point {
     position: DVec3,
@@ -130,24 +91,20 @@ fn normal(vertex: &Vertex) -> DVec3 {
 /// The sums and worst points so far, from what was emitted to the reference surface.
 #[derive(Default)]
 pub(super) struct Sums {
-    pub area: f64,
-    /// The squares of distances, and of angles in degrees, each times the area.
-    pub squares: f64,
-    pub angles: f64,
-    pub sampling: Sampling,
-    /// Places by their distance in object units.
-    pub peaks: Peaks,
-    /// Places by their distance on screen, in px.
-    pub peaks_px: Peaks,
+    /// Of distances, in object units.
+    pub squares: MeanSquare,
+    /// Of angles, in degrees.
+    pub angles: MeanSquare,
+    pub samples: u64,
+    /// The largest distance of a sample, in object units.
+    pub largest: f64,
+    /// The sample with the largest distance on screen, in px.
+    pub worst_px: Option<WorstPoint>,
     pub worst_normal: Option<WorstPoint>,
     pub not_finite: u64,
 }
 
 impl Sums {
-    pub(super) fn new(no_peaks: &Peaks) -> Self {
-        Self { peaks: no_peaks.clone(), peaks_px: no_peaks.clone(), ..Self::default() }
-    }
-
     /// Adds a point that stands for some area.
     fn add(&mut self, point: &Point, area: f64, reference_shape: &ReferenceShape, screen: Option<&Screen>) {
         let nearest = reference_shape.closest_facing(point.position, point.normal);
@@ -155,46 +112,26 @@ impl Sums {
         let angle = point.normal.cross(nearest.normal).length().atan2(point.normal.dot(nearest.normal)).to_degrees();
         let place =
             WorstPoint { value: angle, patch: point.patch, emitted: point.position, reference_shape: nearest.point };
-        self.area += area;
-        self.squares += area * nearest.distance * nearest.distance;
-        self.angles += area * angle * angle;
-        self.worst_normal = self.worst_normal.into_iter().chain([place]).reduce(worse);
-        self.add_place(WorstPoint { value: nearest.distance, ..place }, screen);
-        self.sampling.spacing = self.sampling.spacing.max(area.sqrt());
+        let in_px = screen.and_then(|screen| place.in_px(screen));
+        *self = std::mem::take(self).with(Self {
+            squares: MeanSquare::new(nearest.distance, area),
+            angles: MeanSquare::new(angle, area),
+            samples: 1,
+            largest: nearest.distance,
+            worst_px: in_px,
+            worst_normal: Some(place),
+            not_finite: 0,
+        });
     }
 
-    /// Adds the points between the ends of an edge. Their angles don't count: an edge along a curved crease belongs to triangles
-    /// on both sides, but lies on one side of the reference surface's crease.
-    fn add_edge(&mut self, ends: [&Vertex; 2], steps: u32, reference_shape: &ReferenceShape, screen: Option<&Screen>) {
-        let [a, b] = ends.map(position);
-        for i in 1..steps {
-            let emitted = a.lerp(b, f64::from(i) / f64::from(steps));
-            let (point, value) = reference_shape.closest_point(emitted);
-            self.add_place(WorstPoint { value, patch: ends[0].patch(), emitted, reference_shape: point }, screen);
-        }
-        self.sampling.spacing = self.sampling.spacing.max(a.distance(b) / f64::from(steps));
-    }
-
-    /// Adds a place with its distance in object units.
-    fn add_place(&mut self, place: WorstPoint, screen: Option<&Screen>) {
-        self.peaks.add(place.emitted, place);
-        if let Some(in_px) = screen.and_then(|screen| place.in_px(screen)) {
-            self.peaks_px.add(place.emitted, in_px);
-        }
-        self.sampling.samples += 1;
-    }
-
-    fn with(mut self, other: Self) -> Self {
+    fn with(self, other: Self) -> Self {
         let worst = |a: Option<WorstPoint>, b: Option<WorstPoint>| a.into_iter().chain(b).reduce(worse);
-        self.peaks.join(&other.peaks);
-        self.peaks_px.join(&other.peaks_px);
         Self {
-            area: self.area + other.area,
-            squares: self.squares + other.squares,
-            angles: self.angles + other.angles,
-            sampling: self.sampling.with(other.sampling),
-            peaks: self.peaks,
-            peaks_px: self.peaks_px,
+            squares: self.squares.with(other.squares),
+            angles: self.angles.with(other.angles),
+            samples: self.samples + other.samples,
+            largest: self.largest.max(other.largest),
+            worst_px: worst(self.worst_px, other.worst_px),
             worst_normal: worst(self.worst_normal, other.worst_normal),
             not_finite: self.not_finite + other.not_finite,
         }

@@ -1,0 +1,8 @@
+//! What is near: nearest points of triangles, and how far one surface is from another, with a proof.
+
+mod farthest;
+mod polygon;
+mod triangle_tree;
+
+pub use farthest::{Farthest, Goal, Interval, Soup, farthest};
+pub use triangle_tree::{Closest, TriangleTree, closest_on_triangle};

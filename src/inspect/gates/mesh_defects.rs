@@ -1,0 +1,217 @@
+//! Defects of a mesh as it was loaded that decide how it tessellates: where they are.
+
+use std::collections::HashSet;
+
+use super::GateKind;
+use geometry::casts::to_u32;
+use geometry::mesh::{Bounds, Edge, EdgeKind, Mesh, Topology};
+use geometry::near::TriangleTree;
+
+/// Open edges that another one is nearer to than this part of the bounding diagonal nearly meet it.
+const NEAR: f32 = 1e-4;
+
+/// Where a defect is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Defects {
+    /// Edges of the topology.
+    Edges(Vec<u32>),
+    /// Triangles of the mesh.
+    Triangles(Vec<u32>),
+}
+
+impl Defects {
+    pub(super) fn count(&self) -> usize {
+        match self {
+            Self::Edges(all) | Self::Triangles(all) => all.len(),
+        }
+    }
+
+    /// How many there are, in words. `#` stands for the number.
+    pub(super) const fn words(kind: GateKind) -> Option<[&'static str; 2]> {
+        Some(match kind {
+            GateKind::NonManifold => ["# edge has three triangles or more", "# edges have three triangles or more"],
+            GateKind::Boundary => ["# edge is open", "# edges are open"],
+            GateKind::Winding => {
+                ["# edge has triangles wound opposite ways", "# edges have triangles wound opposite ways"]
+            }
+            GateKind::NormalsAgainstFaces => {
+                ["# triangle has a normal that points behind it", "# triangles have a normal that points behind them"]
+            }
+            GateKind::Degenerate => ["# triangle has no area", "# triangles have no area"],
+            GateKind::Duplicates => ["# triangle repeats another one", "# triangles repeat another one"],
+            GateKind::NearSeam => ["# open edge nearly meets another one", "# open edges nearly meet another one"],
+            GateKind::HardEdges => ["# edge has two normals at an end", "# edges have two normals at an end"],
+            GateKind::Cracks
+            | GateKind::Factors
+            | GateKind::Leaks
+            | GateKind::Folds
+            | GateKind::TJunctions
+            | GateKind::Warnings
+            | GateKind::AboveTolerance
+            | GateKind::Deviation
+            | GateKind::Triangles
+            | GateKind::Bytes => return None,
+        })
+    }
+
+    /// Finds the defects that a gate counts; `None` if it is about something else.
+    pub(super) fn find(kind: GateKind, mesh: &Mesh, topology: &Topology) -> Option<Self> {
+        let edges = |is_one: &dyn Fn(&Edge) -> bool| Self::edges(topology, is_one);
+        Some(match kind {
+            GateKind::NonManifold => edges(&|edge| edge.kind == EdgeKind::NonManifold),
+            GateKind::Boundary => edges(&|edge| edge.kind == EdgeKind::Boundary),
+            GateKind::Winding => {
+                edges(&|edge| matches!(topology.edge_sides(edge), [a, b] if a.reversed() == b.reversed()))
+            }
+            GateKind::HardEdges => edges(&|edge| edge.kind == EdgeKind::Split),
+            GateKind::NearSeam => {
+                let is_near = near_another(topology);
+                edges(&|edge| {
+                    let ends = topology.edge_points(edge);
+                    edge.kind == EdgeKind::Boundary && ends.iter().all(|point| is_near[*point as usize])
+                })
+            }
+            GateKind::NormalsAgainstFaces => Self::Triangles(against_faces(mesh, topology)),
+            GateKind::Degenerate => Self::Triangles(without_area(mesh, topology)),
+            GateKind::Duplicates => Self::Triangles(repeated(topology)),
+            GateKind::Cracks
+            | GateKind::Factors
+            | GateKind::Leaks
+            | GateKind::Folds
+            | GateKind::TJunctions
+            | GateKind::Warnings
+            | GateKind::AboveTolerance
+            | GateKind::Deviation
+            | GateKind::Triangles
+            | GateKind::Bytes => return None,
+        })
+    }
+
+    fn edges(topology: &Topology, is_one: &dyn Fn(&Edge) -> bool) -> Self {
+        let found = topology.edges.iter().enumerate().filter(|(_, edge)| is_one(edge));
+        Self::Edges(found.map(|(index, _)| to_u32(index)).collect())
+    }
+}
+
+/// Triangles with a corner whose normal points to the back of their face.
+fn against_faces(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
+    let is_one = |patch: &u32| {
+        let [a, b, c] = topology.patch_positions(*patch).map(|corner| corner.as_dvec3());
+        let face = (b - a).cross(c - a);
+        let corners = mesh.triangles[topology.patches[*patch as usize].triangle as usize];
+        corners.iter().any(|corner| mesh.corners[*corner as usize].normal.as_dvec3().dot(face) < 0.0)
+    };
+    let found = (0..to_u32(topology.patches.len())).filter(is_one);
+    found.map(|patch| topology.patches[patch as usize].triangle).collect()
+}
+
+/// Triangles with two corners on one point, and those with their corners in line.
+fn without_area(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
+    let mut has_area = vec![false; mesh.triangles.len()];
+    for (patch, of) in topology.patches.iter().enumerate() {
+        has_area[of.triangle as usize] = !topology.is_in_line(to_u32(patch));
+    }
+    (0..to_u32(has_area.len())).filter(|triangle| !has_area[*triangle as usize]).collect()
+}
+
+/// Patches with the same three points as one before them.
+fn repeated(topology: &Topology) -> Vec<u32> {
+    let mut known = HashSet::with_capacity(topology.patches.len());
+    let mut is_new = |patch: u32| {
+        let mut points = topology.patch_points(patch);
+        points.sort_unstable();
+        known.insert(points)
+    };
+    let found = (0..to_u32(topology.patches.len())).filter(|patch| !is_new(*patch));
+    found.map(|patch| topology.patches[patch as usize].triangle).collect()
+}
+
+/// For each point, whether it ends open edges, and one that ends others is nearer than [`NEAR`], which is less than half the
+/// length of each of these edges.
+fn near_another(topology: &Topology) -> Vec<bool> {
+    let reach = f64::from(NEAR * Bounds::new(topology.points.iter().copied()).diagonal());
+    let at = |point: u32| topology.points[point as usize];
+    let mut shortest = vec![f64::INFINITY; topology.points.len()];
+    for edge in topology.edges.iter().filter(|edge| edge.kind == EdgeKind::Boundary) {
+        let [a, b] = topology.edge_points(edge);
+        let length = at(a).as_dvec3().distance(at(b).as_dvec3());
+        [a, b].iter().for_each(|end| shortest[*end as usize] = shortest[*end as usize].min(length));
+    }
+    let is_long = |point: u32| (2.0 * reach..f64::INFINITY).contains(&shortest[point as usize]);
+    let points: Vec<u32> = (0..to_u32(topology.points.len())).filter(|point| is_long(*point)).collect();
+    let mut is_near = vec![false; topology.points.len()];
+    let Some(tree) = TriangleTree::new(points.iter().map(|point| [at(*point); 3])) else { return is_near };
+    for &point in &points {
+        let place = at(point).as_dvec3();
+        is_near[point as usize] = tree.any_within(place, reach, |other| points[other as usize] != point);
+    }
+    is_near
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3, vec3};
+
+    use super::*;
+    use geometry::choice::Choice;
+    use geometry::mesh::Corner;
+
+    /// A mesh of these triangles, each of which has corners of its own with one normal.
+    fn mesh(triangles: &[[Vec3; 3]], normals: &[Vec3]) -> (Mesh, Topology) {
+        let corners = triangles.iter().zip(normals.iter().cycle()).flat_map(|(triangle, normal)| {
+            triangle.map(|position| Corner { position, normal: *normal, uv: Vec2::ZERO })
+        });
+        let indices: Vec<[u32; 3]> = (0..to_u32(triangles.len())).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let mesh = Mesh { corners: corners.collect(), triangles: indices.into(), ..Mesh::default() };
+        let topology = Topology::new(&mesh);
+        (mesh, topology)
+    }
+
+    fn counts(triangles: &[[Vec3; 3]], normals: &[Vec3]) -> Vec<(&'static str, usize)> {
+        let (mesh, topology) = mesh(triangles, normals);
+        let of = |kind: &GateKind| Some((kind.name(), Defects::find(*kind, &mesh, &topology)?.count()));
+        GateKind::ALL.iter().filter_map(of).filter(|(_, count)| *count > 0).collect()
+    }
+
+    const A: Vec3 = Vec3::ZERO;
+    const B: Vec3 = Vec3::X;
+    const C: Vec3 = Vec3::NEG_Z;
+
+    #[test]
+    fn each_defect_is_counted_where_it_is() {
+        let d = vec3(1.0, 0.0, -1.0);
+        assert_eq!(counts(&[[A, B, C]], &[Vec3::Y]), [("boundary", 3)]);
+        assert_eq!(counts(&[[A, B, C], [B, d, C]], &[Vec3::Y]), [("boundary", 4)]);
+        assert_eq!(
+            counts(&[[A, B, C], [B, C, d]], &[Vec3::Y]),
+            [("boundary", 4), ("winding", 1), ("normals-against-faces", 1)]
+        );
+        assert_eq!(
+            counts(&[[A, B, C], [B, d, C]], &[Vec3::Y, vec3(0.1, 1.0, 0.0)]),
+            [("boundary", 4), ("hard-edges", 1)]
+        );
+        let fin = vec3(0.5, 1.0, -0.5);
+        let three = counts(&[[A, B, C], [B, d, C], [B, fin, C]], &[Vec3::Y, Vec3::Y, vec3(1.0, 0.0, 1.0)]);
+        assert!(three.contains(&("non-manifold", 1)), "{three:?}");
+        assert_eq!(counts(&[[A, B, C], [C, A, B]], &[Vec3::Y])[..1], [("winding", 3)]);
+        assert!(counts(&[[A, B, C], [C, A, B]], &[Vec3::Y]).contains(&("duplicates", 1)));
+        for thin in [[A, B, B], [A, A, A], [A, B / 2.0, B]] {
+            assert!(counts(&[[A, B, C], thin], &[Vec3::Y]).contains(&("degenerate", 1)), "{thin:?}");
+        }
+    }
+
+    #[test]
+    fn seams_that_nearly_meet_are_found_and_small_triangles_are_not_one() {
+        let gap = vec3(0.0, 5e-5, 0.0);
+        let other = [B + gap, vec3(1.0, 0.0, -1.0), C + gap];
+        assert!(counts(&[[A, B, C], other], &[Vec3::Y]).contains(&("near-seam", 2)));
+        assert!(
+            !counts(&[[A, B, C], other.map(|corner| corner + 10.0 * gap)], &[Vec3::Y])
+                .iter()
+                .any(|(name, _)| *name == "near-seam")
+        );
+        // The bounding box is that of the large one.
+        let small = [A, B, C].map(|corner| 5e-5 * corner + 0.5);
+        assert_eq!(counts(&[[A, B, C], small], &[Vec3::Y]), [("boundary", 6)]);
+    }
+}
