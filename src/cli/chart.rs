@@ -69,8 +69,8 @@ pub struct Args {
     /// Leave out settings with more triangles than this; standard error tells how many
     #[arg(long, value_name = "N", default_value_t = Effort::default().most_triangles, value_parser = whole_from(1_u64))]
     pub max_triangles: u64,
-    /// Sample points on the reference surface, besides its vertices and points on its edges; at least as many are taken on the
-    /// emitted triangles
+    /// Points of the reference surface that root mean squares and angles are sampled at; about as many are taken on the emitted
+    /// triangles
     #[arg(long, value_name = "N", default_value_t = AccuracyOptions::default().samples, value_parser = options::whole(100..=10_000_000_usize))]
     pub samples: usize,
     /// Width and height of the view, in px
@@ -134,8 +134,9 @@ impl Args {
     }
 
     fn effort(&self) -> Effort {
-        let accuracy = AccuracyOptions { samples: self.samples, ..AccuracyOptions::default() };
-        Effort { accuracy, most_triangles: self.max_triangles, ..Effort::default() }
+        let usual = Effort::default();
+        let accuracy = AccuracyOptions { samples: self.samples, ..usual.accuracy };
+        Effort { accuracy, most_triangles: self.max_triangles, ..usual }
     }
 
     /// The reference surface of a mesh, and its name: that of `--reference-surface`, or else the exact surface of a shape.

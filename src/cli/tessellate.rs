@@ -11,7 +11,7 @@ use super::posed::Posed;
 use super::view_files::{View, ViewFiles};
 use super::{
     AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of,
-    file_of_heights, keep_apart, options, warn,
+    file_of_heights, keep_apart, options, refuse, warn,
 };
 use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
@@ -97,6 +97,10 @@ impl Args {
         self.user_lod.check_alone(&self.given)?;
         self.user_surface.check(self.device == Device::Cpu, &self.gates.gates.fail_on)?;
         self.gates.check(self.device == Device::Cpu)?;
+        refuse(
+            self.gates.gates.has(GateKind::Deviation),
+            "--fail-on deviation needs a reference surface, which render and check take",
+        )?;
         Exported::check_ending(&self.output)?;
         Ok(())
     }

@@ -38,10 +38,13 @@ fn write_folds(folder: &Folder) -> String {
 
 #[test]
 fn a_sound_mesh_passes_all_gates() {
-    let gates = "cracks,factors,leaks,folds,t-junctions,warnings,above-tolerance,triangles:100000,bytes:4000000";
-    let (code, said, gates) = drawn(&["shape:torus", "--lod", "error", "--tolerance", "0.5", "--fail-on", gates]);
+    let gates = "cracks,factors,leaks,folds,t-junctions,warnings,above-tolerance,triangles:100000,bytes:4000000,\
+                 non-manifold,boundary,winding,normals-against-faces,degenerate,duplicates,near-seam,hard-edges,\
+                 deviation:2%";
+    let torus = ["shape:torus", "--reference-surface", "shape:torus", "--lod", "error", "--tolerance", "0.5"];
+    let (code, said, gates) = drawn(&[&torus[..], &["--fail-on", gates]].concat());
     assert_eq!((code, said.as_str()), (Some(0), ""));
-    assert_eq!(gates.len(), 9);
+    assert_eq!(gates.len(), 18);
     for gate in &gates {
         assert_eq!((&gate["passed"], &gate["where"]), (&true.into(), &Value::Null), "{gate}");
     }
@@ -49,6 +52,71 @@ fn a_sound_mesh_passes_all_gates() {
     assert_eq!(number(&gates[7], "/limit"), 100_000.0);
     // A vertex takes 32 bytes, and a triangle 12. A closed mesh has at least half as many vertices as triangles.
     assert!(found(8) > found(7) * 28.0, "{gates:?}");
+}
+
+/// Writes an OBJ file of these corners and faces.
+fn write_obj(folder: &Folder, name: &str, text: &str) -> String {
+    let path = folder.path(name);
+    std::fs::write(&path, text).expect("a writable folder");
+    path
+}
+
+#[test]
+fn a_mesh_is_judged_by_what_decides_how_it_tessellates() {
+    let folder = Folder::new();
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\n";
+    let gap = "v 1 0 0.00005\nv 0 1 0.00005\n";
+    let turned = "vn 0 0 1\nvn 0 0 -1\nf 1//1 2//1 3//2\n";
+    let cases = [
+        ("non-manifold", "f 1 2 3\nf 1 3 4\nf 1 3 5\n", "1 edge has three triangles or more"),
+        ("boundary", "f 1 2 3\nf 1 3 4\n", "4 edges are open"),
+        ("winding", "f 1 2 3\nf 1 4 3\n", "1 edge has triangles wound opposite ways"),
+        ("normals-against-faces", turned, "1 triangle has a normal that points behind it"),
+        ("degenerate", "f 1 2 3\nf 1 3 3\n", "1 triangle has no area"),
+        ("duplicates", "f 1 2 3\nf 2 3 1\n", "1 triangle repeats another one"),
+        ("near-seam", &format!("{gap}f 1 2 4\nf 6 3 7\n"), "2 open edges nearly meet another one"),
+        (
+            "hard-edges",
+            "vn 0 0 1\nvn 0 0.5 1\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n",
+            "1 edge has two normals at an end",
+        ),
+    ];
+    for (gate, faces, words) in cases {
+        let mesh = write_obj(&folder, &format!("{gate}.obj"), &format!("{square}{faces}"));
+        let evidence = folder.path(gate);
+        let (code, said, gates) = drawn(&[&mesh, "--fail-on", gate, "--evidence", &evidence]);
+        assert_eq!(code, Some(1), "{gate}: {said}");
+        assert_says(&said, &[words, "where 0 are allowed", "the longest is"]);
+        let is_picture =
+            |entry: std::io::Result<std::fs::DirEntry>| entry.expect("an entry").path().extension().is_some();
+        assert!(std::fs::read_dir(&evidence).expect("a picture of the place").any(is_picture));
+        assert_eq!(gates[0]["passed"], false);
+    }
+}
+
+#[test]
+fn deviation_passes_if_the_upper_end_does_and_fails_if_the_lower_end_does() {
+    let sphere = ["shape:icosahedron", "--surface", "flat", "--factor", "1"];
+    let exact = ["--reference-surface", "shape:icosahedron"];
+    let judged = |options: &[&str]| drawn(&[&sphere[..], options].concat());
+    // The largest distance is 0.2053 object units of 3.46.
+    for (limit, code) in [("0.21", 0), ("0.2", 1), ("210mm", 0), ("20cm", 1), ("6%", 0), ("5.9%", 1), ("0", 1)] {
+        let (found, said, gates) = judged(&[&exact[..], &["--fail-on", &format!("deviation:{limit}")]].concat());
+        assert_eq!(found, Some(code), "{limit}: {said}");
+        let [least, most] = ["at_least", "at_most"].map(|end| number(&gates[0], &format!("/found/{end}")));
+        assert!(least <= 0.205_346 && most >= 0.205_345 && most < 0.21, "{limit}: {gates:?}");
+        assert_eq!(gates[0]["limit"], limit);
+    }
+    let (code, said, _) = judged(&["--fail-on", "deviation:1"]);
+    assert_eq!(code, Some(1));
+    assert_says(&said, &["without a reference surface", "--reference-surface"]);
+    let culled = ["--cull-back-faces", "--fail-on", "deviation:1"];
+    let (code, said, _) = judged(&[&exact[..], &culled[..]].concat());
+    assert_eq!(code, Some(1));
+    assert_says(&said, &["patches are left out", "without clipping and culling"]);
+    failure(&["render", "shape:torus", "-o", "x.png", "--fail-on", "deviation"], 2);
+    let tessellate = ["tessellate", "shape:torus", "-o", "x.glb", "--fail-on", "deviation:1"];
+    assert!(failure(&tessellate, 2).contains("which render and check take"));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use egui_kittest::kittest::Queryable;
 use geometry::mesh::Shape;
 use geometry::tessellate::{Clip, Surface};
 use inspect::engine::Runs;
-use inspect::measure::AccuracyOptions;
+use inspect::measure::{AccuracyOptions, Narrow};
 use inspect::settings::Choice;
 use lab::chart::{Effort, LodKind, Plan, Row, Setting};
 use load::Source;
@@ -30,7 +30,7 @@ fn plan() -> Plan {
 /// The smallest effort that gives a number.
 fn effort() -> Effort {
     let runs = Runs { least: 1, most: 1, within: Duration::ZERO };
-    let accuracy = AccuracyOptions { samples: 500, threads: 2 };
+    let accuracy = AccuracyOptions { samples: 500, threads: 2, narrow: Narrow { searches: 1 << 12, ..Narrow::QUICK } };
     Effort { runs, accuracy, ..Effort::default() }
 }
 
@@ -81,7 +81,7 @@ fn legend_and_list_are_whole(harness: &Harness<App>) {
 }
 
 fn error(row: &Row) -> f64 {
-    row.probe.errors.map_or(f64::INFINITY, |errors| errors.largest)
+    row.probe.errors.map_or(f64::INFINITY, |errors| errors.largest.at_least)
 }
 
 #[test]

@@ -24,9 +24,11 @@ fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {
     // The distance between the inscribed and the circumscribed sphere.
     let largest = harness.state().deviation(SplitSide::Right).expect("measured");
     assert!((largest - 0.205_345_5).abs() < 1e-6, "{largest}");
-    for text in ["exact icosahedron", "0.205 units"] {
-        assert!(harness.query_by_label(text).is_some(), "{text}");
+    for text in ["exact icosahedron", "0.205 units", "At most"] {
+        assert!(harness.query_all_by_label(text).next().is_some(), "{text}");
     }
+    let at_most = harness.state().deviation_at_most(SplitSide::Right).expect("measured");
+    assert!(at_most >= largest && at_most < 1.011 * largest, "{at_most}");
     let before = *harness.state().camera();
     harness.get_by_label_contains("Worst point in patch").click();
     settle(&mut harness);
@@ -62,6 +64,7 @@ fn a_reference_surface_is_loaded_and_stays_if_the_next_one_fails() {
     let mut harness = uniform(Some(Source::Shape(Shape::CubeSmooth)));
     press(&mut harness, egui::Key::V);
     assert!(harness.query_by_label("limit surface").is_some());
+    assert!(harness.query_by_label("unknown").is_some(), "distances to a limit surface are sampled");
     let limit = harness.state().deviation(SplitSide::Right).expect("measured");
     let context = harness.ctx.clone();
     harness.state_mut().open_reference_shape(&context, Source::Shape(Shape::CubeSplit));

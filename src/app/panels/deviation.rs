@@ -52,6 +52,11 @@ impl App {
         Some(self.known_deviation(half)?.worst?.value)
     }
 
+    /// A number that no distance of a half exceeds for certain, once it is known; infinite against a limit surface.
+    pub fn deviation_at_most(&self, half: SplitSide) -> Option<f64> {
+        Some(self.known_deviation(half)?.largest.at_most)
+    }
+
     fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
         self.settings.half(half)?;
         self.deviating(half)?.found_of(self.deviation_of(half)?)

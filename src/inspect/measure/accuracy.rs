@@ -176,11 +176,10 @@ impl<'a> AccuracyMeasurement<'a> {
         }
     }
 
-    /// How the triangles that are kept are compared. The largest distance of samples says how finely.
+    /// How the triangles that are kept are compared. The farthest sample says how finely.
     fn comparison(&self) -> Comparison<'_> {
-        let rough = self.sums.largest;
         let Self { reference_shape, emitted, options: AccuracyOptions { narrow, .. }, .. } = self;
-        Comparison { reference_shape, emitted, narrow: *narrow, rough }
+        Comparison { reference_shape, emitted, narrow: *narrow, farthest: self.sums.farthest }
     }
 
     /// The largest distance from all triangles so far.

@@ -109,11 +109,10 @@ impl<'a> DeviationMeasurement<'a> {
             return Err(cancelled);
         }
         if let TargetSurface::ReferenceShape(reference_shape) = self.target {
-            let (emitted, rough) = (&self.emitted, self.field.worst.map_or(0.0, |worst| worst.value));
-            let comparison = Comparison { reference_shape, emitted, narrow: Narrow::default(), rough };
+            let (emitted, farthest) = (&self.emitted, self.field.worst);
+            let comparison = Comparison { reference_shape, emitted, narrow: Narrow::QUICK, farthest };
             if let Some(Largest { distance, place }) = comparison.to_reference(self.progress)? {
-                self.field.worst = self.field.worst.into_iter().chain([place]).reduce(worse);
-                self.field.at_most = distance.at_most;
+                (self.field.worst, self.field.at_most) = (Some(place), distance.at_most);
             }
         }
         Ok(self.field)

@@ -21,7 +21,7 @@ pub struct Exact {
     surface: Box<dyn Surface>,
     spread: Spread,
     /// The triangles that stood for it last.
-    facets: Mutex<Option<(f64, Facets)>>,
+    facets: Mutex<Option<((f64, u64), Facets)>>,
 }
 
 /// Returns the surface that a shape's corners are samples of, for shapes that have [levels](Shape::has_levels).
@@ -76,16 +76,16 @@ impl Exact {
         (0..count).map(sample).collect()
     }
 
-    /// Triangles that are at most `sag` away, or somewhat less.
-    pub(super) fn facets(&self, sag: f64) -> Facets {
+    /// Triangles that are at most `sag` away, or somewhat less; or farther if they would be more than `most`.
+    pub(super) fn facets(&self, sag: f64, most: u64) -> Facets {
         // A comparison needs them twice.
         let sag = sag.log2().floor().exp2();
         let mut known = self.facets.lock().unwrap_or_else(PoisonError::into_inner);
         match &*known {
-            Some((other, facets)) if *other == sag => facets.clone(),
+            Some((of, facets)) if *of == (sag, most) => facets.clone(),
             _ => {
-                let facets = Facets::new(&*self.surface, sag);
-                *known = Some((sag, facets.clone()));
+                let facets = Facets::new(&*self.surface, sag, most);
+                *known = Some(((sag, most), facets.clone()));
                 facets
             }
         }

@@ -18,9 +18,6 @@ pub(crate) struct Facets {
     pub sag: f64,
 }
 
-/// The most triangles that a surface is cut into.
-const MOST: f64 = (1_u32 << 18) as f64;
-
 impl Facets {
     /// Takes the triangles of a mesh. `None` if there is none.
     pub(super) fn from_mesh(positions: Arc<[Vec3]>, triangles: Arc<Vec<[u32; 3]>>) -> Option<Self> {
@@ -30,11 +27,11 @@ impl Facets {
     }
 
     /// Cuts an exact surface into triangles that are at most `sag` away from it, or farther if they would be more than
-    /// [`MOST`].
-    pub(super) fn new(surface: &dyn Surface, sag: f64) -> Self {
+    /// about `most`.
+    pub(super) fn new(surface: &dyn Surface, sag: f64, most: u64) -> Self {
         let grids: Vec<Grid> = (0..surface.charts()).map(|chart| Grid::new(surface.bends(chart), sag)).collect();
         let count: f64 = grids.iter().map(Grid::triangles).sum();
-        let coarser = (count / MOST).max(1.0).sqrt();
+        let coarser = (count / most as f64).max(1.0).sqrt();
         let grids: Vec<Grid> = grids.into_iter().map(|grid| grid.coarser(coarser)).collect();
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());
         for (chart, grid) in grids.iter().enumerate() {

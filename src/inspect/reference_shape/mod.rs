@@ -107,10 +107,23 @@ impl ReferenceShape {
         }
     }
 
-    /// Returns triangles that are the surface, or at most about `sag` away from it, in object units.
-    pub(crate) fn facets(&self, sag: f64) -> Facets {
+    pub(crate) fn is_exact(&self) -> bool {
+        matches!(self, Self::Exact(_))
+    }
+
+    /// Returns a distance that no point of the surface is nearer to p than for certain.
+    pub(crate) fn proven(&self, p: DVec3) -> f64 {
         match self {
-            Self::Exact(exact) => exact.facets(sag),
+            Self::Exact(exact) => (exact.closest(p).distance - EXACT * self.diagonal()).max(0.0),
+            Self::Mesh(mesh) => mesh.proven(p),
+        }
+    }
+
+    /// Returns triangles that are the surface, or at most about `sag` away from it, in object units; or farther if they would
+    /// be more than `most`.
+    pub(crate) fn facets(&self, sag: f64, most: u64) -> Facets {
+        match self {
+            Self::Exact(exact) => exact.facets(sag, most),
             Self::Mesh(mesh) => mesh.facets(),
         }
     }
@@ -140,6 +153,9 @@ impl ReferenceShape {
         min.distance(max)
     }
 }
+
+/// The part of an exact surface's diagonal that its nearest points are computed to, and more.
+pub(crate) const EXACT: f64 = 1e-9;
 
 /// The distance from a crease, relative to the surface's size, within which all normals of the crease count: a few
 /// rounding errors of f32 positions.

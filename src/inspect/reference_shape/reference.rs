@@ -88,6 +88,11 @@ impl Reference {
         (0..count).map(sample).collect()
     }
 
+    pub(super) fn proven(&self, p: DVec3) -> f64 {
+        let tree = &self.facets.tree;
+        tree.closest(p, f64::INFINITY).map_or(0.0, |closest| tree.proven(p, &closest))
+    }
+
     pub(super) fn facets(&self) -> Facets {
         self.facets.clone()
     }

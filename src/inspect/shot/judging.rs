@@ -97,7 +97,7 @@ impl Shot {
             ));
         }
         let mut deviation = Err("nothing was emitted that a distance could be measured from");
-        for narrow in [Narrow::default(), Narrow { relative: 1e-5, absolute: 1e-9 }] {
+        for narrow in [Narrow::default(), Narrow { relative: 1e-5, absolute: 1e-9, ..Narrow::default() }] {
             let options = AccuracyOptions { narrow, ..AccuracyOptions::default() };
             let accuracy = Some((reference_shape, &inputs.view, options));
             let wanted = Measurements { accuracy, ..Measurements::default() };

@@ -6,7 +6,7 @@ use super::{Errors, Probe, Row, Setting, Time};
 use geometry::tessellate::{Clip, Tessellation};
 use gpu::{GpuError, Timing};
 use inspect::engine::{Engine, MeasurementResults, Measurements, Runs};
-use inspect::measure::AccuracyOptions;
+use inspect::measure::{AccuracyOptions, Narrow};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::Settings;
@@ -23,7 +23,11 @@ pub struct Effort {
 impl Default for Effort {
     fn default() -> Self {
         let runs = Runs { least: 3, most: 100, within: Duration::from_millis(200) };
-        Self { runs, accuracy: AccuracyOptions::default(), most_triangles: 500_000 }
+        Self {
+            runs,
+            accuracy: AccuracyOptions { narrow: Narrow::QUICK, ..AccuracyOptions::default() },
+            most_triangles: 500_000,
+        }
     }
 }
 

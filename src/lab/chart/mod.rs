@@ -50,12 +50,12 @@ const COLUMNS: [Column; 19] = [
     ("ms_tessellate", |row| row.probe.time.tessellate.to_string()),
     ("ms_draw", |row| row.probe.time.draw.to_string()),
     ("ms_total", |row| row.probe.time.total().to_string()),
-    ("max_error", |row| known(row.probe.errors.map(|errors| errors.largest.at_most))),
+    ("max_error", |row| known(row.probe.errors.map(|errors| errors.largest.at_least))),
     ("rms_error", |row| known(row.probe.errors.map(|errors| errors.rms))),
     ("max_error_px", |row| known(row.probe.max_error_px)),
     ("normal_error_deg", |row| known(row.probe.errors.map(|errors| errors.normal_degrees))),
     ("triangles_by_error", |row| known(row.probe.triangles_by_error)),
-    ("max_error_at_least", |row| known(row.probe.errors.map(|errors| errors.largest.at_least))),
+    ("max_error_at_most", |row| known(row.probe.errors.map(|errors| errors.largest.at_most))),
 ];
 
 fn known(number: Option<impl ToString>) -> String {
@@ -152,7 +152,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// What the largest error of a row is at most: a part of the reference surface's diagonal, or px without a reference surface.
+    /// The largest error of a row that was found: a part of the reference surface's diagonal, or px without a reference surface.
     pub fn error(&self, row: &Row) -> Option<f64> {
         self.error_of(&row.probe)
     }
@@ -160,7 +160,7 @@ impl Subject {
     /// The largest error of any settings: see [`Self::error`].
     pub fn error_of(&self, probe: &Probe) -> Option<f64> {
         let error = match self.reference_shape {
-            Some(_) => probe.errors.map(|errors| errors.largest.at_most),
+            Some(_) => probe.errors.map(|errors| errors.largest.at_least),
             None => probe.max_error_px,
         };
         error.filter(|error| error.is_finite())

@@ -182,14 +182,14 @@ fn rows_read_back_from_csv() {
     let mut reader = csv::Reader::from_reader(&bytes[..]);
     let header = "mesh,adapter,surface,normals,partitioning,lod,setting,triangles,vertices,bytes,ms_tessellate,ms_draw,\
                   ms_total,max_error,rms_error,max_error_px,normal_error_deg,\
-                  triangles_by_error,max_error_at_least";
+                  triangles_by_error,max_error_at_most";
     assert_eq!(reader.headers().expect("a header").iter().collect::<Vec<_>>().join(","), header);
     let records: Vec<_> = reader.records().map(|record| record.expect("whole")).collect();
     assert_eq!(records.len(), rows.len());
     for (record, row) in records.iter().zip(&rows) {
         assert_eq!(record.iter().collect::<Vec<_>>(), row.record());
         assert_eq!(record[12].parse(), Ok(row.probe.time.total()));
-        assert_eq!(record[13].parse().ok(), row.probe.errors.map(|errors| errors.largest.at_most));
+        assert_eq!(record[13].parse().ok(), row.probe.errors.map(|errors| errors.largest.at_least));
         assert_eq!(record[17].parse().ok(), row.probe.triangles_by_error);
         assert_eq!(record[9].parse(), Ok(3 * row.probe.triangles * 32 + 12 * row.probe.triangles));
     }

@@ -2,7 +2,7 @@
 
 use super::WorstPoint;
 use super::emitted::Emitted;
-use crate::reference_shape::ReferenceShape;
+use crate::reference_shape::{EXACT, Facets, ReferenceShape};
 use geometry::near::{Farthest, Goal, Interval, TriangleTree, farthest};
 use geometry::progress::{Cancelled, Progress};
 
@@ -13,19 +13,26 @@ pub struct Narrow {
     pub relative: f64,
     /// The width that suffices, as a part of the reference surface's diagonal.
     pub absolute: f64,
+    /// The number of searches for a nearest point after which an interval is left as it is. A core makes about a million in a
+    /// second.
+    pub searches: u64,
 }
 
 impl Default for Narrow {
+    /// About a minute on two cores at most.
     fn default() -> Self {
-        Self { relative: 0.01, absolute: 1e-6 }
+        Self { relative: 0.01, absolute: 1e-6, searches: 1 << 26 }
     }
 }
 
-/// The number of searches for a nearest point after which an interval is left as it is: about a minute on two cores.
-const SEARCHES: u64 = 1 << 26;
+impl Narrow {
+    /// About a second on two cores at most.
+    pub const QUICK: Self = Self { relative: 0.01, absolute: 1e-6, searches: 1 << 20 };
+}
 
-/// The part of an exact surface's size that its nearest points are computed to.
-const EXACT: f64 = 1e-9;
+/// An exact surface is cut into at most one triangle for so many searches, and into [`MOST`].
+const SEARCHES_A_TRIANGLE: u64 = 16;
+const MOST: u64 = 1 << 18;
 
 /// The largest distance in one direction, and the place where its lower end was found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,34 +48,46 @@ impl Largest {
     }
 }
 
-/// Measures largest distances, for surfaces that are about `rough` apart, in object units.
+/// Measures largest distances.
 pub(crate) struct Comparison<'a> {
     pub reference_shape: &'a ReferenceShape,
     pub emitted: &'a Emitted,
     pub narrow: Narrow,
-    pub rough: f64,
+    /// The farthest emitted point of some samples.
+    pub farthest: Option<WorstPoint>,
 }
 
 impl Comparison<'_> {
+    /// What is left of the width for the search. Of an exact surface, the triangles that stand for it take half of it.
     fn goal(&self) -> Goal {
-        let Narrow { relative, absolute } = self.narrow;
-        Goal { relative, absolute: absolute * self.reference_shape.diagonal(), searches: SEARCHES }
+        let Narrow { relative, absolute, searches } = self.narrow;
+        let part = if self.reference_shape.is_exact() { 0.5 } else { 1.0 };
+        let absolute = part * absolute * self.reference_shape.diagonal();
+        Goal { relative: part * relative, absolute, searches }
     }
 
-    /// How far the triangles may be from an exact surface that they stand for.
-    fn sag(&self) -> f64 {
-        (self.goal().relative * self.rough).max(self.goal().absolute) / 2.0
+    /// The reference surface as triangles, which may be as far from an exact one as is of no matter.
+    fn facets(&self) -> Facets {
+        let rough = self.farthest.map_or(0.0, |farthest| farthest.value);
+        let sag = (self.goal().relative * rough).max(self.goal().absolute);
+        self.reference_shape.facets(sag, (self.narrow.searches / SEARCHES_A_TRIANGLE).min(MOST))
     }
 
     /// From what was emitted to the reference surface. `None` if nothing was emitted.
     pub(crate) fn to_reference(&self, progress: &Progress) -> Result<Option<Largest>, Cancelled> {
-        let facets = self.reference_shape.facets(self.sag());
+        let facets = self.facets();
         let found = farthest(self.emitted.soup(), &facets.tree, &self.goal(), progress)?;
         Ok(found.map(|Farthest { distance, triangle, point, .. }| {
             let (nearest, value) = self.reference_shape.closest_point(point);
-            let distance = self.beyond(distance, facets.sag, value);
+            let mut distance = self.beyond(distance, facets.sag, value);
             let patch = self.emitted.patch(triangle);
-            let place = WorstPoint { value: distance.at_least, patch, emitted: point, reference_shape: nearest };
+            let mut place = WorstPoint { value: distance.at_least, patch, emitted: point, reference_shape: nearest };
+            if let Some(sample) = self.farthest {
+                let value = self.reference_shape.proven(sample.emitted).min(distance.at_most);
+                if value > distance.at_least {
+                    (distance.at_least, place) = (value, WorstPoint { value, ..sample });
+                }
+            }
             Largest { distance, place }
         }))
     }
@@ -79,7 +98,7 @@ impl Comparison<'_> {
         tree: &TriangleTree,
         progress: &Progress,
     ) -> Result<Option<Largest>, Cancelled> {
-        let facets = self.reference_shape.facets(self.sag());
+        let facets = self.facets();
         let found = farthest(facets.soup(), tree, &self.goal(), progress)?;
         Ok(found.and_then(|Farthest { distance, point, .. }| {
             let point = if facets.sag > 0.0 { self.reference_shape.closest_point(point).0 } else { point };

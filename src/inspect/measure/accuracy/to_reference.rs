@@ -96,8 +96,8 @@ pub(super) struct Sums {
     /// Of angles, in degrees.
     pub angles: MeanSquare,
     pub samples: u64,
-    /// The largest distance of a sample, in object units.
-    pub largest: f64,
+    /// The sample with the largest distance, in object units.
+    pub farthest: Option<WorstPoint>,
     /// The sample with the largest distance on screen, in px.
     pub worst_px: Option<WorstPoint>,
     pub worst_normal: Option<WorstPoint>,
@@ -117,7 +117,7 @@ impl Sums {
             squares: MeanSquare::new(nearest.distance, area),
             angles: MeanSquare::new(angle, area),
             samples: 1,
-            largest: nearest.distance,
+            farthest: Some(WorstPoint { value: nearest.distance, ..place }),
             worst_px: in_px,
             worst_normal: Some(place),
             not_finite: 0,
@@ -130,7 +130,7 @@ impl Sums {
             squares: self.squares.with(other.squares),
             angles: self.angles.with(other.angles),
             samples: self.samples + other.samples,
-            largest: self.largest.max(other.largest),
+            farthest: worst(self.farthest, other.farthest),
             worst_px: worst(self.worst_px, other.worst_px),
             worst_normal: worst(self.worst_normal, other.worst_normal),
             not_finite: self.not_finite + other.not_finite,

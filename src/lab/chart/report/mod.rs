@@ -94,7 +94,7 @@ pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
     let Occasion { adapter, driver, date, command, .. } = occasion;
     let mut text = String::from("# Speed against accuracy\n\n");
     let _ = writeln!(text, "Measured on {} ({}), {date}, by\n\n    {command}\n", plain(adapter), plain(driver));
-    let _ = writeln!(text, "{}{ABOUT}\n", if occasion.is_software { SOFTWARE } else { "" });
+    let _ = writeln!(text, "{}{ABOUT}{}\n", if occasion.is_software { SOFTWARE } else { "" }, certainty(parts));
     let _ = writeln!(text, "## Which method to use when\n");
     let advice = advice::sentences(parts);
     text.extend(advice.iter().map(|sentence| format!("- {sentence}\n")));
@@ -104,6 +104,19 @@ pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
     text += &fronts::table_of(parts);
     text.extend(parts.iter().map(section));
     text
+}
+
+/// How much larger the largest errors may be than what was found.
+fn certainty(parts: &[Part]) -> String {
+    let rows = parts.iter().flat_map(|part| &part.subject.rows);
+    let found = rows.filter_map(|row| row.probe.errors).map(|errors| errors.largest);
+    let beyond = found.map(|largest| largest.at_most - largest.at_least).reduce(f64::max);
+    beyond.map_or_else(String::new, |beyond| {
+        format!(
+            " Largest errors are those that were found; none is larger by more than {} % of the diagonal.",
+            geometry::numbers::short(100.0 * beyond)
+        )
+    })
 }
 
 /// A table with its heading and a paragraph about it; empty without rows. Its first column has words.

@@ -54,7 +54,7 @@ type Column = (&'static str, bool, fn(&Row) -> String);
 const COLUMNS: [Column; 6] = [
     ("triangles", false, |row| grouped(row.probe.triangles)),
     ("ms", false, |row| short(row.probe.time.total())),
-    ("largest error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.largest.at_most))),
+    ("largest error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.largest.at_least))),
     ("RMS error, %", true, |row| known(row.probe.errors.map(|errors| 100.0 * errors.rms))),
     ("largest error, px", false, |row| known(row.probe.max_error_px)),
     ("normals, degrees", true, |row| known(row.probe.errors.map(|errors| errors.normal_degrees))),
