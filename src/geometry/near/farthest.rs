@@ -290,8 +290,8 @@ impl Search<'_> {
         corners
     }
 
-    /// For each position, the triangle of the tree that is nearest to it, or one that is so near that it bounds all triangles
-    /// of this corner.
+    /// For each position, the triangle of the tree that is nearest to it, or one that is so near that it is likely to bound all
+    /// triangles of this corner.
     fn nearest(
         &self,
         from: Soup,
@@ -306,7 +306,10 @@ impl Search<'_> {
             let mut places = Vec::with_capacity(block.len());
             for Corner { index, triangle, reach } in block {
                 let point = self.to.scaled(from.positions[*index as usize].as_dvec3());
-                hint = self.look(point, *reach, *triangle, hint, &mut best).place;
+                // Across the way to the nearest point, the distance to a triangle grows about with the square of what one
+                // moves. Where this isn't so, the pieces' own searches find a better triangle.
+                let growth = reach * (reach / self.enough(best.distance)).min(1.0);
+                hint = self.look(point, growth, *triangle, hint, &mut best).place;
                 places.push((*index, hint));
             }
             Ok((best, places))
