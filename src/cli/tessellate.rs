@@ -20,7 +20,7 @@ use gpu::{Given, GpuError, SurfaceShader, Timing};
 use inspect::engine::{Engine, Loaded};
 use inspect::export::Exported;
 use inspect::gates::{Facts, GateKind, Judgement, judge};
-use inspect::measure::{EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor};
+use inspect::measure::{CrossingMeasurement, EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor};
 use inspect::render::{Camera, Scene};
 use inspect::shot::{Shot, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;
@@ -215,6 +215,12 @@ impl Ready<'_> {
         });
         let junctions = || t_junctions(&self.mesh.loaded.topology, &Progress::new());
         let junctions = gates.has(GateKind::TJunctions).then(junctions).transpose()?;
+        let crossed = gates.has(GateKind::SelfIntersections).then(|| {
+            let mut measurement = CrossingMeasurement::default();
+            measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
+            measurement.finish(topology, &Progress::new())
+        });
+        let crossed = crossed.transpose()?;
         let facts = Facts {
             warnings: Some(&self.mesh.posed.warnings),
             emitted: Some((out.vertices.len() as u64, out.triangles.len() as u64)),
@@ -222,6 +228,7 @@ impl Ready<'_> {
             mesh: Some((&self.mesh.loaded.mesh, &self.mesh.loaded.topology)),
             junctions: junctions.as_deref(),
             above: above.as_ref(),
+            crossed: crossed.as_ref().map(Option::as_deref),
             ..Facts::from_mesh(topology)
         };
         Ok(judge(&gates.fail_on, &facts))

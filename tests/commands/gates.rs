@@ -40,11 +40,11 @@ fn write_folds(folder: &Folder) -> String {
 fn a_sound_mesh_passes_all_gates() {
     let gates = "cracks,factors,leaks,folds,t-junctions,warnings,above-tolerance,triangles:100000,bytes:4000000,\
                  non-manifold,boundary,winding,normals-against-faces,degenerate,duplicates,near-seam,hard-edges,\
-                 deviation:2%";
+                 self-intersections,deviation:2%";
     let torus = ["shape:torus", "--reference-surface", "shape:torus", "--lod", "error", "--tolerance", "0.5"];
     let (code, said, gates) = drawn(&[&torus[..], &["--fail-on", gates]].concat());
     assert_eq!((code, said.as_str()), (Some(0), ""));
-    assert_eq!(gates.len(), 18);
+    assert_eq!(gates.len(), 19);
     for gate in &gates {
         assert_eq!((&gate["passed"], &gate["where"]), (&true.into(), &Value::Null), "{gate}");
     }
@@ -92,6 +92,32 @@ fn a_mesh_is_judged_by_what_decides_how_it_tessellates() {
         assert!(std::fs::read_dir(&evidence).expect("a picture of the place").any(is_picture));
         assert_eq!(gates[0]["passed"], false);
     }
+}
+
+/// Writes a triangle whose normals lean outwards, so that its patch bulges, and one above it that the bulge goes through.
+fn write_bulge(folder: &Folder) -> String {
+    let low = [[0.0, 0.0, 0.0], [0.5, 0.0, -0.9], [1.0, 0.0, 0.0]];
+    let middle = [0.5, 0.0, -0.3];
+    let leaning = low.map(|corner: [f32; 3]| [corner[0] - middle[0], 0.5, corner[2] - middle[2]]);
+    let high = low.map(|corner| [0, 1, 2].map(|i| middle[i] + 0.8 * (corner[i] - middle[i]) + [0.0, 0.03, 0.0][i]));
+    let corners = [0, 1, 2].map(|k| (low[k], leaning[k]));
+    write_corners(folder, &[corners, high.map(|corner| (corner, [0.0, 1.0, 0.0]))].concat())
+}
+
+#[test]
+fn patches_that_curve_through_each_other_are_counted_on_both_devices() {
+    let folder = Folder::new();
+    let bulge = write_bulge(&folder);
+    let curved = ["--surface", "pn", "--factor", "9", "--fail-on", "self-intersections"];
+    let (code, said, gates) = drawn(&[&[&bulge[..]], &curved[..]].concat());
+    assert_eq!(code, Some(1), "{said}");
+    assert_says(&said, &["1 pair of patches crosses each other", "between those of triangles 0 and 1"]);
+    assert_eq!(number(&gates[0], "/found"), 1.0);
+    let glb = folder.path("out.glb");
+    let on_cpu = [&["tessellate", &bulge[..], "-o", &glb, "--device", "cpu"], &curved[..]].concat();
+    assert!(failure(&on_cpu, 1).contains("1 pair of patches crosses each other"));
+    // The triangles themselves don't cross.
+    assert_eq!(drawn(&[&bulge, "--surface", "flat", "--factor", "9", "--fail-on", "self-intersections"]).0, Some(0));
 }
 
 #[test]

@@ -109,6 +109,24 @@ impl TriangleTree {
         is_any
     }
 
+    /// Calls `visit` with each triangle whose box overlaps that of these corners, and with some others.
+    pub(super) fn overlapping(&self, corners: [Vec3; 3], mut visit: impl FnMut(u32)) {
+        let own = Bounded(corners.map(|corner| (corner.as_dvec3() * self.scale).as_vec3())).aabb();
+        let mut open = vec![0];
+        while let Some(index) = open.pop() {
+            let node = &self.tree.nodes[index as usize];
+            let Aabb { min, max } = node.aabb();
+            if own.min.cmpgt(*max).any() || own.max.cmplt(*min).any() {
+                continue;
+            }
+            match node.is_leaf() {
+                true => (node.first_index..node.first_index + node.prim_count)
+                    .for_each(|place| visit(self.numbers[place as usize])),
+                false => open.extend([node.first_index, node.first_index + 1]),
+            }
+        }
+    }
+
     /// Returns the nearest points of all triangles that are at most `slack` farther away than the nearest triangle.
     pub fn all_closest(&self, p: DVec3, slack: f64) -> Vec<Closest> {
         let mut all: Vec<Closest> = Vec::new();

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::mesh_defects::Defects;
 use super::place::{EdgeSpot, Place, Spot};
 use super::{Gate, GateKind, Limit};
-use crate::measure::{CrackedEdge, EdgeSide, Measured, PatchesAbove, WorstPoint};
+use crate::measure::{CrackedEdge, CrossedPatches, EdgeSide, Measured, PatchesAbove, WorstPoint};
 use crate::render::{Leak, Leaks};
 use geometry::choice::Choice;
 use geometry::mesh::{Mesh, TJunction, Topology};
@@ -32,6 +32,8 @@ pub struct Facts<'a> {
     /// The view that leaks were counted in.
     pub view: Option<ScreenView>,
     pub above: Option<&'a PatchesAbove>,
+    /// The patches that cross; none within if there were too many triangles to find them.
+    pub crossed: Option<Option<&'a [CrossedPatches]>>,
     /// The distance from the reference surface, or why there is none.
     pub deviation: Option<Result<Deviation, &'static str>>,
 }
@@ -51,8 +53,8 @@ impl<'a> Facts<'a> {
     /// Facts of a mesh that nothing was measured of.
     pub fn from_mesh(topology: &'a Topology) -> Self {
         let (warnings, emitted, measured, junctions, leaks) = (None, None, None, None, None);
-        let (mesh, view, above, deviation) = (None, None, None, None);
-        Self { topology, warnings, emitted, measured, mesh, junctions, leaks, view, above, deviation }
+        let (mesh, view, above, crossed, deviation) = (None, None, None, None, None);
+        Self { topology, warnings, emitted, measured, mesh, junctions, leaks, view, above, crossed, deviation }
     }
 }
 
@@ -185,6 +187,10 @@ fn count(kind: GateKind, facts: &Facts) -> Count {
             let (found, [one, several]) = known(Defects::find(kind, mesh, topology).zip(Defects::words(kind)))?;
             some(found.count() as u64, one, several)
         }
+        GateKind::SelfIntersections => {
+            let crossed = known(facts.crossed)?.ok_or("too many triangles were emitted to find those that cross")?;
+            some(crossed.len() as u64, "# pair of patches crosses each other", "# pairs of patches cross each other")
+        }
         GateKind::Deviation => {
             let Interval { at_least, at_most } = known(facts.deviation)??.distance;
             let text = format!("the largest distance is {} to {} object units", short(at_least), short(at_most));
@@ -247,6 +253,7 @@ fn worst(kind: GateKind, facts: &Facts) -> Option<Place> {
         | GateKind::Duplicates
         | GateKind::NearSeam
         | GateKind::HardEdges => worst_defect(kind, facts),
+        GateKind::SelfIntersections => worst_crossing(facts),
         GateKind::Deviation => worst_deviation(facts),
         GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => None,
     }
@@ -397,6 +404,16 @@ fn worst_defect(kind: GateKind, facts: &Facts) -> Option<Place> {
             Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
         }
     }
+}
+
+fn worst_crossing(facts: &Facts) -> Option<Place> {
+    // The pair with the most crossing triangles is the first.
+    let CrossedPatches { patches, at, .. } = *facts.crossed??.first()?;
+    let triangles = patches.map(|patch| facts.topology.patches[patch as usize].triangle);
+    let corners = facts.topology.patch_positions(patches[0]);
+    let [a, b] = triangles;
+    let text = format!("most triangles cross between those of triangles {a} and {b} at {}", position(at));
+    Some(Place { text, triangles: triangles.to_vec(), spot: Spot::patch(corners, at) })
 }
 
 fn worst_deviation(facts: &Facts) -> Option<Place> {

@@ -48,6 +48,7 @@ impl Defects {
             | GateKind::TJunctions
             | GateKind::Warnings
             | GateKind::AboveTolerance
+            | GateKind::SelfIntersections
             | GateKind::Deviation
             | GateKind::Triangles
             | GateKind::Bytes => return None,
@@ -81,6 +82,7 @@ impl Defects {
             | GateKind::TJunctions
             | GateKind::Warnings
             | GateKind::AboveTolerance
+            | GateKind::SelfIntersections
             | GateKind::Deviation
             | GateKind::Triangles
             | GateKind::Bytes => return None,

@@ -51,6 +51,8 @@ choices! {
             "No open edge of the mesh nearly meets another one: one that should be welded.";
         HardEdges => "hard-edges", "Edges whose triangles have different normals",
             "No edge of the mesh has two normals at an end, along which an engine that displaces would tear it open.";
+        SelfIntersections => "self-intersections", "Pairs of patches that the curved surface makes cross",
+            "No two patches cross each other whose triangles in the mesh don't.";
         Deviation => "deviation", "Largest distance from --reference-surface, or back, for certain",
             "No point is farther from the reference surface, or from what was emitted, than the limit.";
         Triangles => "triangles", "Emitted triangles",
@@ -76,7 +78,7 @@ impl GateKind {
             | Self::HardEdges => GateSubject::Mesh,
             Self::Deviation => GateSubject::Distance,
             Self::Cracks | Self::Factors | Self::Leaks | Self::Folds => GateSubject::Survey,
-            Self::AboveTolerance => GateSubject::Error,
+            Self::AboveTolerance | Self::SelfIntersections => GateSubject::Tessellation,
             Self::Triangles | Self::Bytes => GateSubject::Budget,
         }
     }
@@ -95,6 +97,7 @@ impl GateKind {
             }
             Self::NormalsAgainstFaces => &[Overlay::Patches, Overlay::Normals],
             Self::Degenerate | Self::Duplicates => &[Overlay::Patches],
+            Self::SelfIntersections => &[Overlay::Wireframe, Overlay::Patches],
             Self::Deviation => &[Overlay::Wireframe, Overlay::Deviation],
             Self::Warnings | Self::Triangles | Self::Bytes => &[],
         }
@@ -105,13 +108,13 @@ impl GateKind {
         match self.subject() {
             GateSubject::Budget => format!("{}:N", self.name()),
             GateSubject::Distance => format!("{}:LENGTH", self.name()),
-            GateSubject::Mesh | GateSubject::Survey | GateSubject::Error => self.name().to_owned(),
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation => self.name().to_owned(),
         }
     }
 
     /// Whether it judges one tessellation, so that it says nothing of many.
     pub const fn is_of_one_tessellation(self) -> bool {
-        matches!(self.subject(), GateSubject::Error | GateSubject::Budget | GateSubject::Distance)
+        matches!(self.subject(), GateSubject::Tessellation | GateSubject::Budget | GateSubject::Distance)
     }
 
     /// Whether it judges the mesh as it was loaded.
@@ -122,7 +125,7 @@ impl GateKind {
     /// The limit where none is given; none if one must be.
     fn usual_limit(self) -> Option<Limit> {
         match self.subject() {
-            GateSubject::Mesh | GateSubject::Survey | GateSubject::Error => Some(Limit::Count(0)),
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation => Some(Limit::Count(0)),
             GateSubject::Budget | GateSubject::Distance => None,
         }
     }
@@ -140,8 +143,8 @@ pub enum GateSubject {
     Mesh,
     /// What a survey of the emitted mesh finds.
     Survey,
-    /// How far triangles are from their surface on screen.
-    Error,
+    /// One tessellation: how far its triangles are from their surface, or whether they cross.
+    Tessellation,
     /// How much is emitted.
     Budget,
     /// The distance from a reference surface.

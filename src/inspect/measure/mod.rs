@@ -3,6 +3,7 @@
 mod accuracy;
 mod agreement;
 mod cracks;
+mod crossings;
 mod deviation_field;
 mod distance_transform;
 mod folds;
@@ -26,6 +27,7 @@ pub(crate) use accuracy::AccuracyMeasurement;
 pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, MOST_KEPT, Narrow, Rms, WorstPoint};
 pub use agreement::{Agreement, Disagreement, Order};
 pub use cracks::{CrackedEdge, Cracks};
+pub use crossings::{CrossedPatches, CrossingMeasurement};
 pub use deviation_field::{DeviationField, DeviationMeasurement, DeviationTarget, MOST_TRIANGLES};
 pub use folds::FoldedPatch;
 pub use indices::{IndexDifference, Meaning, index_differences};

@@ -7,7 +7,7 @@ use super::reference_surface::ReferenceSurface;
 use super::{Shot, ShotError};
 use crate::engine::Measurements;
 use crate::gates::{Deviation, Facts, Gate, GateKind, Judgement, Limit, Spot, Standpoints, judge};
-use crate::measure::{Accuracy, AccuracyOptions, Narrow, Sight};
+use crate::measure::{Accuracy, AccuracyOptions, CrossedPatches, CrossingMeasurement, Narrow, Sight};
 use crate::render::{Camera, Leaks, worst_lines};
 use crate::settings::{Overlays, Settings, SplitSide};
 use geometry::mesh::t_junctions;
@@ -53,6 +53,7 @@ impl Shot {
         self.error_place = above.and_then(|above| above.worst);
         let deviation =
             has(GateKind::Deviation).then(|| self.deviation_both_ways(gates, &inputs, progress)).transpose()?;
+        let crossed = has(GateKind::SelfIntersections).then(|| self.crossed_patches(progress)).transpose()?;
         let Self { scene, .. } = self;
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
@@ -69,6 +70,7 @@ impl Shot {
                 leaks: leaks.as_ref(),
                 view: Some(self.view_of_picture()),
                 above: above.as_ref(),
+                crossed: crossed.as_ref().map(Option::as_deref),
                 deviation,
             },
         );
@@ -125,6 +127,17 @@ impl Shot {
             }
         }
         Ok(deviation)
+    }
+
+    /// The patches that cross each other; none if there are too many triangles to find them.
+    ///
+    /// # Errors
+    /// The device was lost, or `progress` was cancelled.
+    fn crossed_patches(&mut self, progress: &Progress) -> Result<Option<Vec<CrossedPatches>>, ShotError> {
+        let mut measurement = CrossingMeasurement::default();
+        self.engine.visit_watched(&mut self.scene, &mut [&mut measurement], progress)?;
+        progress.check()?;
+        Ok(measurement.finish(&self.posed.topology, progress)?)
     }
 
     /// The leaks of the picture, which a survey must have been made for. The scene must have been counted with `inputs`.
