@@ -5,19 +5,24 @@ mod plan;
 
 use std::collections::BTreeMap;
 use std::num::NonZero;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use clap::ValueEnum;
 
 use super::gate_options::FailOnOption;
 use super::interrupt::stop_on_interrupt;
-use super::{AdapterOption, CliError, ProgressPrinter, file_of, keep_apart, make_folder, note, options, write_text};
+use super::{
+    AdapterOption, CliError, ProgressPrinter, file_error, file_of, keep_apart, make_folder, note, options, write_bytes,
+    write_text,
+};
 use geometry::cores::in_ranges;
 use inspect::engine::Engine;
-use lab::check::{Asset, Cache, Report, junit, page, sarif};
+use lab::check::{Asset, Cache, PICTURES, Report, junit, page, pictures, sarif};
 use load::Source;
 
 use plan::Job;
@@ -40,8 +45,8 @@ pub struct Args {
     /// File for the report (- for standard output)
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     pub output: PathBuf,
-    /// Folder for a page with a picture of each asset and of the worst place of each failed gate, index.html; made if it isn't
-    /// there
+    /// Folder for a page with a picture of each asset and of the worst place of each failed gate, index.html and its
+    /// pictures; made if it isn't there
     #[arg(long, value_name = "DIR")]
     pub page: Option<PathBuf>,
     /// Folder that keeps what was found, so that an unchanged asset isn't measured again; made if it isn't there
@@ -78,7 +83,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let stop = stop_on_interrupt("asset");
     let report = checked(args, &jobs, &stop)?;
     if let Some(folder) = &args.page {
-        write_text(&folder.join(PAGE), &page(&report))?;
+        write_page(folder, &report)?;
     }
     let written = match args.format {
         Format::Text => Ok(report.text()),
@@ -92,6 +97,21 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         0 => Err(CliError::Check(report.summary())),
         left_out => Err(CliError::Interrupted { done: jobs.len() - left_out, all: jobs.len(), what: "assets" }),
     }
+}
+
+/// Writes the page, and those of its pictures that aren't there from an earlier run.
+fn write_page(folder: &Path, report: &Report) -> Result<(), CliError> {
+    let into = folder.join(PICTURES);
+    make_folder(&into)?;
+    for (name, picture) in pictures(report) {
+        let path = into.join(name);
+        if !path.exists() {
+            // The cache of an earlier run may be damaged.
+            let bytes = STANDARD.decode(picture).map_err(|error| file_error(&path, "decoded", &error))?;
+            write_bytes(&path, &bytes)?;
+        }
+    }
+    Ok(write_text(&folder.join(PAGE), &page(report))?)
 }
 
 /// Checks all assets, or until `stop` is set.

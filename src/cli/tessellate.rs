@@ -20,7 +20,9 @@ use gpu::{Given, GpuError, SurfaceShader, Timing};
 use inspect::engine::{Engine, Loaded};
 use inspect::export::Exported;
 use inspect::gates::{Facts, GateKind, Judgement, judge};
-use inspect::measure::{CrossingMeasurement, EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor};
+use inspect::measure::{
+    CrossingMeasurement, EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor,
+};
 use inspect::render::{Camera, Scene};
 use inspect::shot::{Shot, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;

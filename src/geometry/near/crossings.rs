@@ -102,8 +102,7 @@ mod tests {
     fn pairs_are_those_of_a_search_through_all() {
         let mut random = fastrand::Rng::with_seed(1);
         let mut corner = |spread: f32| vec3(random.f32(), random.f32(), random.f32()) * spread;
-        let triangles: Vec<[Vec3; 3]> =
-            (0..700).map(|_| [corner(1.0); 3].map(|at| at + corner(0.3))).collect();
+        let triangles: Vec<[Vec3; 3]> = (0..700).map(|_| [corner(1.0); 3].map(|at| at + corner(0.3))).collect();
         let mut all = Vec::new();
         for i in 0..triangles.len() {
             for j in i + 1..triangles.len() {

@@ -33,11 +33,7 @@ impl CrossingMeasurement {
     ///
     /// # Errors
     /// `progress` was cancelled.
-    pub fn finish(
-        self,
-        topology: &Topology,
-        progress: &Progress,
-    ) -> Result<Option<Vec<CrossedPatches>>, Cancelled> {
+    pub fn finish(self, topology: &Topology, progress: &Progress) -> Result<Option<Vec<CrossedPatches>>, Cancelled> {
         let soup = self.emitted.soup();
         if soup.triangles.len() > MOST_KEPT {
             return Ok(None);

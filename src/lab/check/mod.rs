@@ -14,6 +14,6 @@ pub use assets::{FolderError, assets};
 pub use cache::{Cache, Inputs};
 pub use config::{Config, ConfigError, OptionValue, Section};
 pub use junit::junit;
-pub use page::page;
+pub use page::{PICTURES, page, pictures};
 pub use report::{Asset, GateResult, Report, View};
 pub use sarif::sarif;

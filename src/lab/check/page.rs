@@ -1,4 +1,4 @@
-//! The report as a page with pictures: one HTML file that needs no other.
+//! The report as a page: an HTML file, and the pictures that it shows, which a browser loads as they are scrolled to.
 
 use std::fmt::Write;
 
@@ -23,15 +23,52 @@ img { display: block; max-width: 100%; width: 22rem; height: auto; border-radius
 table { border-collapse: collapse; } td, th { padding: 0.1rem 1rem 0.1rem 0; text-align: left; vertical-align: top;
   font-weight: normal; } th { color: var(--dim); } td.number { text-align: right; }
 ul { margin: 0.5rem 0; padding-left: 1.2rem; } .dim { color: var(--dim); }
+.filter { font: inherit; width: min(100%, 22rem); padding: 0.3rem 0.5rem; color: inherit; background: var(--card);
+  border: 1px solid var(--dim); border-radius: 4px; } [hidden] { display: none; }
 .passed { color: var(--good); } .failed, .broken { color: var(--bad); } .status { font-weight: 600; }
 ";
+
+/// Hides the assets that don't have all words of the filter. Without it, the page shows them all.
+const FILTER: &str = "
+<p><label>Show only <input class=\"filter\" type=\"search\" placeholder=\"words of a path, a gate or failed\"></label>
+<output class=\"dim\"></output></p>
+<script>
+addEventListener('DOMContentLoaded', () => {
+  const all = [...document.querySelectorAll('.asset')].map(asset => [asset, asset.textContent.toLowerCase()]);
+  const input = document.querySelector('.filter');
+  input.addEventListener('input', () => {
+    const words = input.value.toLowerCase().split(/\\s+/).filter(Boolean);
+    let shown = 0;
+    for (const [asset, text] of all) {
+      asset.hidden = !words.every(word => text.includes(word));
+      shown += !asset.hidden;
+    }
+    document.querySelector('output').value = words.length ? `${shown} of ${all.length}` : '';
+  });
+});
+</script>
+";
+
+/// The folder of the pictures, beside the page.
+pub const PICTURES: &str = "pictures";
+
+/// The pictures that the page shows: the name of each in [`PICTURES`], and the PNG file in base64. Equal pictures have one name.
+pub fn pictures(report: &Report) -> impl Iterator<Item = (String, &str)> {
+    let views = report.assets.iter().flat_map(|asset| &asset.views);
+    let all = views.flat_map(|view| view.picture.iter().chain(view.gates.iter().flat_map(|gate| &gate.evidence)));
+    all.map(|picture| (file_name(picture), picture.as_str()))
+}
+
+fn file_name(picture: &str) -> String {
+    format!("{}.png", &blake3::hash(picture.as_bytes()).to_hex()[..32])
+}
 
 /// Writes the page. What failed comes first.
 pub fn page(report: &Report) -> String {
     let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
     text += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>pnaen check</title>\n";
     let _ = write!(text, "<style>{STYLE}</style>\n</head>\n<body>\n<h1>pnaen check</h1>\n");
-    let _ = writeln!(text, "<p>{}.</p>", escaped(&report.summary()));
+    let _ = writeln!(text, "<p>{}.</p>{FILTER}", escaped(&report.summary()));
     for status in [Status::Broken, Status::Failed, Status::Passed] {
         report.assets.iter().filter(|asset| asset.status() == status).for_each(|asset| text += &section(asset));
     }
@@ -102,12 +139,13 @@ fn of_gate(gate: &GateResult) -> String {
     format!("<li><span class=\"{class}\">{name}{how}</span>: {words}</li>\n")
 }
 
-/// A picture, a PNG file in base64.
+/// A picture, whose PNG file in base64 names it.
 fn figure(picture: &str, alternative: &str, caption: &str) -> String {
     let caption =
         if caption.is_empty() { String::new() } else { format!("<figcaption>{}</figcaption>", escaped(caption)) };
     let alternative = escaped(alternative);
-    format!("<figure><img src=\"data:image/png;base64,{picture}\" alt=\"{alternative}\">{caption}</figure>\n")
+    let name = file_name(picture);
+    format!("<figure><img loading=\"lazy\" src=\"{PICTURES}/{name}\" alt=\"{alternative}\">{caption}</figure>\n")
 }
 
 #[cfg(test)]
@@ -116,10 +154,15 @@ mod tests {
     use crate::check::report::sample;
 
     #[test]
-    fn the_page_needs_no_other_file_and_closes_what_it_opens() {
-        let text = page(&sample());
+    fn the_page_needs_no_other_file_than_its_pictures_and_closes_what_it_opens() {
+        let report = sample();
+        let text = page(&report);
         assert_eq!(text.matches("<section").count(), 3);
-        assert_eq!(text.matches("data:image/png;base64,").count(), 4, "three views and one piece of evidence");
+        assert_eq!(text.matches("<img loading=\"lazy\"").count(), 4, "three views and one piece of evidence");
+        assert_eq!(pictures(&report).count(), 4);
+        for (name, _) in pictures(&report) {
+            assert!(text.contains(&format!("src=\"pictures/{name}\"")), "{name}");
+        }
         assert!(!text.contains("http") && !text.contains("src=\"/"), "{text}");
         assert!(text.contains("torn&lt;&amp;&quot;&gt;.glb") && !text.contains("torn<"), "{text}");
         for element in
