@@ -73,6 +73,11 @@ fn date(days: u64) -> (u64, u64, u64) {
     (400 * era + year + next, month, day)
 }
 
+/// One unit in the last place of a coordinate, in the coordinate's own units.
+pub fn ulp_at(coordinate: f32) -> f64 {
+    f64::from(coordinate.next_up()) - f64::from(coordinate)
+}
+
 #[cfg(test)]
 mod tests {
     use std::time::Duration;

@@ -3,6 +3,7 @@
 use glam::{DVec4, Mat4, Vec2, Vec3, dvec3, vec2, vec4};
 
 use crate::mesh::Topology;
+use crate::numbers::ulp_at;
 
 /// What the depth of a clip space is on the near plane, after the division by w, and where it goes from there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,11 +65,6 @@ pub fn seen_on_plane(view: &ScreenView, px: Vec2, triangle: [Vec3; 3]) -> Option
 /// One unit in the last place of the largest coordinate of a mesh (in magnitude), in object units.
 pub fn ulp(topology: &Topology) -> f64 {
     ulp_at(topology.points.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max))
-}
-
-/// One unit in the last place of a coordinate, in the coordinate's own units.
-pub fn ulp_at(coordinate: f32) -> f64 {
-    f64::from(coordinate.next_up()) - f64::from(coordinate)
 }
 
 #[cfg(test)]

@@ -16,8 +16,8 @@ use super::union_find::UnionFind;
 use super::weld::{WELD_BYTES, weld_alike};
 use super::{Corner, Mesh};
 use crate::casts::to_u32;
+use crate::numbers::ulp_at;
 use crate::progress::{Cancelled, Progress};
-use crate::view::ulp_at;
 
 /// How many patches have their volumes computed on all cores before these are added up.
 const BLOCK: usize = 1 << 16;

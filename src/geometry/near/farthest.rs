@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::polygon::Polygon;
-use super::triangle_tree::TriangleTree;
+use super::triangle_tree::{Near, ROUNDING, TriangleTree};
 use crate::casts::to_u32;
 use crate::progress::{Cancelled, Progress};
 
@@ -64,11 +64,7 @@ pub struct Farthest {
     pub nearest: DVec3,
 }
 
-/// The part of the largest coordinate that all rounding errors together stay below. One operation in f64 errs by 2^-53
-/// of it, and a corner of a piece has been rounded once for each of the at most [`DEEPEST`] cuts before it.
-pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 44) as f64;
-
-/// Pieces that were cut so often aren't cut any more.
+/// Pieces that were cut so often aren't cut any more. Each cut rounds the corners that it makes.
 const DEEPEST: u32 = 120;
 
 /// Every so many cuts a piece is halved, so that pieces shrink whatever the tree is like.
@@ -158,13 +154,6 @@ impl Best {
             *self = other;
         }
     }
-}
-
-/// A triangle of the tree, and the distance to it, in scaled units.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Near {
-    pub place: u32,
-    pub distance: f64,
 }
 
 /// A corner of triangles, and the length of the longest side that ends there, in scaled units.

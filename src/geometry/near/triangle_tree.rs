@@ -10,8 +10,6 @@ use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::{Boundable, BvhBuildParams};
 
-use super::farthest::{Near, ROUNDING};
-
 /// Triangles in a bounding volume hierarchy. The crate builds the hierarchy; distances are computed here, in f64.
 pub struct TriangleTree {
     tree: Bvh2,
@@ -35,6 +33,17 @@ pub struct Closest {
     pub weights: [f64; 3],
     /// The point, and its distance from the place, in object units.
     pub point: DVec3,
+    pub distance: f64,
+}
+
+/// The part of the largest coordinate that all rounding errors of a search together stay below. One operation in f64 errs by
+/// 2^-53 of it, and a corner of a piece of a triangle has been rounded for each of the at most 120 cuts before it.
+pub(super) const ROUNDING: f64 = 1.0 / (1_u64 << 44) as f64;
+
+/// The place of a triangle in the hierarchy, and the distance to it, in scaled units.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    pub place: u32,
     pub distance: f64,
 }
 

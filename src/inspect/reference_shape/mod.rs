@@ -155,7 +155,7 @@ impl ReferenceShape {
 }
 
 /// The part of an exact surface's diagonal that its nearest points are computed to, and more.
-pub(crate) const EXACT: f64 = 1e-9;
+pub(crate) const EXACT: f64 = 1e-11;
 
 /// The distance from a crease, relative to the surface's size, within which all normals of the crease count: a few
 /// rounding errors of f32 positions.

@@ -17,8 +17,9 @@ use super::punctual::upload_lights;
 use crate::measure::DeviationField;
 use crate::settings::{Settings, SplitSide};
 use geometry::mesh::{Bounds, Mesh, Moment, Topology};
+use geometry::numbers::ulp_at;
 use geometry::tessellate::bounds_through;
-use geometry::view::{ulp, ulp_at};
+use geometry::view::ulp;
 use gpu::{ComputePipelines, Gpu, GpuError, Tessellator};
 
 /// A mesh on the device, its materials, and the lines that are drawn over it.

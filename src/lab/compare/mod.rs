@@ -33,9 +33,10 @@ pub use outcomes::SideDifference;
 pub use patch_starts::patch_starts;
 
 use geometry::mesh::{Bounds, Mesh, Topology};
+use geometry::numbers::ulp_at;
 use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{Convention, Displacement, HullFactors, Inputs, Tessellated, Tessellation, tessellate};
-use geometry::view::{ulp, ulp_at};
+use geometry::view::ulp;
 
 use alignment::{Alignment, Frame};
 use assignment::{Assignment, Overlaid};
