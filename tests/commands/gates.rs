@@ -99,7 +99,7 @@ fn write_bulge(folder: &Folder) -> String {
     let low = [[0.0, 0.0, 0.0], [0.5, 0.0, -0.9], [1.0, 0.0, 0.0]];
     let middle = [0.5, 0.0, -0.3];
     let leaning = low.map(|corner: [f32; 3]| [corner[0] - middle[0], 0.5, corner[2] - middle[2]]);
-    let high = low.map(|corner| [0, 1, 2].map(|i| middle[i] + 0.8 * (corner[i] - middle[i]) + [0.0, 0.03, 0.0][i]));
+    let high = low.map(|corner| [0, 1, 2].map(|i| middle[i] + 0.8 * (corner[i] - middle[i]) + [0.0, 0.1, 0.0][i]));
     let corners = [0, 1, 2].map(|k| (low[k], leaning[k]));
     write_corners(folder, &[corners, high.map(|corner| (corner, [0.0, 1.0, 0.0]))].concat())
 }

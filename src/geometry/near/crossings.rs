@@ -15,12 +15,20 @@ const BLOCK: usize = 512;
 /// place of f64. One that is nearer to 0 has no certain sign.
 const ROUNDING: f64 = 1e-14;
 
+/// Two triangles that cross, and a point of both.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// The lower index first.
+    pub triangles: [u32; 2],
+    pub at: DVec3,
+}
+
 /// Returns the pairs of triangles that cross for certain: an edge of one goes through the inside of the other. Triangles that
 /// share a position, lie in one plane, or only touch aren't among them. Positions must be finite.
 ///
 /// # Errors
 /// `progress` was cancelled.
-pub fn crossings(soup: Soup, progress: &Progress) -> Result<Vec<[u32; 2]>, Cancelled> {
+pub fn crossings(soup: Soup, progress: &Progress) -> Result<Vec<Crossing>, Cancelled> {
     let corners = |triangle: u32| soup.triangles[triangle as usize].map(|corner| soup.positions[corner as usize]);
     let Some(tree) = TriangleTree::new((0..to_u32(soup.triangles.len())).map(corners)) else { return Ok(Vec::new()) };
     let found = soup.triangles.par_chunks(BLOCK).enumerate().map(|(block, triangles)| {
@@ -29,44 +37,49 @@ pub fn crossings(soup: Soup, progress: &Progress) -> Result<Vec<[u32; 2]>, Cance
         for triangle in to_u32(block * BLOCK)..to_u32(block * BLOCK + triangles.len()) {
             let own = corners(triangle);
             tree.overlapping(own, |other| {
-                if triangle < other && cross(own, corners(other)) {
-                    found.push([triangle, other]);
+                if triangle < other
+                    && let Some(at) = cross(own, corners(other))
+                {
+                    found.push(Crossing { triangles: [triangle, other], at });
                 }
             });
         }
         // The tree's order depends on nothing but the triangles, but is no order for readers.
-        found.sort_unstable();
+        found.sort_unstable_by_key(|crossing| crossing.triangles);
         Ok(found)
     });
     Ok(found.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
-/// Whether an edge of one triangle goes through the inside of the other for certain.
-pub fn cross(a: [Vec3; 3], b: [Vec3; 3]) -> bool {
+/// Returns where an edge of one triangle goes through the inside of the other, if one does for certain.
+pub fn cross(a: [Vec3; 3], b: [Vec3; 3]) -> Option<DVec3> {
     if a.iter().any(|corner| b.contains(corner)) {
-        return false;
+        return None;
     }
     let [a, b] = [a, b].map(|triangle| triangle.map(Vec3::as_dvec3));
-    let through = |edges: [DVec3; 3], triangle| (0..3).any(|i| goes_through([edges[i], edges[(i + 1) % 3]], triangle));
-    through(a, b) || through(b, a)
+    let through =
+        |edges: [DVec3; 3], triangle| (0..3).find_map(|i| goes_through([edges[i], edges[(i + 1) % 3]], triangle));
+    through(a, b).or_else(|| through(b, a))
 }
 
-/// Whether a segment goes through the inside of a triangle for certain: its ends lie on both sides of the triangle's plane, and
-/// it passes all edges on the same side.
-fn goes_through([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> bool {
-    if side(a, b, c, p) * side(a, b, c, q) >= 0.0 {
-        return false;
+/// Returns where a segment goes through the inside of a triangle, if it does for certain: its ends lie on both sides of the
+/// triangle's plane, and it passes all edges on the same side.
+fn goes_through([p, q]: [DVec3; 2], [a, b, c]: [DVec3; 3]) -> Option<DVec3> {
+    let [above, below] = [volume(a, b, c, p), volume(a, b, c, q)];
+    if above * below >= 0.0 {
+        return None;
     }
-    let passed = [side(p, q, a, b), side(p, q, b, c), side(p, q, c, a)];
-    passed.iter().all(|side| *side > 0.0) || passed.iter().all(|side| *side < 0.0)
+    let passed = [volume(p, q, a, b), volume(p, q, b, c), volume(p, q, c, a)];
+    let is_inside = passed.iter().all(|side| *side > 0.0) || passed.iter().all(|side| *side < 0.0);
+    is_inside.then(|| p.lerp(q, above / (above - below)))
 }
 
-/// The sign of the volume of a tetrahedron; 0 if rounding hides it.
-fn side(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
+/// Six times the volume of a tetrahedron, with its sign; 0 if rounding hides that.
+fn volume(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> f64 {
     let [x, y, z] = [a - d, b - d, c - d];
     let volume = x.dot(y.cross(z));
     let least = ROUNDING * x.length() * y.length() * z.length();
-    if volume.abs() > least { volume.signum() } else { 0.0 }
+    if volume.abs() > least { volume } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -79,7 +92,14 @@ mod tests {
 
     fn found(triangles: &[[Vec3; 3]]) -> Vec<[u32; 2]> {
         let indices: Vec<[u32; 3]> = (0..to_u32(triangles.len())).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        crossings(Soup { positions: triangles.as_flattened(), triangles: &indices }, &Progress::new()).unwrap()
+        let soup = Soup { positions: triangles.as_flattened(), triangles: &indices };
+        let found = crossings(soup, &Progress::new()).unwrap();
+        for Crossing { triangles: pair, at } in &found {
+            for triangle in pair.map(|triangle| triangles[triangle as usize].map(Vec3::as_dvec3)) {
+                assert!(super::super::closest_on_triangle(triangle, *at).1.distance(*at) < 1e-12, "{pair:?}: {at}");
+            }
+        }
+        found.iter().map(|crossing| crossing.triangles).collect()
     }
 
     #[test]
@@ -106,7 +126,7 @@ mod tests {
         let mut all = Vec::new();
         for i in 0..triangles.len() {
             for j in i + 1..triangles.len() {
-                if cross(triangles[i], triangles[j]) {
+                if cross(triangles[i], triangles[j]).is_some() {
                     all.push([i as u32, j as u32]);
                 }
             }

@@ -5,6 +5,6 @@ mod farthest;
 mod polygon;
 mod triangle_tree;
 
-pub use crossings::{cross, crossings};
+pub use crossings::{Crossing, cross, crossings};
 pub use farthest::{Farthest, Goal, Interval, Soup, farthest};
 pub use triangle_tree::{Closest, TriangleTree, closest_on_triangle};

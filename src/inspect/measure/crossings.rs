@@ -8,7 +8,7 @@ use glam::Vec3;
 use super::accuracy::{Emitted, MOST_KEPT};
 use super::visitor::{EmittedChunk, Visitor};
 use geometry::mesh::Topology;
-use geometry::near::{cross, crossings};
+use geometry::near::{Crossing, cross, crossings};
 use geometry::progress::{Cancelled, Progress};
 
 /// Two patches whose triangles cross, though the mesh's own triangles don't. They may be the same.
@@ -17,7 +17,7 @@ pub struct CrossedPatches {
     pub patches: [u32; 2],
     /// How many pairs of their triangles cross.
     pub pairs: u32,
-    /// The middle of a triangle that crosses another one, in object units.
+    /// A place where two of them cross, in object units.
     pub at: Vec3,
 }
 
@@ -39,15 +39,17 @@ impl CrossingMeasurement {
             return Ok(None);
         }
         let mut all: HashMap<[u32; 2], CrossedPatches> = HashMap::new();
-        for pair in crossings(soup, progress)? {
-            let patches @ [a, b] = pair.map(|triangle| self.emitted.patch(triangle));
+        for Crossing { triangles, at } in crossings(soup, progress)? {
+            let patches @ [a, b] = triangles.map(|triangle| self.emitted.patch(triangle));
             match all.entry(patches) {
                 Entry::Occupied(mut known) => known.get_mut().pairs += 1,
-                Entry::Vacant(new) if a == b || !cross(topology.patch_positions(a), topology.patch_positions(b)) => {
-                    let corners = soup.triangles[pair[0] as usize].map(|index| soup.positions[index as usize]);
-                    new.insert(CrossedPatches { patches, pairs: 1, at: corners.iter().sum::<Vec3>() / 3.0 });
+                Entry::Vacant(new) => {
+                    let cross_flat =
+                        a != b && cross(topology.patch_positions(a), topology.patch_positions(b)).is_some();
+                    if !cross_flat {
+                        new.insert(CrossedPatches { patches, pairs: 1, at: at.as_vec3() });
+                    }
                 }
-                Entry::Vacant(_) => {}
             }
         }
         let mut all: Vec<_> = all.into_values().collect();
