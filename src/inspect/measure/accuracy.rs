@@ -189,7 +189,7 @@ impl<'a> AccuracyMeasurement<'a> {
     }
 
     /// The distances from the reference surface to the triangles that are kept, and the number of samples.
-    fn from_reference(&self) -> Result<Option<(Distances, WorstPoint, u64)>, Cancelled> {
+    fn to_emitted(&self) -> Result<Option<(Distances, WorstPoint, u64)>, Cancelled> {
         let Some(tree) = self.emitted.tree() else { return Ok(None) };
         let points = self.reference_shape.samples(self.options.samples);
         let sums = blocks(points.len(), self.options.threads, |range| {
@@ -202,7 +202,7 @@ impl<'a> AccuracyMeasurement<'a> {
             Ok(sums)
         });
         let sums = sums.into_iter().try_fold(MeanSquare::default(), |sum, next| Ok(sum.with(next?)))?;
-        let Some(Largest { distance, place }) = self.comparison().from_reference(&tree, self.progress)? else {
+        let Some(Largest { distance, place }) = self.comparison().to_emitted(&tree, self.progress)? else {
             return Ok(None);
         };
         let rms = sums.rms().unwrap_or_default();
@@ -228,7 +228,7 @@ impl<'a> AccuracyMeasurement<'a> {
         else {
             return Ok(None);
         };
-        let from_reference = if self.largest.is_none() { self.from_reference()? } else { None };
+        let from_reference = if self.largest.is_none() { self.to_emitted()? } else { None };
         let in_px = self.screen.as_ref().and_then(|screen| place.in_px(screen));
         Ok(Some(Accuracy {
             diagonal: self.reference_shape.diagonal(),

@@ -93,11 +93,7 @@ impl Comparison<'_> {
     }
 
     /// From the reference surface to what was emitted, whose triangles are in `tree`.
-    pub(crate) fn from_reference(
-        &self,
-        tree: &TriangleTree,
-        progress: &Progress,
-    ) -> Result<Option<Largest>, Cancelled> {
+    pub(crate) fn to_emitted(&self, tree: &TriangleTree, progress: &Progress) -> Result<Option<Largest>, Cancelled> {
         let facets = self.facets();
         let found = farthest(facets.soup(), tree, &self.goal(), progress)?;
         Ok(found.and_then(|Farthest { distance, point, .. }| {

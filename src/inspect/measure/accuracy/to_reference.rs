@@ -49,6 +49,7 @@ impl AccuracyMeasurement<'_> {
         }
         let n = self.steps(area);
         let (normals, patch) = (corners.map(normal), corners[0].patch());
+        self.sample_edges(positions, patch, n, sums);
         let mut take = |thirds: [u32; 2]| {
             let [u, v] = thirds.map(|x| f64::from(x) / f64::from(3 * n));
             let weights = [1.0 - u - v, u, v];
@@ -63,6 +64,18 @@ impl AccuracyMeasurement<'_> {
                 if i + j + 1 < n {
                     take([3 * i + 2, 3 * j + 2]);
                 }
+            }
+        }
+    }
+
+    /// Takes points on a triangle's edges. They stand for no area, but on a crease they are the farthest. Their angles don't count:
+    /// such an edge belongs to triangles on both sides, but lies on one side of the reference surface's crease.
+    fn sample_edges(&self, corners: [DVec3; 3], patch: u32, n: u32, sums: &mut Sums) {
+        for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+            for i in 1..n {
+                let emitted = corners[a].lerp(corners[b], f64::from(i) / f64::from(n));
+                let (reference_shape, value) = self.reference_shape.closest_point(emitted);
+                sums.add_place(WorstPoint { value, patch, emitted, reference_shape }, self.screen.as_ref());
             }
         }
     }
@@ -112,16 +125,18 @@ impl Sums {
         let angle = point.normal.cross(nearest.normal).length().atan2(point.normal.dot(nearest.normal)).to_degrees();
         let place =
             WorstPoint { value: angle, patch: point.patch, emitted: point.position, reference_shape: nearest.point };
+        self.squares.add(nearest.distance, area);
+        self.angles.add(angle, area);
+        self.worst_normal = self.worst_normal.into_iter().chain([place]).reduce(worse);
+        self.add_place(WorstPoint { value: nearest.distance, ..place }, screen);
+    }
+
+    /// Adds a place with its distance in object units.
+    fn add_place(&mut self, place: WorstPoint, screen: Option<&Screen>) {
         let in_px = screen.and_then(|screen| place.in_px(screen));
-        *self = std::mem::take(self).with(Self {
-            squares: MeanSquare::new(nearest.distance, area),
-            angles: MeanSquare::new(angle, area),
-            samples: 1,
-            farthest: Some(WorstPoint { value: nearest.distance, ..place }),
-            worst_px: in_px,
-            worst_normal: Some(place),
-            not_finite: 0,
-        });
+        self.farthest = self.farthest.into_iter().chain([place]).reduce(worse);
+        self.worst_px = self.worst_px.into_iter().chain(in_px).reduce(worse);
+        self.samples += 1;
     }
 
     fn with(self, other: Self) -> Self {

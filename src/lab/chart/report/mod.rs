@@ -11,6 +11,8 @@ mod waste;
 
 use std::fmt::Write;
 
+use geometry::near::Interval;
+
 use super::{Race, Subject};
 use answers::tables;
 use load::markdown::{plain, table};
@@ -109,14 +111,15 @@ pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
 /// How much larger the largest errors may be than what was found.
 fn certainty(parts: &[Part]) -> String {
     let rows = parts.iter().flat_map(|part| &part.subject.rows);
-    let found = rows.filter_map(|row| row.probe.errors).map(|errors| errors.largest);
-    let beyond = found.map(|largest| largest.at_most - largest.at_least).reduce(f64::max);
-    beyond.map_or_else(String::new, |beyond| {
-        format!(
-            " Largest errors are those that were found; none is larger by more than {} % of the diagonal.",
-            geometry::numbers::short(100.0 * beyond)
-        )
-    })
+    let found: Vec<Interval> = rows.filter_map(|row| row.probe.errors).map(|errors| errors.largest).collect();
+    let close = found.iter().filter(|largest| largest.at_most <= 1.02 * largest.at_least).count();
+    match found.len() {
+        0 => String::new(),
+        all => format!(
+            " Largest errors are those that were found. In {close} of {all} rows it is proven that none is larger by more than 2 % \
+             of itself; the column max_error_at_most has the proven limits of all."
+        ),
+    }
 }
 
 /// A table with its heading and a paragraph about it; empty without rows. Its first column has words.
