@@ -184,7 +184,7 @@ fn count(kind: GateKind, facts: &Facts) -> Count {
         | GateKind::NearSeam
         | GateKind::HardEdges => {
             let (mesh, topology) = known(facts.mesh)?;
-            let (found, [one, several]) = known(Defects::find(kind, mesh, topology).zip(Defects::words(kind)))?;
+            let (found, [one, several]) = known(Defects::find(kind, mesh, topology))?;
             some(found.count() as u64, one, several)
         }
         GateKind::SelfIntersections => {
@@ -379,7 +379,7 @@ fn worst_junction(facts: &Facts) -> Option<Place> {
 /// The longest edge or the largest triangle that has a defect.
 fn worst_defect(kind: GateKind, facts: &Facts) -> Option<Place> {
     let (mesh, topology) = facts.mesh?;
-    match Defects::find(kind, mesh, topology)? {
+    match Defects::find(kind, mesh, topology)?.0 {
         Defects::Edges(edges) => {
             let length = |edge: &u32| {
                 let [a, b] = topology.edge_points(&topology.edges[*edge as usize]);

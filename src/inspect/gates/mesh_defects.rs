@@ -26,55 +26,45 @@ impl Defects {
         }
     }
 
-    /// How many there are, in words. `#` stands for the number.
-    pub(super) const fn words(kind: GateKind) -> Option<[&'static str; 2]> {
-        Some(match kind {
-            GateKind::NonManifold => ["# edge has three triangles or more", "# edges have three triangles or more"],
-            GateKind::Boundary => ["# edge is open", "# edges are open"],
-            GateKind::Winding => {
-                ["# edge has triangles wound opposite ways", "# edges have triangles wound opposite ways"]
-            }
-            GateKind::NormalsAgainstFaces => {
-                ["# triangle has a normal that points behind it", "# triangles have a normal that points behind them"]
-            }
-            GateKind::Degenerate => ["# triangle has no area", "# triangles have no area"],
-            GateKind::Duplicates => ["# triangle repeats another one", "# triangles repeat another one"],
-            GateKind::NearSeam => ["# open edge nearly meets another one", "# open edges nearly meet another one"],
-            GateKind::HardEdges => ["# edge has two normals at an end", "# edges have two normals at an end"],
-            GateKind::Cracks
-            | GateKind::Factors
-            | GateKind::Leaks
-            | GateKind::Folds
-            | GateKind::TJunctions
-            | GateKind::Warnings
-            | GateKind::AboveTolerance
-            | GateKind::SelfIntersections
-            | GateKind::Deviation
-            | GateKind::Triangles
-            | GateKind::Bytes => return None,
-        })
-    }
-
-    /// Finds the defects that a gate counts; `None` if it is about something else.
-    pub(super) fn find(kind: GateKind, mesh: &Mesh, topology: &Topology) -> Option<Self> {
+    /// Finds the defects that a gate counts, and the words for one and for several of them, in which `#` stands for the number.
+    /// `None` if the gate is about something else.
+    pub(super) fn find(kind: GateKind, mesh: &Mesh, topology: &Topology) -> Option<(Self, [&'static str; 2])> {
         let edges = |is_one: &dyn Fn(&Edge) -> bool| Self::edges(topology, is_one);
         Some(match kind {
-            GateKind::NonManifold => edges(&|edge| edge.kind == EdgeKind::NonManifold),
-            GateKind::Boundary => edges(&|edge| edge.kind == EdgeKind::Boundary),
-            GateKind::Winding => {
-                edges(&|edge| matches!(topology.edge_sides(edge), [a, b] if a.reversed() == b.reversed()))
+            GateKind::NonManifold => (
+                edges(&|edge| edge.kind == EdgeKind::NonManifold),
+                ["# edge has three triangles or more", "# edges have three triangles or more"],
+            ),
+            GateKind::Boundary => {
+                (edges(&|edge| edge.kind == EdgeKind::Boundary), ["# edge is open", "# edges are open"])
             }
-            GateKind::HardEdges => edges(&|edge| edge.kind == EdgeKind::Split),
+            GateKind::Winding => (
+                edges(&|edge| matches!(topology.edge_sides(edge), [a, b] if a.reversed() == b.reversed())),
+                ["# edge has triangles wound opposite ways", "# edges have triangles wound opposite ways"],
+            ),
+            GateKind::NormalsAgainstFaces => (
+                Self::Triangles(against_faces(mesh, topology)),
+                ["# triangle has a normal that points behind it", "# triangles have a normal that points behind them"],
+            ),
+            GateKind::Degenerate => {
+                (Self::Triangles(without_area(mesh, topology)), ["# triangle has no area", "# triangles have no area"])
+            }
+            GateKind::Duplicates => (
+                Self::Triangles(repeated(topology)),
+                ["# triangle repeats another one", "# triangles repeat another one"],
+            ),
             GateKind::NearSeam => {
                 let is_near = near_another(topology);
-                edges(&|edge| {
+                let is_seam = |edge: &Edge| {
                     let ends = topology.edge_points(edge);
                     edge.kind == EdgeKind::Boundary && ends.iter().all(|point| is_near[*point as usize])
-                })
+                };
+                (edges(&is_seam), ["# open edge nearly meets another one", "# open edges nearly meet another one"])
             }
-            GateKind::NormalsAgainstFaces => Self::Triangles(against_faces(mesh, topology)),
-            GateKind::Degenerate => Self::Triangles(without_area(mesh, topology)),
-            GateKind::Duplicates => Self::Triangles(repeated(topology)),
+            GateKind::HardEdges => (
+                edges(&|edge| edge.kind == EdgeKind::Split),
+                ["# edge has two normals at an end", "# edges have two normals at an end"],
+            ),
             GateKind::Cracks
             | GateKind::Factors
             | GateKind::Leaks
@@ -171,7 +161,7 @@ mod tests {
 
     fn counts(triangles: &[[Vec3; 3]], normals: &[Vec3]) -> Vec<(&'static str, usize)> {
         let (mesh, topology) = mesh(triangles, normals);
-        let of = |kind: &GateKind| Some((kind.name(), Defects::find(*kind, &mesh, &topology)?.count()));
+        let of = |kind: &GateKind| Some((kind.name(), Defects::find(*kind, &mesh, &topology)?.0.count()));
         GateKind::ALL.iter().filter_map(of).filter(|(_, count)| *count > 0).collect()
     }
 
