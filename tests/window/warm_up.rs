@@ -17,8 +17,8 @@ fn start(source: Source) -> Harness<'static, App> {
     harness
 }
 
-/// Runs frames for so long while nothing is done.
-fn wait(harness: &mut Harness<App>, time: Duration) {
+/// Runs frames for so long while nothing is done, and until no preview is being drawn out of sight.
+pub(super) fn wait(harness: &mut Harness<App>, time: Duration) {
     let start = Instant::now();
     while start.elapsed() < time || harness.state().is_warming_up() {
         assert!(start.elapsed() < PATIENCE, "a preview is still being drawn");
