@@ -353,13 +353,9 @@ fn uniform_suffices(
     tolerance: f32,
     partitioning: u32,
     factor: f32,
-    least_inside: f32,
 ) -> bool {
     let within = BOUND_SHARE * tolerance;
     let factors = process(partitioning, vec3<f32>(factor), factor);
-    if least_inside > factor {
-        return false;
-    }
     if patch_is_minimal(factors) {
         return triangle_error_at(seen, within, domain_plan(factors), 0u) <= within;
     }

@@ -77,23 +77,6 @@ fn shared_lookup(own: Lookup, at: Spot) -> Lookup {
     return own;
 }
 
-// The directions in which a patch's corners move: those of their points, or as published the corners' own normals.
-fn corner_directions(patch_index: u32) -> array<vec3<f32>, 3> {
-    let own = patches[patch_index];
-    if params.displacement == DISPLACEMENT_ON {
-        return array<vec3<f32>, 3>(
-            shares[own.points[0]].direction,
-            shares[own.points[1]].direction,
-            shares[own.points[2]].direction,
-        );
-    }
-    return array<vec3<f32>, 3>(
-        corners[own.corners[0]].normal,
-        corners[own.corners[1]].normal,
-        corners[own.corners[2]].normal,
-    );
-}
-
 // On a side it is computed in the dominant side's direction, so that all sides compute the same.
 fn direction_at(patch_index: u32, u: u32, v: u32, at: Spot) -> vec3<f32> {
     var directions = corner_directions(patch_index);
@@ -121,7 +104,9 @@ fn offset_at(at: Lookup) -> f32 {
     }
     let own = maps[map - 1u];
     let uv = linear_uv(patch_uvs(at.patch_index), at.u, at.v);
-    return params.height_scale * (height_at(own, lookup_level(own, at), uv) - params.midlevel);
+    // LOD by error bounds the distance from what level 0 has.
+    let level = select(lookup_level(own, at), 0.0, params.lod == LOD_ERROR);
+    return params.height_scale * (height_at(own, level, uv) - params.midlevel);
 }
 
 // The gradient of the height in object space, from the gradients of texture coordinates at the patch's corners.

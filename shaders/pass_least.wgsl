@@ -1,5 +1,5 @@
 // The own least of every patch: the fewest triangles with which it would keep the tolerance of LOD by error if it chose the
-// factors of its edges alone. pass_factors.wgsl has written what edges and heights need at least.
+// factors of its edges alone. pass_factors.wgsl has written what edges need at least.
 
 // `params` are those of LOD by error, whichever LOD is used. First 0 for the patches that are searched:
 @group(0) @binding(8) var<storage, read_write> least_triangles: array<u32>;
@@ -17,11 +17,10 @@ fn least_triangles_main(invocation: Invocation) {
     }
     var seen = load_seen(index);
     let least = first_least(&seen, edges_of(index, params.factor_count));
-    let inside = heights_inside(index);
-    var own = whole_segments(params.partitioning, inside);
-    if params.surface != SURFACE_FLAT {
-        let sought = Sought(least, inside, 0.0, GOAL_MINIMUM);
-        own = without_search(&seen, BOUND_SHARE * surface_tolerance(), params.partitioning, sought);
+    var own = whole_segments(params.partitioning, 1.0);
+    if params.surface != SURFACE_FLAT || params.displacement != 0u {
+        let sought = Sought(least, 1.0, 0.0, GOAL_MINIMUM);
+        own = without_search(&seen, BOUND_SHARE * params.tolerance, params.partitioning, sought);
     }
     least_triangles[index] = select(triangles_of(least, own), 0u, own == 0.0);
 }
@@ -37,13 +36,13 @@ fn search_least_triangles_main(invocation: Invocation) {
         let is_searched = first + team() == index && least_triangles[index] == 0u;
         var seen = load_seen(index);
         let least = first_least(&seen, edges_of(index, params.factor_count));
-        let inside = select(BEYOND_LAST, heights_inside(index), is_searched);
+        let inside = select(BEYOND_LAST, 1.0, is_searched);
         let sought = Sought(least, inside, 0.0, GOAL_MINIMUM);
         var own: Chosen;
         if SEARCHES_ROWS == 1u {
-            own = fewest_rows(&seen, surface_tolerance(), sought);
+            own = fewest_rows(&seen, params.tolerance, sought);
         } else {
-            own = fewest_triangles(&seen, surface_tolerance(), params.partitioning, sought);
+            own = fewest_triangles(&seen, params.tolerance, params.partitioning, sought);
         }
         if leads_team() && is_searched {
             least_triangles[index] = triangles_of(own.edges, own.inside);

@@ -60,7 +60,8 @@ fn dont_take(factors: vec2<u32>) {
 // Leaves out the factors that aren't candidates.
 @compute @workgroup_size(64)
 fn candidates_main(@builtin(local_invocation_index) local: u32) {
-    if params.surface == SURFACE_FLAT || !is_candidate(f32(local + 1u)) {
+    let is_flat = params.surface == SURFACE_FLAT && params.displacement == 0u;
+    if is_flat || !is_candidate(f32(local + 1u)) {
         dont_take(bits_up_to(local + 1u) & ~bits_up_to(local));
     }
 }
@@ -86,11 +87,10 @@ fn search_uniform_factor_main(invocation: Invocation) {
     var factors = factors_left();
     while any(factors != vec2<u32>(0u)) && index < params.patch_count {
         var seen = load_seen(index);
-        let least = heights_inside(index);
         while any(factors != vec2<u32>(0u)) {
             let factor = 1u + select(firstLeadingBit(factors.x), 32u + firstLeadingBit(factors.y), factors.y != 0u);
             factors &= bits_up_to(factor - 1u);
-            if !uniform_suffices(&seen, surface_tolerance(), params.partitioning, f32(factor), least) && lane == 0u {
+            if !uniform_suffices(&seen, params.tolerance, params.partitioning, f32(factor)) && lane == 0u {
                 dont_take(bits_up_to(factor) & ~bits_up_to(factor - 1u));
             }
         }

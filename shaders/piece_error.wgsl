@@ -27,6 +27,9 @@ struct SeenPatch {
     // side; else large numbers.
     off_plane: f32,
     off_line: f32,
+    // By what points, depths and second derivatives were multiplied.
+    scale: f32,
+    relief: SeenRelief,
 }
 
 // Returns whether an error is within a tolerance. NaN never is.
@@ -163,7 +166,30 @@ fn seen_patch(view: LodView, net: ControlNet) -> SeenPatch {
     let deep = length(clip_row(view, 3u)) * view.reach * scale;
     let turn = turn_of(points[0], points[1], points[2]);
     let reach = view.reach * scale;
-    return SeenPatch(points, second, view.half_viewport, near_depth(view) * scale, deep, across * reach, turn, 3.4e38, 3.4e38);
+    let near = near_depth(view) * scale;
+    var none: SeenRelief;
+    none.relief.longest = -1.0;
+    return SeenPatch(points, second, view.half_viewport, near, deep, across * reach, turn, 3.4e38, 3.4e38, scale, none);
+}
+
+// Returns what is seen of the heights over a patch: its corners move along unit directions by `height_scale` object units from black to
+// white.
+fn seen_relief(
+    view: LodView,
+    scale: f32,
+    directions: array<vec3<f32>, 3>,
+    height_scale: f32,
+    relief: PatchRelief,
+) -> SeenRelief {
+    let turning = turning_of(directions[0], directions[1], directions[2]);
+    let unit = abs(height_scale) * scale;
+    let part = select(0.0, abs(height_scale) / view.reach, view.reach > 0.0);
+    let seen = array<vec3<f32>, 3>(
+        clip_difference(view, directions[0] * unit),
+        clip_difference(view, directions[1] * unit),
+        clip_difference(view, directions[2] * unit),
+    );
+    return SeenRelief(relief, seen, turning.x, turning.y, part);
 }
 
 // Returns the point of the surface at a place of the domain.
@@ -548,24 +574,31 @@ fn piece_error(
         spread = max(max(distance(a, middle), distance(b, middle)), distance(c, middle)) + moved;
         depth = nearest;
     }
+    let at = array<vec2<f32>, 3>(p, q, r);
+    let lost = heights_error(seen, at, middle, spread, depth);
+    if !is_within(lost, tolerance) {
+        return lost;
+    }
+    // What is left of it is for the surface without displacement.
+    let left = tolerance - lost;
     var error = 3.4e38;
-    if may_slide(seen, tolerance) {
-        error = sliding_error(seen, &piece, array<vec2<f32>, 3>(p, q, r), middle, spread, depth);
+    if may_slide(seen, left) {
+        error = sliding_error(seen, &piece, at, middle, spread, depth);
         error = min((*seen).off_line, error);
     }
-    if is_within(error, tolerance) {
-        return error;
+    if is_within(error, left) {
+        return lost + error;
     }
     let bound = derivative_bound(&piece, middle, spread);
     if is_before_eye {
-        error = min(error, same_place_error(seen, &piece, tolerance, bound, moved, vec2<f32>(nearest, farthest)));
+        error = min(error, same_place_error(seen, &piece, left, bound, moved, vec2<f32>(nearest, farthest)));
     } else {
         error = min(error, bound / depth);
     }
     let most_beyond = max(max(beyond[0], beyond[1]), beyond[2]);
     let is_partial = !is_before_eye || any(most_beyond > vec4<f32>(0.0));
-    if is_partial && !is_within(error, tolerance) {
-        error = min(error, partial_error(seen, &piece, &beyond, before, behind, middle, spread, bound, tolerance));
+    if is_partial && !is_within(error, left) {
+        error = min(error, partial_error(seen, &piece, &beyond, before, behind, middle, spread, bound, left));
     }
-    return error;
+    return lost + error;
 }

@@ -2,7 +2,7 @@
 // that of the numbers since none is negative. One after another:
 // - the factors of edges;
 // - the least factor of each edge;
-// - the factor that each patch's heights need inside it, if it is displaced;
+// - the directions in which the corners of each patch move, packed, if it is displaced;
 // - the inside factors of patches;
 // - what each patch knows (see Known), 0 before it has been looked at;
 // - the counters (SEARCH_COUNTERS in types.wgsl), 0 before a search: the numbers of large and of small patches on two lists, of
@@ -18,13 +18,13 @@
 @group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
 @group(0) @binding(4) var<storage, read_write> edge_factors: array<atomic<u32>>;
 @group(0) @binding(5) var<storage, read> corners: array<Corner>;
-// A bit for each patch: whether it has a texture.
-@group(0) @binding(6) var<storage, read> textured: array<u32>;
+// Of every patch, if heights displace the mesh.
+@group(0) @binding(6) var<storage, read> reliefs: array<PatchRelief>;
 @group(0) @binding(7) var<storage, read_write> search_workgroups: array<u32, 3>;
 
 // Where the inside factor of a patch is.
 fn inside_at(patch_index: u32) -> u32 {
-    return 2u * params.factor_count + params.patch_count + patch_index;
+    return 2u * params.factor_count + 3u * params.patch_count + patch_index;
 }
 
 // Where that is which a patch knows.
@@ -32,17 +32,9 @@ fn known_at(patch_index: u32) -> u32 {
     return inside_at(params.patch_count + patch_index);
 }
 
-// The factor that a patch's heights need inside it.
-fn heights_inside(patch_index: u32) -> f32 {
-    if params.displacement == 0u {
-        return 1.0;
-    }
-    return bitcast<f32>(atomicLoad(&edge_factors[2u * params.factor_count + patch_index]));
-}
-
-// The part of the tolerance that is for the surface without displacement, in px.
-fn surface_tolerance() -> f32 {
-    return params.tolerance * select(1.0, SURFACE_SHARE, params.displacement != 0u);
+// The unit direction in which a corner of a patch moves.
+fn corner_direction(patch_index: u32, corner: u32) -> vec3<f32> {
+    return unpack_normal(atomicLoad(&edge_factors[2u * params.factor_count + 3u * patch_index + corner]));
 }
 
 // The factors of the edges U == 0, V == 0 and W == 0 of a patch: LOD takes each by the opposite corner, whatever the

@@ -1,11 +1,10 @@
-// Flat patches under LOD by error. The module declares the buffers.
+// Patches under LOD by error as they are seen: flat ones, and displaced ones. The module declares the buffers.
 
 // Returns whether nothing on a patch depends on where its points slide.
 fn is_plain(patch_index: u32) -> bool {
-    let has_texture = ((textured[patch_index / 32u] >> (patch_index % 32u)) & 1u) == 1u;
     let own = patches[patch_index].corners;
     let agree = normals_agree(corners[own[0]].normal, corners[own[1]].normal, corners[own[2]].normal);
-    return params.displacement == 0u && !has_texture && agree;
+    return params.displacement == 0u && !is_textured(patch_index) && agree;
 }
 
 // Returns a patch as it is seen.
@@ -15,6 +14,14 @@ fn load_seen(patch_index: u32) -> SeenPatch {
     if is_plain(patch_index) {
         seen.off_plane = plane_error(params.view, net);
         seen.off_line = line_error(params.view, net);
+    }
+    if params.displacement != 0u {
+        let directions = array<vec3<f32>, 3>(
+            corner_direction(patch_index, 0u),
+            corner_direction(patch_index, 1u),
+            corner_direction(patch_index, 2u),
+        );
+        seen.relief = seen_relief(params.view, seen.scale, directions, params.height_scale, reliefs[patch_index]);
     }
     return seen;
 }

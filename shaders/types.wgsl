@@ -91,23 +91,25 @@ struct CurveNet {
 
 // What patches share where they meet, so that displacement doesn't tear them apart. One buffer holds, one after another:
 // - for each point, the direction in which it moves, the level at which its height is looked up, and its dominant corner;
-// - for each factor's edge, the level, the dominant side, and the height image of one of its sides;
+// - for each factor's edge, the level and the dominant side;
 // - for each corner, two elements whose directions are the gradients of its two texture coordinates;
-// - further height images of edges' sides, which `next` leads to.
 struct Share {
     direction: vec3<f32>,
     level: f32,
     // 4 times a patch, plus which of its corners or sides.
     dominant: u32,
-    // The length of the edge in that height image in px of level 0, the longest if several sides have it; the image's
-    // number, 1 for the first and 0 for none; and the index of the element with the next image, 0 if there is none.
-    texels: f32,
-    map: u32,
-    next: u32,
+    @size(12) _pad: u32,
 }
 
-// The most mip levels that a height image has.
-const MAX_LEVELS: u32 = 13u;
+// What is known of the heights over a patch: see src/geometry/tessellate/relief.rs.
+struct PatchRelief {
+    form: vec3<f32>,
+    // Negative where no image displaces the patch.
+    longest: f32,
+    range: f32,
+    slope: f32,
+    losses: array<vec2<f32>, 5>,
+}
 
 // The most height images that a mesh has.
 const MAX_MAPS: u32 = 256u;

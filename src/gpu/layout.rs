@@ -4,6 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 
 pub use geometry::mesh::Curve;
+use geometry::mesh::RELIEF_STEPS;
 pub use geometry::mesh::rig::{Binding, Delta, JointMatrix};
 pub use geometry::tessellate::{PatchFactors, Vertex};
 
@@ -126,9 +127,8 @@ pub struct CurveNet {
 
 /// What patches share where they meet, so that displacement doesn't tear them apart. One buffer holds, one after another:
 /// - for each point, the direction in which it moves, the level at which its height is looked up, and its dominant corner;
-/// - for each factor's edge, the level, the dominant side, and the height image of one of its sides;
+/// - for each factor's edge, the level and the dominant side;
 /// - for each corner, two elements whose directions are the gradients of its two texture coordinates;
-/// - further height images of edges' sides, which `next` leads to.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Share {
@@ -136,12 +136,18 @@ pub struct Share {
     pub level: f32,
     /// 4 times a patch, plus which of its corners or sides.
     pub dominant: u32,
-    /// The length of the edge in that height image in px of level 0; the longest if several sides have the image.
-    pub texels: f32,
-    /// The number of that height image: 1 for the first, 0 for none.
-    pub map: u32,
-    /// The index of the element with the next image of the edge's sides, 0 if there is none.
-    pub next: u32,
+    pub _pad: [u32; 3],
+}
+
+/// What is known of the heights over a patch: a [`geometry::tessellate::PatchRelief`].
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct PatchRelief {
+    pub form: [f32; 3],
+    pub longest: f32,
+    pub range: f32,
+    pub slope: f32,
+    pub losses: [[f32; 2]; RELIEF_STEPS],
 }
 
 /// One of the height images: width and height of its level 0 in px, its number of mip levels, and where its heights start among

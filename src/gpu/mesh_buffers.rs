@@ -2,18 +2,17 @@
 
 use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
-use super::relief_buffers::{ReliefBuffers, details, patch_maps, shares};
+use super::relief_buffers::{ReliefBuffers, reliefs, shares};
 use super::{Gpu, GpuError};
 use geometry::mesh::{CurveItems, Curves, Dominance, Mesh, Sharing, Topology};
-use geometry::tessellate::texel_lengths;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
 pub const SEARCH_COUNTERS: u32 = 10;
 
 /// A mesh and its topology on the device, with room for the control nets and factors that passes compute.
 pub struct MeshBuffers {
-    /// The position of every point; then, for every patch, room for the control point at its centre, and as w the number of its
-    /// height image (1 for the first, 0 for none).
+    /// The position of every point; then, for every patch, room for the control point at its centre, and as w what
+    /// `shaders/patch_traits.wgsl` says.
     pub points: wgpu::Buffer,
     pub corners: wgpu::Buffer,
     /// What corners have beside their shading attributes: one element for each of them, or only one, of a corner that has
@@ -24,8 +23,6 @@ pub struct MeshBuffers {
     pub curve_sides: wgpu::Buffer,
     pub factor_curves: wgpu::Buffer,
     pub material_patches: wgpu::Buffer,
-    /// A bit for each patch: whether it has a texture.
-    pub textured: wgpu::Buffer,
     pub curve_nets: wgpu::Buffer,
     /// One factor for each edge; then room for what LOD by error needs, see `shaders/search_state.wgsl`.
     pub edge_factors: wgpu::Buffer,
@@ -33,8 +30,8 @@ pub struct MeshBuffers {
     pub search_workgroups: wgpu::Buffer,
     /// What patches share where displacement must not tear them apart: see [`super::layout::Share`]. Empty without heights.
     pub shares: wgpu::Buffer,
-    /// How far each mip level of each height image is from its level 0.
-    pub details: wgpu::Buffer,
+    /// What LOD by error knows of the heights over each patch: a [`super::layout::PatchRelief`]. Empty without heights.
+    pub reliefs: wgpu::Buffer,
     /// None without heights.
     pub relief: Option<ReliefBuffers>,
     pub sharing: Sharing,
@@ -60,13 +57,9 @@ impl MeshBuffers {
         let dominance = dominance.map(|(heights, lists)| Dominance::new(topology, lists, &heights.angles));
         let relief =
             dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, mesh, topology, dominance)).transpose()?;
-        let mut all_shares = Vec::new();
-        if let Some((heights, dominance)) = heights.zip(dominance.as_ref()) {
-            let texel_lengths = texel_lengths(heights, mesh, topology, dominance);
-            all_shares = shares(mesh, dominance, &texel_lengths);
-        }
+        let all_shares = dominance.as_ref().map(|dominance| shares(mesh, dominance)).unwrap_or_default();
         let factor_count = grouped.factor_count() as usize;
-        let factor_room = 2 * factor_count + 5 * topology.patches.len() + SEARCH_COUNTERS as usize;
+        let factor_room = 2 * factor_count + 7 * topology.patches.len() + SEARCH_COUNTERS as usize;
         Ok(Self {
             points: points(gpu, mesh, topology)?,
             corners: filled_by(gpu, "corners", mesh.corners.len(), |i| corner(&mesh.corners[i]))?,
@@ -76,12 +69,11 @@ impl MeshBuffers {
             curve_sides: filled_by(gpu, "sides", grouped.side_count(), |i| grouped.side(i))?,
             factor_curves: filled_by(gpu, "edges", factor_count + 1, |i| grouped.factor_curve(i))?,
             material_patches: filled(gpu, "materials", &material_patches)?,
-            textured: filled(gpu, "textured", &textured(mesh, topology))?,
             curve_nets: empty::<CurveNet>(gpu, "curve nets", grouped.curve_count())?,
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 1)?,
             shares: filled(gpu, "shares", &all_shares)?,
-            details: details(gpu, heights),
+            reliefs: filled(gpu, "reliefs", &reliefs(mesh, topology))?,
             relief,
             sharing,
             point_count: topology.points.len() as u32,
@@ -96,7 +88,7 @@ impl MeshBuffers {
     pub fn bytes(&self) -> u64 {
         let topology = [&self.patches, &self.curves, &self.curve_sides, &self.factor_curves, &self.material_patches];
         let computed = [&self.curve_nets, &self.edge_factors];
-        let attributes = [&self.points, &self.corners, &self.corner_details, &self.textured, &self.shares];
+        let attributes = [&self.points, &self.corners, &self.corner_details, &self.shares, &self.reliefs];
         bytes_of(topology)
             + bytes_of(computed)
             + bytes_of(attributes)
@@ -104,12 +96,21 @@ impl MeshBuffers {
     }
 }
 
-/// The positions of points, then room for the centres of patches.
+/// `TEXTURED` in `shaders/patch_traits.wgsl`: added to the number of a patch's height image if the patch has a texture.
+pub const TEXTURED: u32 = 512;
+
+/// The positions of points, then room for the centres of patches beside their traits.
 fn points(gpu: &Gpu, mesh: &Mesh, topology: &Topology) -> Result<wgpu::Buffer, GpuError> {
-    let maps = patch_maps(mesh.heights.as_deref(), topology);
+    let heights = mesh.heights.as_deref();
+    let traits = |patch| {
+        let material = topology.material_of(patch);
+        let map = heights.and_then(|heights| heights.map_of(material)).map_or(0, |map| map + 1);
+        let is_textured = mesh.materials.get(material).is_some_and(|material| material.texture.is_some());
+        if is_textured { map + TEXTURED } else { map }
+    };
     filled_by(gpu, "points", topology.points.len() + topology.patches.len(), |i| match topology.points.get(i) {
         Some(point) => point.extend(0.0).to_array(),
-        None => [0.0, 0.0, 0.0, maps[i - topology.points.len()]],
+        None => [0.0, 0.0, 0.0, traits((i - topology.points.len()) as u32) as f32],
     })
 }
 
@@ -121,17 +122,6 @@ fn corner_details(gpu: &Gpu, mesh: &Mesh) -> Result<wgpu::Buffer, GpuError> {
     let none = [geometry::mesh::CornerDetail::default()];
     let details = mesh.details.as_deref().map_or(&none[..], |details| details);
     filled_by(gpu, "corner details", details.len(), |i| CornerDetail::new(&details[i]))
-}
-
-/// A bit for each patch: whether its material has a texture.
-fn textured(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
-    let mut bits = vec![0; topology.patches.len().div_ceil(32)];
-    for (range, material) in topology.material_patches.iter().zip(&mesh.materials) {
-        if material.texture.is_some() {
-            range.clone().for_each(|patch| bits[patch as usize / 32] |= 1 << (patch % 32));
-        }
-    }
-    bits
 }
 
 fn patch(patch: &geometry::mesh::Patch, grouped: &CurveItems) -> Patch {

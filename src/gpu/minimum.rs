@@ -8,7 +8,7 @@ use super::layout::Params;
 use super::mesh_buffers::MeshBuffers;
 use super::pass_inputs::{BoundPasses, PassInputs};
 use super::pipelines::{
-    ComputePipelines, EDGE_FACTORS, HEIGHTS_INSIDE, LEAST_TRIANGLES, MOST_WORKGROUPS, SEARCH_LEAST_TRIANGLES,
+    ComputePipelines, EDGE_FACTORS, LEAST_TRIANGLES, MOST_WORKGROUPS, PATCH_DIRECTIONS, SEARCH_LEAST_TRIANGLES,
 };
 use super::recorder::RecordPasses;
 use super::{Gpu, GpuError};
@@ -61,7 +61,7 @@ impl Minimum {
         let (mesh, on) = (on.mesh, PassInputs { own: &own, bound: &self.bound, ..*on });
         let mut steps = vec![on.over(EDGE_FACTORS, mesh.factor_count)?];
         if params.displacement != 0 {
-            steps.push(on.over(HEIGHTS_INSIDE, mesh.patch_count)?);
+            steps.push(on.over(PATCH_DIRECTIONS, mesh.patch_count)?);
         }
         steps.push(on.over(LEAST_TRIANGLES, mesh.patch_count)?);
         let search = search(on.gpu, on.pipelines, mesh.patch_count, params.partitioning == Partitioning::Rows as u32);

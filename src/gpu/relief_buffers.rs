@@ -1,10 +1,10 @@
 //! What displacement needs in device memory: height images, and what patches share where they meet.
 
 use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
-use super::layout::{HeightMap, Share};
+use super::layout::{HeightMap, PatchRelief, Share};
 use super::{Gpu, GpuError};
-use geometry::mesh::{Dominance, Heights, MAX_LEVELS, MAX_MAPS, Mesh, Topology};
-use geometry::tessellate::{TexelLength, map_number};
+use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
+use geometry::tessellate::patch_reliefs;
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
 pub const HEIGHTS_ACROSS: u32 = 4096;
@@ -105,30 +105,21 @@ impl ReliefBuffers {
 ///
 /// - one for each point,
 /// - one for each factor,
-/// - two for each corner,
-/// - further texel lengths of factors.
-pub fn shares(mesh: &Mesh, dominance: &Dominance, texel_lengths: &[TexelLength]) -> Vec<Share> {
-    let (point_count, factor_count) = (dominance.corners.len(), dominance.sides.len());
-    let behind = (point_count + 2 * mesh.corners.len()) as u32;
-    let share = |dominant, length: TexelLength| {
-        let next = if length.next > 0 { behind + length.next } else { 0 };
-        Share { dominant, texels: length.texels, map: length.map, next, ..bytemuck::Zeroable::zeroed() }
-    };
-    let (own, further) = texel_lengths.split_at(factor_count);
-    let points = dominance.corners.iter().map(|&dominant| share(dominant, TexelLength::default()));
-    let factors = dominance.sides.iter().zip(own).map(|(&dominant, &length)| share(dominant, length));
-    let corners = std::iter::repeat_n(share(0, TexelLength::default()), 2 * mesh.corners.len());
-    let further = further.iter().map(|&length| share(0, length));
-    points.chain(factors).chain(corners).chain(further).collect()
+/// - two for each corner.
+pub fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
+    let share = |&dominant: &u32| Share { dominant, ..bytemuck::Zeroable::zeroed() };
+    let shared = dominance.corners.iter().chain(&dominance.sides).map(share);
+    shared.chain(std::iter::repeat_n(share(&0), 2 * mesh.corners.len())).collect()
 }
 
-/// How far each mip level of each height image is from its level 0, padded to 16 levels; zeros without heights.
-pub fn details(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
-    let mut table = [[0.0_f32; 16]; MAX_MAPS];
-    for (entry, detail) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.detail)) {
-        entry[..MAX_LEVELS].copy_from_slice(detail);
-    }
-    uniform_buffer(gpu, "height details", bytemuck::cast_slice(&table))
+/// What LOD by error knows of the heights over each patch; nothing without heights.
+pub fn reliefs(mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
+    let own = patch_reliefs(mesh.heights.as_deref(), mesh, topology).into_iter();
+    own.map(|own| {
+        let geometry::tessellate::PatchRelief { form, longest, range, slope, losses } = own;
+        PatchRelief { form, longest, range, slope, losses }
+    })
+    .collect()
 }
 
 /// Where each corner's list of patches starts in the second vector, and where it ends. Corners that differ in their details alone
@@ -152,14 +143,4 @@ fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<[u32; 2]>, Vec<u
     }
     let range = |&corner: &u32| [starts[corner as usize], starts[corner as usize + 1]];
     (alike.iter().map(range).collect(), patches)
-}
-
-/// The number of each patch's height image: 1 for the first, 0 for none.
-pub(crate) fn patch_maps(heights: Option<&Heights>, topology: &Topology) -> Vec<f32> {
-    let mut maps = vec![0.0; topology.patches.len()];
-    for patches in topology.material_patches.iter().filter(|patches| !patches.is_empty()) {
-        let map = heights.map_or(0, |heights| map_number(heights, topology, patches.start));
-        maps[patches.start as usize..patches.end as usize].fill(map as f32);
-    }
-    maps
 }

@@ -44,7 +44,7 @@ impl ShownExplanation<'_> {
         let (text, hover) = if self.by_error {
             let asked = "This asks: the factor that this patch asks the edge for. Others ask: the largest that a patch across the edge \
                          asks for. Gets: the largest of both. From: whose request that was; \u{201c}curve\u{201d} if nobody asked \
-                         for more than the edge's curve, or the heights on it, need by themselves.";
+                         for more than the edge's curve needs by itself.";
             (
                 HEADINGS.map(|[edge, own, others, got, from, px]| row(edge, own, others, got, from, px)),
                 format!("{asked} {error}"),
@@ -80,10 +80,7 @@ impl ShownExplanation<'_> {
     /// Who asked for what, in sentences.
     fn requests(&self, name: &str, edge: &ExplainedEdge) -> String {
         let mut lines = vec![
-            format!(
-                "The curve of edge {name}, or the heights on it, need a factor of {} at least.",
-                factor_text(edge.least)
-            ),
+            format!("The curve of edge {name} needs a factor of {} at least.", factor_text(edge.least)),
             format!("This patch asks for {}.", factor_text(edge.own)),
         ];
         lines.extend(edge.others.iter().take(LISTED).map(|&(patch, factor)| {
@@ -133,10 +130,7 @@ impl ShownExplanation<'_> {
 
     fn tolerance_row(&self, ui: &mut Ui) {
         let tolerance = self.explained.map_or_else(|| UNKNOWN.to_owned(), |explained| px_text(explained.tolerance));
-        let mut hover =
-            "The largest distance to the surface that LOD by error allows, in px. With displacement it is the part \
-                         of the tolerance that is for the surface without heights."
-                .to_owned();
+        let mut hover = "The largest distance to the surface that LOD by error allows, in px.".to_owned();
         if !self.by_error {
             hover += " The LOD that is used doesn't keep it.";
         }

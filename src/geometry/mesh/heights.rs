@@ -2,6 +2,9 @@
 //! triangles.
 
 mod pyramid;
+mod relief;
+
+pub use relief::{RELIEF_STEPS, Relief};
 
 use glam::Vec2;
 
@@ -11,9 +14,6 @@ use crate::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
 pub const MAX_KEPT: u32 = 4096;
-
-/// The greatest number of levels: 4096 px halved down to 1.
-pub const MAX_LEVELS: usize = 13;
 
 /// The greatest number of maps of a mesh, for which the shaders have room.
 pub const MAX_MAPS: usize = 256;
@@ -49,9 +49,8 @@ pub struct Heights {
     pub radius: f32,
     /// For each of the mesh's corners, the sum of the angles, in radians, of the triangles there, in the mesh at rest.
     pub angles: Vec<f32>,
-    /// For each level of each map, the greatest difference between that level, interpolated linearly, and level 0. The
-    /// difference never decreases from level to level.
-    pub detail: Vec<[f32; MAX_LEVELS]>,
+    /// For each of the mesh's triangles, bounds on the heights over it.
+    pub reliefs: Vec<Relief>,
 }
 
 impl HeightMap {
@@ -101,9 +100,7 @@ impl Heights {
                 range = [range[0].min(own), range[1].max(own)];
             }
         }
-        let part = |index: usize| index as f32 / maps.len() as f32;
-        let lost = |(index, map): (usize, &HeightMap)| map.detail(&progress.part(part(index), part(index + 1)));
-        let detail = maps.iter().enumerate().map(lost).collect::<Result<_, _>>()?;
+        let reliefs = relief::reliefs(mesh, &maps, &of_material, progress)?;
         Ok(Self {
             maps,
             of_material,
@@ -111,8 +108,13 @@ impl Heights {
             range,
             radius: mesh.bounds().radius(),
             angles: angles(mesh),
-            detail,
+            reliefs,
         })
+    }
+
+    /// Returns the number of a material's image, if it has one.
+    pub fn map_of(&self, material: usize) -> Option<u32> {
+        self.of_material.get(material).copied().flatten()
     }
 
     /// Returns the images.
@@ -152,19 +154,6 @@ fn angles(mesh: &Mesh) -> Vec<f32> {
 mod tests {
     use super::*;
     use crate::mesh::Shape;
-
-    #[test]
-    fn detail_is_lost_level_by_level() {
-        // The first level already loses a checkerboard. A slope loses nothing except at the border.
-        let board = HeightMap::new([8, 8], (0..64).map(|i| ((i + i / 8) % 2) as f32).collect());
-        let heights = Heights::everywhere(&Shape::Torus.build(), board);
-        let detail = heights.detail[0];
-        assert_eq!((detail[0], heights.range), (0.0, [0.0, 1.0]));
-        assert!(detail[1] > 0.4 && detail[12] >= detail[3]);
-        assert_eq!(heights.reach(0.25), 0.75);
-        let flat = Heights::everywhere(&Shape::Torus.build(), HeightMap::new([8, 8], vec![0.5; 64]));
-        assert!(flat.detail[0].iter().all(|&lost| lost < 1e-6), "{:?}", flat.detail);
-    }
 
     #[test]
     fn a_point_moves_by_the_height_that_differs_most_from_the_middle() {

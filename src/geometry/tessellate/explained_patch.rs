@@ -11,6 +11,7 @@ use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::MeshLod;
 use super::mesh_tessellation::seen_with_reach;
 use super::piece_error::{SeenPatch, may_slide, piece_error};
+use super::relief::SeenRelief;
 use super::{
     Clip, Convention, FIXED_ONE, Inputs, Normals, Partitioning, PatchFactors, Tessellation, corner_weights,
     domain_plan, domain_point, domain_side, domain_triangle, process, triangle_count,
@@ -21,8 +22,7 @@ use glam::Vec2;
 /// What LOD by error makes of a patch, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExplainedPatch {
-    /// How far the triangles may be from the surface without displacement, in px: all of the tolerance, or the part of
-    /// it that is left where heights displace the surface.
+    /// How far the triangles may be from the surface, in px.
     pub tolerance: f32,
     /// What was asked of the edges of sides 0, 1 and 2; `None` under other LODs.
     pub edges: Option<[ExplainedEdge; 3]>,
@@ -38,7 +38,7 @@ pub struct ExplainedPatch {
 /// What was asked of an edge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExplainedEdge {
-    /// The least factor that the edge may get: its curves need it, or the heights on them.
+    /// The least factor that the edge may get: its curves need it.
     pub least: f32,
     /// The factor that the patch requests.
     pub own: f32,
@@ -161,11 +161,15 @@ pub fn explain_patch(
     if !is_flat {
         (measured.off_plane, measured.off_line) = (3.4e38, 3.4e38);
     }
-    let tolerance = lod.surface_tolerance();
+    if !by_error {
+        // Other LODs don't read heights where their bounds hold.
+        measured.relief = SeenRelief::NONE;
+    }
+    let tolerance = searched.tessellation.tolerance;
     let errors = pattern_errors(&measured, inputs.tessellation.convention, used);
     let mut minimum = minimum(searched.tessellation.partitioning, own);
     // The search doesn't try all factors. What is drawn may have fewer triangles than it found, because neighbours requested more
-    // along the edges. Other LODs don't see to it that heights have enough.
+    // along the edges.
     let drawn = triangle_count(used);
     let is_within = errors.is_some_and(|errors| errors.largest() <= tolerance) && (by_error || !is_displaced);
     if is_within && drawn < minimum.triangles {
@@ -214,7 +218,7 @@ impl MeshLod<'_> {
         let requested = |patch: u32, side: usize| {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| self.least_edge_factor(factor));
-            self.fewest(patch, &seen, least, 0.0, SearchGoal::Requests).edges[(side + 2) % 3]
+            self.fewest(&seen, least, 0.0, SearchGoal::Requests).edges[(side + 2) % 3]
         };
         let own_side = topology.sides[topology.patches[patch as usize].sides[side] as usize];
         let sides = topology.edge_sides(&topology.edges[own_side.edge as usize]).iter();

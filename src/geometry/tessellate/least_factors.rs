@@ -339,18 +339,9 @@ pub(super) fn requests_again(chosen: f32, inside: f32) -> bool {
 }
 
 /// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.
-pub(super) fn uniform_suffices(
-    patch: &SeenPatch,
-    tolerance: f32,
-    partitioning: Partitioning,
-    factor: f32,
-    least_inside: f32,
-) -> bool {
+pub(super) fn uniform_suffices(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, factor: f32) -> bool {
     let within = BOUND_SHARE * tolerance;
     let factors = process(partitioning, [factor; 3], factor);
-    if least_inside > factor {
-        return false;
-    }
     if patch_is_minimal(factors) {
         return triangle_error_at(patch, within, &domain_plan(factors), 0) <= within;
     }

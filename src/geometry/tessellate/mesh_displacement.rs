@@ -8,12 +8,11 @@ use super::displace::{
     Displacement, Spot, direction_slopes, height_at, height_slopes, raised_normal, segment_level, spot, texel_length,
     uv_gradients,
 };
-use super::displacement_factor::{displacement_factor, edge_bounds};
 use super::factors::{inside_value, last_factor};
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
+use super::relief::{PatchRelief, patch_reliefs};
 use super::surface::{UNIT, linear_uv, patch_tangents};
-use super::texel_lengths::{Maps, TexelLength, map_number, texel_lengths};
 use super::vertex::Vertex;
 use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
 use crate::mesh::{Curves, Dominance, HeightMap, Heights, Mesh, Sharing, Topology};
@@ -54,8 +53,10 @@ pub(super) struct MeshDisplacement<'a> {
     /// quadratic shading normals are tilted by heights along these, which are as smooth across edges as the normals
     /// are.
     frames: Vec<[Vec3; 2]>,
-    /// The lengths of the edge of each factor in its sides' maps.
-    texel_lengths: Vec<TexelLength>,
+    /// What LOD by error knows of the heights over each patch.
+    reliefs: Vec<PatchRelief>,
+    /// Whether positions take their heights from level 0, from which LOD by error bounds the distance.
+    reads_level_0: bool,
     /// The mip level of each factor's edge. `point_levels` has for each point the finest level of its edges.
     factor_levels: Vec<f32>,
     point_levels: Vec<f32>,
@@ -97,15 +98,17 @@ impl<'a> MeshDisplacement<'a> {
             last_factor: last_factor(inputs.tessellation.partitioning),
             directions: directions(mesh, &dominance),
             frames: frames(mesh, topology),
-            texel_lengths: texel_lengths(heights, mesh, topology, &dominance),
+            reliefs: patch_reliefs(Some(heights), mesh, topology),
+            reads_level_0: false,
             factor_levels: vec![0.0; dominance.sides.len()],
             point_levels: vec![0.0; dominance.corners.len()],
             dominance,
         })
     }
 
-    /// Sets the mip levels for the factors that LOD gives to edges.
-    pub(super) fn with_levels(mut self, factors: &[f32]) -> Self {
+    /// Sets the mip levels for the factors of edges. LOD by error reads heights from level 0.
+    pub(super) fn with_levels(mut self, factors: &[f32], by_error: bool) -> Self {
+        self.reads_level_0 = by_error;
         self.factor_levels = (0..factors.len()).map(|factor| self.factor_level(factor, factors[factor])).collect();
         let starts = self.dominance.factor_starts.windows(2);
         let finest = |ends: &[u32]| {
@@ -126,36 +129,11 @@ impl<'a> MeshDisplacement<'a> {
         self.dominance.sides.iter().map(of).collect()
     }
 
-    /// Returns the least factor that shows the heights of these maps along a curve of an edge within the tolerance of
-    /// `inputs`.
-    pub(super) fn edge_factor(
-        &self,
-        inputs: &Inputs,
-        factor: u32,
-        maps: Maps,
-        points: [u32; 2],
-        curve: [Vec3; 4],
-    ) -> f32 {
-        let [a, b] = points.map(|point| self.directions[point as usize]);
-        let (view, turn, scale) = (&inputs.view, a.distance(b), self.scale.abs());
-        let bounds = edge_bounds(view, curve);
-        let needed = |length: &TexelLength| {
-            let detail = self.heights.detail[length.map as usize - 1];
-            displacement_factor(view, bounds, inputs.tessellation.tolerance, length.texels, turn, scale, detail)
-        };
-        let counts = |length: &&TexelLength| length.map > 0 && (maps == Maps::All || maps == Maps::Only(length.map));
-        self.texel_lengths_of(factor).filter(counts).map(needed).fold(1.0, f32::max)
-    }
-
-    /// Returns the map of a patch.
-    pub(super) fn own_map(&self, patch: u32) -> Maps {
-        Maps::Only(map_number(self.heights, self.topology, patch))
-    }
-
-    /// Returns the lengths of a factor's edge in its sides' maps.
-    fn texel_lengths_of(&self, factor: u32) -> impl Iterator<Item = &TexelLength> {
-        let next = |length: &&TexelLength| (length.next > 0).then(|| &self.texel_lengths[length.next as usize]);
-        std::iter::successors(self.texel_lengths.get(factor as usize), next)
+    /// Returns the directions in which a patch's corners move, the distance between black and white in object units, and what is known
+    /// of the heights over the patch.
+    pub(super) fn relief(&self, patch: u32) -> ([Vec3; 3], f32, PatchRelief) {
+        let packed = self.corner_directions(patch).map(pack_normal);
+        (packed.map(unpack_normal), self.scale, self.reliefs[patch as usize])
     }
 
     /// Returns the displacement of a place in a patch in object units, in f64. Heights are read from mip level 0 at the
@@ -183,8 +161,7 @@ impl<'a> MeshDisplacement<'a> {
 
     /// Returns the height map of a patch.
     fn map(&self, patch: u32) -> Option<&'a HeightMap> {
-        let material = self.topology.material_of(patch);
-        let map = self.heights.of_material.get(material).copied().flatten()?;
+        let map = self.heights.map_of(self.topology.material_of(patch))?;
         self.heights.maps.get(map as usize)
     }
 
@@ -285,7 +262,7 @@ impl<'a> MeshDisplacement<'a> {
     /// Returns how far a point is displaced, in object units.
     fn offset(&self, at: Lookup) -> f32 {
         let Some(map) = self.map(at.patch) else { return 0.0 };
-        let level = at.level.min((map.levels - 1) as f32);
+        let level = if self.reads_level_0 { 0.0 } else { at.level.min((map.levels - 1) as f32) };
         self.scale * (height_at(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) - self.midlevel)
     }
 
@@ -358,7 +335,8 @@ pub type DisplacedCorner = [f32; 10];
 pub fn displaced_corners(mesh: &Mesh, topology: &Topology) -> Option<Vec<DisplacedCorner>> {
     let heights = mesh.heights.as_deref()?;
     let [map] = &heights.maps[..] else { return None };
-    if (0..topology.patches.len() as u32).any(|patch| map_number(heights, topology, patch) == 0) {
+    let has_map = |patch| heights.map_of(topology.material_of(patch)).is_some();
+    if !(0..topology.patches.len() as u32).all(has_map) {
         return None;
     }
     let dominance = Dominance::new(topology, &Curves::build(mesh, topology, Sharing::AllSides), &heights.angles);

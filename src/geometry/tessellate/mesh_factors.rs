@@ -13,11 +13,10 @@ use super::least_factors::{
 };
 use super::least_rows::{fewest_rows, rows_request_again};
 use super::mesh_displacement::MeshDisplacement;
-use super::piece_error::{SeenPatch, may_slide, seen_patch};
-use super::texel_lengths::Maps;
+use super::piece_error::{SeenPatch, may_slide, seen_patch, seen_relief};
 use super::{
-    HullFactors, Inputs, Lod, SURFACE_SHARE, Tessellation, distance_factor, edge_length_factor, last_factor,
-    paper_edge_factor, process, triangle_count,
+    HullFactors, Inputs, Lod, Tessellation, distance_factor, edge_length_factor, last_factor, paper_edge_factor,
+    process, triangle_count,
 };
 
 /// The factors that LOD gives to a mesh.
@@ -81,7 +80,7 @@ impl MeshLod<'_> {
     /// Beside factors that other patches requested, a patch may need a much larger inside factor than it has chosen, or find
     /// none that suffices. Such patches request again, for no less than what their edges have.
     fn factors_by_error(&self) -> MeshFactors {
-        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        let partitioning = self.inputs.tessellation.partitioning;
         let edges = 0..self.nets.curves.factor_curves.len() as u32 - 1;
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(factor)).collect();
         let mut requested = vec![whole_segments(partitioning, 1.0); least.len()];
@@ -95,7 +94,7 @@ impl MeshLod<'_> {
         for patch in 0..self.nets.topology.patches.len() as u32 {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| least[factor as usize]);
-            let own = self.fewest(patch, &seen, least, 0.0, SearchGoal::Requests);
+            let own = self.fewest(&seen, least, 0.0, SearchGoal::Requests);
             request(patch, own.edges, &mut requested);
             chosen.push(own);
         }
@@ -112,11 +111,11 @@ impl MeshLod<'_> {
                     true => rows_request_again(chosen, edges, beside.inside),
                     false => requests_again(chosen.inside, beside.inside),
                 };
-                let requests = !surface.is_flat() && round < rounds && again;
+                let requests = !self.is_exact() && round < rounds && again;
                 *chosen = beside;
                 if requests {
                     let seen = self.seen_patch(patch);
-                    let own = self.fewest(patch, &seen, edges, chosen.inner, SearchGoal::Requests);
+                    let own = self.fewest(&seen, edges, chosen.inner, SearchGoal::Requests);
                     request(patch, own.edges, &mut requested);
                     if own.inside != BEYOND_LAST {
                         *chosen = own;
@@ -137,8 +136,8 @@ impl MeshLod<'_> {
     /// Returns the least factor that keeps LOD by error's tolerance if all edges have it, if that takes fewer triangles than
     /// these factors.
     fn uniform_factor(&self, factors: &MeshFactors) -> Option<f32> {
-        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
-        if surface.is_flat() {
+        let Tessellation { partitioning, tolerance, .. } = self.inputs.tessellation;
+        if self.is_exact() {
             return None;
         }
         let patches = 0..self.nets.topology.patches.len() as u32;
@@ -154,14 +153,12 @@ impl MeshLod<'_> {
         };
         // If one triangle were enough for every patch, none would have more.
         let mut left: Vec<f32> = (2..=64).map(|factor| factor as f32).filter(is_candidate).collect();
-        let tolerance = self.surface_tolerance();
         for patch in patches.clone() {
             if left.is_empty() {
                 break;
             }
             let seen = self.seen_patch(patch);
-            let heights = self.heights_inside(patch);
-            left.retain(|&factor| uniform_suffices(&seen, tolerance, partitioning, factor, heights));
+            left.retain(|&factor| uniform_suffices(&seen, tolerance, partitioning, factor));
         }
         left.first().copied()
     }
@@ -173,6 +170,9 @@ impl MeshLod<'_> {
         if self.is_plain(patch) {
             seen.off_plane = plane_error(&self.inputs.view, &net);
             seen.off_line = line_error(&self.inputs.view, &net);
+        }
+        if let Some((directions, scale, relief)) = self.displacement.map(|displacement| displacement.relief(patch)) {
+            seen.relief = seen_relief(&self.inputs.view, seen.scale, directions, scale, relief);
         }
         seen
     }
@@ -189,20 +189,12 @@ impl MeshLod<'_> {
 
     /// Returns the factors with which a patch keeps LOD by error's tolerance with the fewest triangles. `least` are the least that
     /// the edges U == 0, V == 0 and W == 0 may get, or those that they have, and `inner` is as in [`ChosenFactors`].
-    pub(super) fn fewest(
-        &self,
-        patch: u32,
-        seen: &SeenPatch,
-        least: [f32; 3],
-        inner: f32,
-        wanted: SearchGoal,
-    ) -> ChosenFactors {
-        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
-        let inside = self.heights_inside(patch);
-        if surface.is_flat() {
-            return ChosenFactors { edges: least, inside: whole_segments(partitioning, inside), inner };
+    pub(super) fn fewest(&self, seen: &SeenPatch, least: [f32; 3], inner: f32, wanted: SearchGoal) -> ChosenFactors {
+        let Tessellation { partitioning, tolerance, .. } = self.inputs.tessellation;
+        if self.is_exact() {
+            return ChosenFactors { edges: least, inside: whole_segments(partitioning, 1.0), inner };
         }
-        let (tolerance, sought) = (self.surface_tolerance(), FactorSearch { least, inside, inner, wanted });
+        let sought = FactorSearch { least, inside: 1.0, inner, wanted };
         match partitioning.has_rows() {
             true => fewest_rows(seen, tolerance, &sought),
             false => fewest_triangles(seen, tolerance, partitioning, &sought),
@@ -211,13 +203,13 @@ impl MeshLod<'_> {
 
     /// Returns the same beside the factors that the edges have.
     fn beside(&self, patch: u32, edges: [f32; 3], inner: f32) -> ChosenFactors {
-        self.fewest(patch, &self.seen_patch(patch), edges, inner, SearchGoal::Given)
+        self.fewest(&self.seen_patch(patch), edges, inner, SearchGoal::Given)
     }
 
     /// Returns the factors with which a patch alone would keep the tolerance with the fewest triangles: its minimum.
     pub(super) fn minimum_factors(&self, patch: u32, seen: &SeenPatch) -> ChosenFactors {
         let least = self.first_least(patch, seen, |factor| self.least_edge_factor(factor));
-        self.fewest(patch, seen, least, 0.0, SearchGoal::Own)
+        self.fewest(seen, least, 0.0, SearchGoal::Own)
     }
 
     /// Returns whether nothing on a patch depends on where its points slide.
@@ -229,43 +221,20 @@ impl MeshLod<'_> {
             && normals_agree(corners.map(|corner| self.nets.mesh.corners[corner as usize].normal))
     }
 
-    /// Returns the least factor that an edge may get: for its curves and, with displacement, for all heights on its
-    /// sides.
+    /// Whether triangles of any size are the surface.
+    fn is_exact(&self) -> bool {
+        self.inputs.tessellation.surface.is_flat() && self.displacement.is_none()
+    }
+
+    /// Returns the least factor that an edge may get, for its curves.
     pub(super) fn least_edge_factor(&self, factor: u32) -> f32 {
-        let Tessellation { surface, partitioning, .. } = self.inputs.tessellation;
+        let Tessellation { surface, partitioning, tolerance, .. } = self.inputs.tessellation;
         let curves = &self.nets.curves.factor_curves[factor as usize..factor as usize + 2];
         let own = |curve: u32| match surface.is_flat() {
             true => 1.0,
-            false => {
-                let tolerance = self.surface_tolerance();
-                least_edge_factor(&self.inputs.view, tolerance, partitioning, self.nets.curve_points(curve))
-            }
+            false => least_edge_factor(&self.inputs.view, tolerance, partitioning, self.nets.curve_points(curve)),
         };
-        let heights = self.heights_factor(factor, Maps::All);
-        whole_segments(partitioning, (curves[0]..curves[1]).map(own).fold(heights, f32::max))
-    }
-
-    /// Returns the factor that an edge needs for the heights of some maps.
-    fn heights_factor(&self, factor: u32, maps: Maps) -> f32 {
-        let Some(displacement) = self.displacement else { return 1.0 };
-        let curves = &self.nets.curves.factor_curves[factor as usize..factor as usize + 2];
-        let own = |curve: u32| {
-            let points = self.nets.curves.curves[curve as usize].points;
-            displacement.edge_factor(self.inputs, factor, maps, points, self.nets.curve_points(curve))
-        };
-        (curves[0]..curves[1]).map(own).fold(1.0, f32::max)
-    }
-
-    /// Returns the inside factor that a patch's heights need: the largest that they need along its sides.
-    fn heights_inside(&self, patch: u32) -> f32 {
-        let Some(maps) = self.displacement.map(|displacement| displacement.own_map(patch)) else { return 1.0 };
-        let own = |side| self.heights_factor(self.nets.patch_factor(patch, side), maps);
-        own(0).max(own(1)).max(own(2))
-    }
-
-    /// Returns the part of LOD by error's tolerance that is for the surface without displacement, in px.
-    pub(super) fn surface_tolerance(&self) -> f32 {
-        self.inputs.tessellation.tolerance * if self.displacement.is_some() { SURFACE_SHARE } else { 1.0 }
+        whole_segments(partitioning, (curves[0]..curves[1]).map(own).fold(1.0, f32::max))
     }
 }
 
@@ -332,8 +301,7 @@ mod tests {
         };
         let suffices = |factor| {
             let mut patches = 0..topology.patches.len() as u32;
-            let of_patch =
-                |patch| uniform_suffices(&lod.seen_patch(patch), own.tolerance, own.partitioning, factor, 1.0);
+            let of_patch = |patch| uniform_suffices(&lod.seen_patch(patch), own.tolerance, own.partitioning, factor);
             patches.all(of_patch)
         };
         let factor = lod.uniform_factor(&given(16.0)).expect("some factor suffices");

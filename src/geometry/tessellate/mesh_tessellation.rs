@@ -50,7 +50,8 @@ pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Op
     let culls_back = culls_back(mesh, topology, inputs);
     let lod = MeshLod { nets: &nets, inputs, displacement: displacement.as_ref() };
     let made = factors.map_or_else(|| lod.mesh_factors(), |edges| lod.factors_beside(edges));
-    let displacement = displacement.map(|displacement| displacement.with_levels(&made.edges));
+    let displacement =
+        displacement.map(|displacement| displacement.with_levels(&made.edges, inputs.tessellation.lod.is_by_error()));
     let written = |patch| nets.hull_factors(inputs, &made, patch);
     let out = nets.emit(inputs, displacement.as_ref(), culls_back, written);
     Tessellated { edge_factors: made.edges, ..out }
@@ -74,7 +75,7 @@ pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given
     let nets = ControlNets::new(mesh, topology, inputs);
     let displacement = MeshDisplacement::new(&nets, inputs).map(|displacement| {
         let factors = displacement.given_factors(inputs.tessellation.convention, given);
-        displacement.with_levels(&factors)
+        displacement.with_levels(&factors, false)
     });
     let written = |patch: u32| given[patch as usize].rounded(inputs.tessellation.partitioning);
     nets.emit(inputs, displacement.as_ref(), false, written)

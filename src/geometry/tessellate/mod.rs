@@ -14,7 +14,6 @@ mod cull;
 mod curvature;
 mod deform;
 mod displace;
-mod displacement_factor;
 pub mod domain;
 mod domain_row;
 mod explained_patch;
@@ -36,12 +35,12 @@ mod patch_bounds;
 mod piece_error;
 mod posed_mesh;
 mod quotients;
+mod relief;
 mod rings;
 mod rows;
 mod solid;
 mod subtriangulation;
 mod surface;
-mod texel_lengths;
 mod triangle_budget;
 mod vertex;
 
@@ -66,7 +65,6 @@ pub use convention::{corner_weights, domain_side, factor_side, weight_corner};
 pub use coverage::{CoverageView, covers_nothing, screen_corner};
 pub use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
 pub use curvature::{mean_curvature, patch_second_derivatives};
-pub use displacement_factor::SURFACE_SHARE;
 pub use domain::{domain_plan, domain_point, domain_triangle};
 pub use explained_patch::minimum_triangles;
 pub use explained_patch::{
@@ -90,9 +88,9 @@ pub(crate) use normal::{quadratic_edge_normal, quadratic_normal, surface_normal}
 pub use octahedral_normal::pack_normal;
 pub use piece_error::{SeenPatch, piece_error};
 pub use posed_mesh::{Deformed, PosedMesh, bounds_through, deform};
+pub use relief::{PatchRelief, patch_reliefs};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position, patch_tangents};
-pub use texel_lengths::{TexelLength, map_number, texel_lengths};
 pub use triangle_budget::tolerance_within_budget;
 pub use vertex::pack_key;
 
@@ -105,7 +103,6 @@ pub mod shared_constants {
         FACING_AWAY, FACING_MARGIN, FACING_ROUNDING, NOT_CULLED, OUT_OF_VIEW, POLAR_INDICES, POLAR_WEIGHTS,
     };
     pub use super::curvature::FLAT_ANGLE;
-    pub use super::displacement_factor::{DETAIL_SHARE, SURFACE_SHARE, TURN_SHARE};
     pub use super::domain::FIXED_TWO_THIRDS;
     pub use super::factors::{
         BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP, BITS_ONE_AND_STEP,
@@ -117,5 +114,6 @@ pub mod shared_constants {
     pub use super::least_rows::{LESSENINGS, REQUESTED_SEGMENT};
     pub use super::normal::CANCELLED;
     pub use super::piece_error::{FINEST_GRID, PARTIAL_STEPS};
+    pub use super::relief::DIRECTION_ROUNDING;
     pub use super::surface::UNIT;
 }

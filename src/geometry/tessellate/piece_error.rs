@@ -18,6 +18,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::lod::{LodView, clip_row};
+use super::relief::{PatchRelief, SeenRelief, heights_error, turning_of};
 use super::surface::ControlNet;
 
 /// The steps of the finest grid. The margin is then at most 1/64 of the bound without a grid.
@@ -40,14 +41,17 @@ pub struct SeenPatch {
     /// The depth of the near plane; 0 in an orthographic view.
     near: f32,
     /// How far displacement may move a point: in depth, and across the view in px times depth.
-    deep: f32,
-    across: Vec2,
+    pub(super) deep: f32,
+    pub(super) across: Vec2,
     /// Which way its triangle turns: see [`turn_of`].
     turn: f32,
     /// Where points may slide along the surface, how far in px it may be off the plane of its triangle, and off its longest
     /// side; else large numbers.
     pub off_plane: f32,
     pub off_line: f32,
+    /// By what points, depths and second derivatives were multiplied.
+    pub(super) scale: f32,
+    pub(super) relief: SeenRelief,
 }
 
 /// Returns whether an error is within a tolerance. NaN never is.
@@ -178,7 +182,25 @@ pub(crate) fn seen_patch(view: &LodView, net: &ControlNet) -> SeenPatch {
         turn: turn_of(points[0], points[1], points[2]),
         off_plane: 3.4e38,
         off_line: 3.4e38,
+        scale,
+        relief: SeenRelief::NONE,
     }
+}
+
+/// Returns what is seen of the heights over a patch: its corners move along unit directions by `height_scale` object units from black
+/// to white.
+pub(super) fn seen_relief(
+    view: &LodView,
+    scale: f32,
+    directions: [Vec3; 3],
+    height_scale: f32,
+    relief: PatchRelief,
+) -> SeenRelief {
+    let [turning, shortest] = turning_of(directions);
+    let unit = height_scale.abs() * scale;
+    let part = if view.reach > 0.0 { height_scale.abs() / view.reach } else { 0.0 };
+    let directions = directions.map(|direction| clip_difference(view, direction * unit));
+    SeenRelief { relief, directions, turning, shortest, part }
 }
 
 /// Returns the point of the surface at a place of the domain.
@@ -509,12 +531,18 @@ pub fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
         spread = a.distance(middle).max(b.distance(middle)).max(c.distance(middle)) + moved;
         depth = nearest;
     }
+    let lost = heights_error(patch, at, middle, spread, depth);
+    if !is_within(lost, tolerance) {
+        return lost;
+    }
+    // What is left of it is for the surface without displacement.
+    let tolerance = tolerance - lost;
     let mut error = 3.4e38;
     if may_slide(patch, tolerance) {
         error = patch.off_line.min(sliding_error(patch, &piece, at, middle, spread, depth));
     }
     if is_within(error, tolerance) {
-        return error;
+        return lost + error;
     }
     let bound = derivative_bound(&piece, middle, spread);
     error = error.min(match is_before_eye {
@@ -525,7 +553,7 @@ pub fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
     if is_partial && !is_within(error, tolerance) {
         error = error.min(partial_error(patch, &piece, beyond, [before, behind], (middle, spread, bound), tolerance));
     }
-    error
+    lost + error
 }
 
 #[cfg(test)]

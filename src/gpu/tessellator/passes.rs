@@ -11,7 +11,7 @@ use crate::params::params_of;
 use crate::pass_inputs::PassInputs;
 use crate::pipelines::{
     CENTERS, CHUNKS, COUNTS, CURVE_NETS, DIRECTIONS, DISPLACE, EDGE_FACTORS, EMIT_TRIANGLES, EMIT_VERTICES,
-    FACTOR_LEVELS, FRAMES, HEIGHTS_INSIDE, POINT_LEVELS, SCAN, grid,
+    FACTOR_LEVELS, FRAMES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
 };
 use crate::readback::Readback;
 use crate::recorder::{RecordPasses, Recorder};
@@ -212,7 +212,7 @@ impl Tessellator {
         let mut steps = vec![on.over(EDGE_FACTORS, mesh.factor_count)?];
         if choices.by_error {
             if choices.displaces && mesh.relief.is_some() {
-                steps.push(on.over(HEIGHTS_INSIDE, mesh.patch_count)?);
+                steps.push(on.over(PATCH_DIRECTIONS, mesh.patch_count)?);
             }
             for (pass, workgroups) in search_passes(&on, choices.has_rows) {
                 steps.push(Step { bound: on.bound(pass)?, workgroups });

@@ -1,8 +1,7 @@
-//! Builds the levels of a height map, and measures how much detail each level loses.
+//! Builds the levels of a height map.
 
-use super::{HeightMap, MAX_KEPT, MAX_LEVELS};
+use super::{HeightMap, MAX_KEPT};
 use crate::casts::to_u32;
-use crate::cores::in_ranges;
 use crate::progress::{Cancelled, Progress};
 
 impl HeightMap {
@@ -50,25 +49,6 @@ impl HeightMap {
     pub fn bytes_to_build(size: [u32; 2]) -> u64 {
         // All levels together have 4/3 of the pixels of the first, and level 1 is made in a list of its own.
         px_of(size.map(|side| side.min(MAX_KEPT))) as u64 * 4 * 19 / 12 + (64 << 10)
-    }
-
-    /// Returns, for each level, the greatest difference between that level, interpolated linearly, and level 0. The
-    /// difference never decreases from level to level.
-    ///
-    /// # Errors
-    /// [`Cancelled`] when `progress` says so.
-    pub(super) fn detail(&self, progress: &Progress) -> Result<[f32; MAX_LEVELS], Cancelled> {
-        let mut detail = [0.0_f32; MAX_LEVELS];
-        let part = |level: usize| (level as f32 - 1.0) / (self.levels.max(2) - 1) as f32;
-        for level in 1..MAX_LEVELS {
-            detail[level] = detail[level - 1];
-            // Beyond the last level, the difference stays what it is there.
-            if level < self.levels as usize {
-                let lost = lost_detail(self, to_u32(level), &progress.part(part(level), part(level + 1)))?;
-                detail[level] = detail[level].max(lost);
-            }
-        }
-        Ok(detail)
     }
 }
 
@@ -148,54 +128,6 @@ fn shrink<E: From<Cancelled>>(
     Ok(())
 }
 
-/// Returns the greatest difference between the pixels of level 0 and level `level`, interpolated there. Pixels of a
-/// repeating image beyond the last centre of the level are left out: the opposite borders of many images don't quite
-/// match.
-fn lost_detail(map: &HeightMap, level: u32, progress: &Progress) -> Result<f32, Cancelled> {
-    let [width, height] = map.size.map(|side| side as usize);
-    let [across, down] = map.level_size(level).map(|side| side as usize);
-    let start = (0..level).map(|l| map.level_size(l)).map(|[x, y]| (x * y) as usize).sum::<usize>();
-    let (columns, rows) = (places(width, across, map.repeats), places(height, down, map.repeats));
-    let own = &map.heights[start..start + across * down];
-    let lost = |y: usize| {
-        let Some((upper, lower, below)) = rows[y] else { return 0.0 };
-        let line = |row: usize| &own[row * across..(row + 1) * across];
-        let between: Vec<f32> = line(upper).iter().zip(line(lower)).map(|(a, b)| a + (b - a) * below).collect();
-        let all = map.heights[y * width..(y + 1) * width].iter().zip(&columns);
-        let differences = all.filter_map(|(height, column)| {
-            let (left, right, beside) = (*column)?;
-            Some((height - (between[left] + (between[right] - between[left]) * beside)).abs())
-        });
-        differences.fold(0.0, f32::max)
-    };
-    let parts = in_ranges(height, 1, |rows| {
-        let (mut most, first, count) = (0.0_f32, rows.start, rows.len());
-        for y in rows {
-            progress.check()?;
-            if first == 0 {
-                progress.set(y as f32 / count as f32);
-            }
-            most = most.max(lost(y));
-        }
-        Ok(most)
-    });
-    parts.into_iter().try_fold(0.0, |most: f32, part| Ok(most.max(part?)))
-}
-
-/// For each of `count` pixels of level 0 along an axis, returns the two of a level's `own` pixels that it lies between,
-/// and how far it lies from the first of them towards the second, 0 to 1. Returns none for pixels of a repeating image
-/// that lie outside the level's pixel centres.
-#[expect(clippy::cast_possible_truncation, reason = "whole numbers within the image")]
-fn places(count: usize, own: usize, repeats: bool) -> Vec<Option<(usize, usize, f32)>> {
-    let place = |i: usize| {
-        let at = (i as f32 + 0.5) / count as f32 * own as f32 - 0.5;
-        let inside = at.clamp(0.0, (own - 1) as f32);
-        let first = inside as usize;
-        (!repeats || at == inside).then(|| (first, (first + 1).min(own - 1), inside - first as f32))
-    };
-    (0..count).map(place).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -236,38 +168,9 @@ mod tests {
     }
 
     #[test]
-    fn detail_is_the_greatest_error_of_a_pixel() {
-        let map = HeightMap::new([8, 8], (0..64).map(|i| if i == 27 { 1.0 } else { 0.0 }).collect());
-        let detail = map.detail(&Progress::new()).expect("not cancelled");
-        // One white pixel among 64: the coarser levels lose all but its share in the mean.
-        assert!(detail[1] > 0.5 && detail[3] > 0.9 && detail[12] == detail[3], "{detail:?}");
-        assert!(detail.is_sorted());
-    }
-
-    #[test]
-    fn building_and_measuring_can_be_cancelled() {
+    fn building_can_be_cancelled() {
         let progress = Progress::new();
-        let map = HeightMap::new([64, 64], vec![0.5; 4096]);
         progress.cancel();
-        assert_eq!(map.detail(&progress), Err(Cancelled));
         assert_eq!(HeightMap::build::<Cancelled>([64, 64], &progress, |_| Ok(())), Err(Cancelled));
-    }
-
-    #[test]
-    fn detail_is_what_interpolation_between_pixels_leaves() {
-        // Level 1 is 1/7 and 6/7, as its filter reaches one pixel across the middle; the last level is the mean.
-        for size in [[4, 1], [1, 4]] {
-            let map = HeightMap::new(size, vec![0.0, 0.0, 1.0, 1.0]);
-            let detail = map.detail(&Progress::new()).expect("not cancelled");
-            let expected = [0.0, 1.0 / 7.0 + 5.0 / 28.0, 0.5, 0.5];
-            assert!(detail.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{size:?}: {detail:?}");
-        }
-    }
-
-    #[test]
-    fn progress_moves_on_within_the_last_level() {
-        let (map, progress) = (HeightMap::new([1, 2048], vec![0.5; 2048]), Progress::new());
-        map.detail(&progress).expect("not cancelled");
-        assert!(progress.fraction() > 0.95, "{}: the last of 11 levels begins at 10/11", progress.fraction());
     }
 }

@@ -164,7 +164,7 @@ fn heights_take_part() {
     for patch in [0, 50, 200] {
         let used = written[patch as usize].process(Partitioning::Integer);
         let explained = explain_patch(&mesh, &topology, &inputs, patch, used);
-        assert_eq!(explained.tolerance, 0.5 * TOLERANCE);
+        assert_eq!(explained.tolerance, TOLERANCE);
         for (edge, side) in explained.edges.expect("by error").iter().zip(topology.patches[patch as usize].sides) {
             assert_eq!(edge.got, given[topology.sides[side as usize].edge as usize]);
         }

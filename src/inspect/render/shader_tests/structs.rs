@@ -14,7 +14,7 @@ use geometry::tessellate::CoverageView;
 use gpu::DomainParams;
 use gpu::layout::{
     Binding, Chunk, Corner, CornerDetail, Curve, CurveNet, Delta, DrawArgs, EmitArgs, HeightMap, JointMatrix, LodView,
-    Params, Patch, PatchFactors, Share, Slab, Vertex,
+    Params, Patch, PatchFactors, PatchRelief, Share, Slab, Vertex,
 };
 
 /// The size of a struct in WGSL, and the name and offset of each member.
@@ -71,7 +71,8 @@ fn shared_structs_have_the_same_layout() {
         height_scale,
         midlevel,
     });
-    same!(Share { direction, level, dominant, texels, map, next });
+    same!(Share { direction, level, dominant });
+    same!(PatchRelief { form, longest, range, slope, losses });
     same!(HeightMap { size, levels, start, repeats });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });

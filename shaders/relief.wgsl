@@ -1,0 +1,74 @@
+// How far flat triangles are from displaced surfaces because of the heights, for LOD by error. Twin:
+// src/geometry/tessellate/relief.rs, which explains the bounds.
+
+// For how many lengths of sides there are bounds, each half as long as the one before.
+const RELIEF_STEPS: u32 = 5u;
+
+// The heights over a patch, as it is seen.
+struct SeenRelief {
+    relief: PatchRelief,
+    // How far the corners move from black to white, in clip space as SeenPatch has it; along the way between them it may be more by
+    // 1 / shortest.
+    directions: array<vec3<f32>, 3>,
+    // The largest distance between two of the unit directions of the corners, and a bound on the length of weighted means of these.
+    turning: f32,
+    shortest: f32,
+    // The distance from black to white as a part of the reach of displacement.
+    part: f32,
+}
+
+// Returns the largest distance between two of three unit directions, and the least length of their weighted means: 0 or less, if
+// there may be any.
+fn turning_of(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec2<f32> {
+    let turning = max(max(distance(a, b), distance(b, c)), distance(c, a));
+    return vec2<f32>(turning, sqrt(max(1.0 - turning * turning / 3.0, 0.0)));
+}
+
+// What rounding and packing may add to a direction, as a part of its length.
+const DIRECTION_ROUNDING: f32 = 1.0002;
+
+// Returns a bound on how far heights let the triangle between three places of the domain be from the displaced surface, in px: seen
+// within `spread` px of `middle`, from `depth`. Large if none holds.
+fn heights_error(
+    seen: ptr<function, SeenPatch>,
+    at: array<vec2<f32>, 3>,
+    middle: vec2<f32>,
+    spread: f32,
+    depth: f32,
+) -> f32 {
+    let relief = (*seen).relief.relief;
+    if relief.longest < 0.0 {
+        return 0.0;
+    }
+    var square = 0.0;
+    var share = 0.0;
+    for (var k = 0u; k < 3u; k++) {
+        let side = at[(k + 1u) % 3u] - at[k];
+        let form = relief.form;
+        square = max(square, side.x * side.x * form.x + 2.0 * side.x * side.y * form.y + side.y * side.y * form.z);
+        share = max(share, max(max(abs(side.x), abs(side.y)), abs(side.x + side.y)));
+    }
+    var loss = relief.losses[0];
+    var longest = relief.longest;
+    for (var step = 1u; step < RELIEF_STEPS; step++) {
+        longest *= 0.5;
+        if square <= longest * longest {
+            loss = relief.losses[step];
+        }
+    }
+    let lost = min(loss.x + loss.y * square, relief.range);
+    let rise = min(relief.range, relief.slope * sqrt(square));
+    // How far a direction moves a point from black to white, as it is seen; and by how much displacement in any direction.
+    var along = 0.0;
+    for (var i = 0u; i < 3u; i++) {
+        let direction = (*seen).relief.directions[i];
+        along = max(along, length(direction.xy - middle * direction.z) + spread * abs(direction.z));
+    }
+    let any = length((*seen).across + (length(middle) + spread) * (*seen).deep);
+    let shortest = (*seen).relief.shortest;
+    let turned = share * (*seen).relief.turning * DIRECTION_ROUNDING / shortest;
+    let turns = 0.19245 * turned * turned + turned * (*seen).relief.part * rise;
+    let error = DIRECTION_ROUNDING * (along * lost / shortest + any * turns) / depth;
+    // NaN counts as infinite.
+    return select(3.4e38, error, error < 3.4e38);
+}

@@ -1,0 +1,122 @@
+//! How far flat triangles are from displaced surfaces because of the heights, for LOD by error. Twin: `shaders/relief.wgsl`.
+//!
+//! A point moves by n h, along the unit direction n by the height h. Under LOD by error heights are read from level 0 at the corners of
+//! triangles. Where x is a place on a triangle, i its corners and w their weights there,
+//!
+//! n(x) h(x) - sum w n(i) h(i) = n(x) (h(x) - sum w h(i)) + sum w (n(x) - n(i)) h(i).
+//!
+//! The first part is along directions over the patch, and [`Relief`] bounds it. The second is at most the directions' distance from
+//! linear ones times the reach of displacement, and their differences times those of the heights.
+
+use glam::{Vec2, Vec3};
+
+use super::piece_error::SeenPatch;
+use crate::mesh::{Heights, Mesh, RELIEF_STEPS, Relief, Topology};
+
+/// What passes know of the heights over a patch. Lengths are in px of the image's level 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchRelief {
+    /// The squared length of a step in the domain is x x `form[0]` + 2 x y `form[1]` + y y `form[2]`; x and y are the weights of
+    /// corners 0 and 1.
+    pub form: [f32; 3],
+    /// As in [`Relief`]; negative where no image displaces the patch.
+    pub longest: f32,
+    pub range: f32,
+    pub slope: f32,
+    pub losses: [[f32; 2]; RELIEF_STEPS],
+}
+
+impl PatchRelief {
+    /// Of a patch that no image displaces.
+    pub const NONE: Self =
+        Self { form: [0.0; 3], longest: -1.0, range: 0.0, slope: 0.0, losses: [[0.0; 2]; RELIEF_STEPS] };
+}
+
+/// Returns what is known of the heights over every patch; nothing without heights.
+pub fn patch_reliefs(heights: Option<&Heights>, mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
+    let Some(heights) = heights else { return Vec::new() };
+    let of_patch = |(index, patch): (u32, &crate::mesh::Patch)| {
+        let map = heights.map_of(topology.material_of(index));
+        let Some(map) = map.and_then(|map| heights.maps.get(map as usize)) else { return PatchRelief::NONE };
+        let Relief { longest, range, slope, losses } = heights.reliefs[patch.triangle as usize];
+        let size = Vec2::from(map.size.map(|side| side as f32));
+        let [a, b, c] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv * size);
+        let (x, y) = (a - c, b - c);
+        PatchRelief { form: [x.dot(x), x.dot(y), y.dot(y)], longest, range, slope, losses }
+    };
+    (0..).zip(&topology.patches).map(of_patch).collect()
+}
+
+/// The heights over a patch, as it is seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenRelief {
+    pub relief: PatchRelief,
+    /// How far the corners move from black to white, in clip space as [`SeenPatch`] has it; along the way between them it may be more by
+    /// `1 / shortest`.
+    pub directions: [Vec3; 3],
+    /// The largest distance between two of the unit directions of the corners, and a bound on the length of weighted means of these.
+    pub turning: f32,
+    pub shortest: f32,
+    /// The distance from black to white as a part of the reach of displacement.
+    pub part: f32,
+}
+
+impl SeenRelief {
+    /// Over a patch that isn't displaced.
+    pub(super) const NONE: Self =
+        Self { relief: PatchRelief::NONE, directions: [Vec3::ZERO; 3], turning: 0.0, shortest: 1.0, part: 0.0 };
+}
+
+/// Returns the largest distance between two of three unit directions, and the least length of their weighted means: 0 or less, if there
+/// may be any.
+///
+/// The squared length of a weighted mean is 1 less the products of two weights each times the squared distances, which are at most a
+/// third in all.
+pub(super) fn turning_of([a, b, c]: [Vec3; 3]) -> [f32; 2] {
+    let turning = a.distance(b).max(b.distance(c)).max(c.distance(a));
+    [turning, (1.0 - turning * turning / 3.0).max(0.0).sqrt()]
+}
+
+/// What rounding and packing may add to a direction, as a part of its length.
+pub const DIRECTION_ROUNDING: f32 = 1.0002;
+
+/// Returns a bound on how far heights let the triangle between three places of the domain be from the displaced surface, in px: seen
+/// within `spread` px of `middle`, from `depth`. Large if none holds.
+pub(super) fn heights_error(patch: &SeenPatch, at: [Vec2; 3], middle: Vec2, spread: f32, depth: f32) -> f32 {
+    let SeenRelief { relief, directions, turning, shortest, part } = &patch.relief;
+    if relief.longest < 0.0 {
+        return 0.0;
+    }
+    let (mut square, mut share) = (0.0f32, 0.0f32);
+    for k in 0..3 {
+        let side = at[(k + 1) % 3] - at[k];
+        let [aa, ab, bb] = relief.form;
+        square = square.max(side.x * side.x * aa + 2.0 * side.x * side.y * ab + side.y * side.y * bb);
+        share = share.max(side.x.abs().max(side.y.abs()).max((side.x + side.y).abs()));
+    }
+    let mut loss = relief.losses[0];
+    let mut longest = relief.longest;
+    for step in 1..RELIEF_STEPS {
+        longest *= 0.5;
+        if square <= longest * longest {
+            loss = relief.losses[step];
+        }
+    }
+    let lost = (loss[0] + loss[1] * square).min(relief.range);
+    let rise = relief.range.min(relief.slope * square.sqrt());
+    // How far a direction moves a point from black to white, as it is seen; and by how much displacement in any direction.
+    let mut along = 0.0f32;
+    for direction in directions {
+        along = along.max((direction.truncate() - middle * direction.z).length() + spread * direction.z.abs());
+    }
+    let any = (patch.across + (middle.length() + spread) * patch.deep).length();
+    // The second derivative of unit directions is at most 2 / sqrt(3) times the squared first one of the means, by their squared length.
+    let turned = share * turning * DIRECTION_ROUNDING / shortest;
+    let turns = 0.19245 * turned * turned + turned * part * rise;
+    let error = DIRECTION_ROUNDING * (along * lost / shortest + any * turns) / depth;
+    // NaN counts as infinite.
+    if error < 3.4e38 { error } else { 3.4e38 }
+}
+
+#[cfg(test)]
+mod tests;
