@@ -62,7 +62,7 @@ fn hull_factors(patch_index: u32) -> vec4<f32> {
         inside = base_factor(edges);
     }
     if params.lod == LOD_ERROR {
-        inside = edge_factors[2u * params.factor_count + params.patch_count + patch_index];
+        inside = edge_factors[inside_at(patch_index)];
         if params.partitioning == PARTITIONING_ROWS {
             inside = inside_of_base(params.convention, inside);
         }

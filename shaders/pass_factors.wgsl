@@ -10,10 +10,6 @@
 @group(0) @binding(4) var<storage, read> factor_curves: array<u32>;
 // The bits of the factors of edges; under LOD by error then what search_state.wgsl says.
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<u32>;
-// Only of meshes with heights: see Share in types.wgsl.
-@group(0) @binding(6) var<storage, read> shares: array<Share>;
-@group(0) @binding(7) var<storage, read> patches: array<Patch>;
-@group(0) @binding(8) var<storage, read> corners: array<Corner>;
 
 fn curve_factor(index: u32) -> f32 {
     let curve = curves[index];
@@ -61,25 +57,12 @@ fn edge_factors_main(invocation: Invocation) {
     if params.lod == LOD_ERROR {
         // No patch is searched yet.
         for (var i = index; i < params.patch_count + SEARCH_COUNTERS; i += params.factor_count) {
-            edge_factors[2u * params.factor_count + 4u * params.patch_count + i] = 0u;
+            edge_factors[known_at(i)] = 0u;
         }
         edge_factors[index] = bitcast<u32>(whole_segments(params.partitioning, 1.0));
         edge_factors[params.factor_count + index] = bitcast<u32>(whole_segments(params.partitioning, factor));
     } else {
         let rounded = select(factor, round_pow2(factor), params.partitioning == PARTITIONING_POW2);
         edge_factors[index] = bitcast<u32>(rounded);
-    }
-}
-
-// The directions in which the corners of every patch move, for the searches of LOD by error.
-@compute @workgroup_size(256)
-fn patch_directions_main(invocation: Invocation) {
-    let index = grid_index(invocation);
-    if index >= params.patch_count {
-        return;
-    }
-    let directions = corner_directions(index);
-    for (var k = 0u; k < 3u; k++) {
-        edge_factors[2u * params.factor_count + 3u * index + k] = pack_normal(directions[k]);
     }
 }

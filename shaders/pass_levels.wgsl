@@ -8,7 +8,8 @@
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> corners: array<Corner>;
 @group(0) @binding(3) var<storage, read> patches: array<Patch>;
-@group(0) @binding(4) var<storage, read> edge_factors: array<f32>;
+// The bits of the factors of edges; under LOD by error then what search_state.wgsl says.
+@group(0) @binding(4) var<storage, read_write> edge_factors: array<u32>;
 @group(0) @binding(5) var<storage, read> given_factors: array<vec4<u32>>;
 @group(0) @binding(6) var<storage, read_write> shares: array<Share>;
 // Where the list of each point starts in `parts`, and in `point_factors`, then where the last list ends.
@@ -67,7 +68,7 @@ fn frames_main(invocation: Invocation) {
 fn segments_of(index: u32, dominant: u32) -> f32 {
     var bits = bitcast<u32>(1.0);
     if params.lod != LOD_GIVEN {
-        bits = bitcast<u32>(edge_factors[index]);
+        bits = edge_factors[index];
     } else {
         for (var i = 0u; i < 3u; i++) {
             if factor_side(params.convention, i) == dominant % 4u {
@@ -79,6 +80,19 @@ fn segments_of(index: u32, dominant: u32) -> f32 {
         return 1.0;
     }
     return bitcast<f32>(clamp(bits, bitcast<u32>(1.0), factor_upper_bound(params.partitioning)));
+}
+
+// The directions in which the corners of every patch move, for the searches of LOD by error.
+@compute @workgroup_size(256)
+fn patch_directions_main(invocation: Invocation) {
+    let index = grid_index(invocation);
+    if index >= params.patch_count {
+        return;
+    }
+    let directions = corner_directions(index);
+    for (var k = 0u; k < 3u; k++) {
+        edge_factors[direction_place(index, k)] = pack_normal(directions[k]);
+    }
 }
 
 @compute @workgroup_size(256)

@@ -22,19 +22,9 @@
 @group(0) @binding(6) var<storage, read> reliefs: array<PatchRelief>;
 @group(0) @binding(7) var<storage, read_write> search_workgroups: array<u32, 3>;
 
-// Where the inside factor of a patch is.
-fn inside_at(patch_index: u32) -> u32 {
-    return 2u * params.factor_count + 3u * params.patch_count + patch_index;
-}
-
-// Where that is which a patch knows.
-fn known_at(patch_index: u32) -> u32 {
-    return inside_at(params.patch_count + patch_index);
-}
-
 // The unit direction in which a corner of a patch moves.
 fn corner_direction(patch_index: u32, corner: u32) -> vec3<f32> {
-    return unpack_normal(atomicLoad(&edge_factors[2u * params.factor_count + 3u * patch_index + corner]));
+    return unpack_normal(atomicLoad(&edge_factors[direction_place(patch_index, corner)]));
 }
 
 // The factors of the edges U == 0, V == 0 and W == 0 of a patch: LOD takes each by the opposite corner, whatever the

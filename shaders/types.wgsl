@@ -98,7 +98,6 @@ struct Share {
     level: f32,
     // 4 times a patch, plus which of its corners or sides.
     dominant: u32,
-    @size(12) _pad: u32,
 }
 
 // What is known of the heights over a patch: see src/geometry/tessellate/relief.rs.

@@ -25,7 +25,7 @@ pub(super) const FRAMES: Pass = Pass::new("pass_levels", "frames_main");
 /// LOD's factor of every edge.
 pub(super) const EDGE_FACTORS: Pass = Pass::new("pass_factors", "edge_factors_main");
 /// The directions in which the corners of every patch move, for LOD by error.
-pub(super) const PATCH_DIRECTIONS: Pass = Pass::new("pass_factors", "patch_directions_main");
+pub(super) const PATCH_DIRECTIONS: Pass = Pass::new("pass_levels", "patch_directions_main");
 /// The patches whose minimum needs no search.
 pub(super) const LEAST_TRIANGLES: Pass = Pass::new("pass_least", "least_triangles_main");
 /// The others. Like all searches it has a size of its workgroups and a kind of pattern: see [`ComputePipelines::search`].

@@ -34,7 +34,7 @@ use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use gpu::layout::LOD_GIVEN;
 use gpu::relief_buffers::HEIGHTS_ACROSS;
 use gpu::shader_constants::enum_constants;
-use gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, WORKGROUP};
+use gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP};
 
 /// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
@@ -67,7 +67,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     (&["AT_CORNER", "ON_SIDE", "INSIDE"], "in Rust, an enum without numbers"),
     (&["GOAL_REQUESTS", "GOAL_MINIMUM", "GOAL_GIVEN"], "in Rust, an enum without numbers"),
     (&["FOUND_SOURCE"], "in Rust, any number other than 0 and FOUND_EMITTED means the same"),
-    (&["ALL_MAPS", "NO_PATCH", "NO_MORE"], "markers within one pass, or within one word that no other pass reads"),
+    (&["NO_PATCH", "NO_MORE"], "markers within one pass, or within one word that no other pass reads"),
     (
         &["VERTEX_WORKGROUP", "TRIANGLE_WORKGROUP", "LANES"],
         "how one pass divides its work; it is dispatched indirectly",
