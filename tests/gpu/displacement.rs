@@ -36,7 +36,7 @@ pub(super) fn wavy(shape: Shape) -> (Loaded, Scene) {
 }
 
 /// A torus with smooth normals, whose second half has its texture elsewhere: seams with nothing in common.
-fn shifted_torus() -> Mesh {
+pub(super) fn shifted_torus() -> Mesh {
     let mut mesh = Shape::Torus.build();
     let (half, count) = (mesh.triangles.len() / 2, mesh.corners.len() as u32);
     let shifted = mesh.corners.clone().into_iter().map(|c| Corner { uv: c.uv + glam::vec2(0.37, 0.21), ..c });

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use geometry::mesh::{Mesh, Shape, Topology};
+use geometry::mesh::{HeightMap, Heights, Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
@@ -17,7 +17,7 @@ use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings};
 use load::Source;
 use proptest::prelude::*;
 
-use crate::displacement::wavy;
+use crate::displacement::{shifted_torus, waves, wavy};
 use crate::passes::edge_factors;
 use crate::stability::{Trial, any_trial, soups};
 use crate::{engine, loaded, scene};
@@ -59,6 +59,59 @@ fn few_px(distance: f64, inputs: &Inputs) -> f64 {
     16.0 * distance * a_unit / depth
 }
 
+/// Meshes under images of every kind: gentle waves, these in steps of 8 bits, noise, terraces, an image that repeats, seams over which heights
+/// agree, and seams over which they don't. And which modes of displacement have one surface there.
+fn displaced(asset: usize) -> (Mesh, &'static [Displacement]) {
+    let size = 128;
+    let waves = waves(size);
+    let height = |i: u32| {
+        let wave = waves.heights[i as usize];
+        match asset {
+            0 | 5..8 => wave,
+            1 | 4 => (255.0 * wave).round() / 255.0,
+            2 => (i.wrapping_mul(2_654_435_769) >> 24) as f32 / 255.0,
+            _ => (6.0 * wave).floor() / 6.0,
+        }
+    };
+    let mut mesh = match asset {
+        0..5 => Shape::Saddle.build(),
+        5 => Shape::Icosphere.build(),
+        6 => Shape::Torus.build(),
+        _ => shifted_torus(),
+    };
+    mesh.corners.iter_mut().for_each(|corner| corner.uv *= if asset == 4 { 3.0 } else { 1.0 });
+    let map = HeightMap::new([size, size], (0..size * size).map(height).collect());
+    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, map)));
+    let one_triangle = matches!(asset, 5..8);
+    (mesh, if one_triangle { &[Displacement::PerPatch] } else { &[Displacement::On, Displacement::AsPublished] })
+}
+
+/// The displaced assets, and cameras around and close to them.
+fn displaced_trial() -> impl Strategy<Value = (Trial, f32)> {
+    let camera = (0.7f32..4.0, -180f32..180.0, -80f32..80.0, any::<bool>());
+    let own = (0usize..8, 0usize..8, -0.1f32..0.1, -0.5f32..1.0, 0usize..5);
+    (own, camera).prop_map(|((asset, choice, scale, magnitude, partitioning), camera)| {
+        let (mesh, modes) = displaced(asset);
+        let (distance, azimuth, elevation, orthographic) = camera;
+        let far = Camera::framing(&mesh.bounds(), VIEWPORT);
+        let camera = Camera { distance: distance * mesh.bounds().radius(), azimuth, elevation, orthographic, ..far };
+        let settings = Settings::from(Tessellation {
+            surface: Surface::ALL[choice % Surface::ALL.len()],
+            displacement: modes[choice % modes.len()],
+            height_scale: scale,
+            partitioning: [
+                Partitioning::Integer,
+                Partitioning::Pow2,
+                Partitioning::FractionalOdd,
+                Partitioning::FractionalEven,
+                Partitioning::Rows,
+            ][partitioning],
+            ..Tessellation::default()
+        });
+        (Trial { mesh, settings, camera }, 10f32.powf(magnitude))
+    })
+}
+
 fn by_error(settings: Settings, tolerance: f32) -> Settings {
     settings.with(Tessellation { lod: Lod::Error, tolerance, ..settings.tessellation })
 }
@@ -82,6 +135,8 @@ fn keeps_its_promise(trial: Trial, tolerance: f32, on_device: bool) -> Result<()
     } else {
         (tessellate(&mesh, &topology, &inputs, None), hull_factors(&mesh, &topology, &inputs))
     };
+    // Of more triangles all would take too long.
+    prop_assume!(out.triangles.len() < 60_000);
     if !is_capped(&written, settings.tessellation.partitioning) {
         let px = deviation_px(&mesh, &topology, &inputs, &out);
         let flushed = if on_device { flushing_px(&inputs) } else { 0.0 };
@@ -104,6 +159,14 @@ proptest! {
     #[test]
     fn any_soup_is_within_the_tolerance_on_the_device(trial in any_trial(), magnitude in -1.0f32..1.5) {
         keeps_its_promise(trial, 10f32.powf(magnitude), true)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(soups(30))]
+    #[test]
+    fn anything_displaced_is_within_the_tolerance((trial, tolerance) in displaced_trial()) {
+        keeps_its_promise(trial, tolerance, false)?;
     }
 }
 
