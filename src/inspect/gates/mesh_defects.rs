@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 
-use super::GateKind;
 use geometry::casts::to_u32;
 use geometry::mesh::{Bounds, Edge, EdgeKind, Mesh, Topology};
 use geometry::near::TriangleTree;
@@ -26,96 +25,73 @@ impl Defects {
         }
     }
 
-    /// Finds the defects that a gate counts, and the words for one and for several of them, in which `#` stands for the number.
-    /// `None` if the gate is about something else.
-    pub(super) fn find(kind: GateKind, mesh: &Mesh, topology: &Topology) -> Option<(Self, [&'static str; 2])> {
-        let edges = |is_one: &dyn Fn(&Edge) -> bool| Self::edges(topology, is_one);
-        Some(match kind {
-            GateKind::NonManifold => (
-                edges(&|edge| edge.kind == EdgeKind::NonManifold),
-                ["# edge has three triangles or more", "# edges have three triangles or more"],
-            ),
-            GateKind::Boundary => {
-                (edges(&|edge| edge.kind == EdgeKind::Boundary), ["# edge is open", "# edges are open"])
-            }
-            GateKind::Winding => (
-                edges(&|edge| matches!(topology.edge_sides(edge), [a, b] if a.reversed() == b.reversed())),
-                ["# edge has triangles wound opposite ways", "# edges have triangles wound opposite ways"],
-            ),
-            GateKind::NormalsAgainstFaces => (
-                Self::Triangles(against_faces(mesh, topology)),
-                ["# triangle has a normal that points behind it", "# triangles have a normal that points behind them"],
-            ),
-            GateKind::Degenerate => {
-                (Self::Triangles(without_area(mesh, topology)), ["# triangle has no area", "# triangles have no area"])
-            }
-            GateKind::Duplicates => (
-                Self::Triangles(repeated(topology)),
-                ["# triangle repeats another one", "# triangles repeat another one"],
-            ),
-            GateKind::NearSeam => {
-                let is_near = near_another(topology);
-                let is_seam = |edge: &Edge| {
-                    let ends = topology.edge_points(edge);
-                    edge.kind == EdgeKind::Boundary && ends.iter().all(|point| is_near[*point as usize])
-                };
-                (edges(&is_seam), ["# open edge nearly meets another one", "# open edges nearly meet another one"])
-            }
-            GateKind::HardEdges => (
-                edges(&|edge| edge.kind == EdgeKind::Split),
-                ["# edge has two normals at an end", "# edges have two normals at an end"],
-            ),
-            GateKind::Cracks
-            | GateKind::Factors
-            | GateKind::Leaks
-            | GateKind::Folds
-            | GateKind::TJunctions
-            | GateKind::Warnings
-            | GateKind::AboveTolerance
-            | GateKind::SelfIntersections
-            | GateKind::Deviation
-            | GateKind::Triangles
-            | GateKind::Bytes => return None,
+    /// Edges of three triangles or more.
+    pub(super) fn non_manifold(_: &Mesh, topology: &Topology) -> Self {
+        Self::edges(topology, |edge| edge.kind == EdgeKind::NonManifold)
+    }
+
+    /// Edges of one triangle.
+    pub(super) fn boundary(_: &Mesh, topology: &Topology) -> Self {
+        Self::edges(topology, |edge| edge.kind == EdgeKind::Boundary)
+    }
+
+    /// Edges of two triangles wound opposite ways.
+    pub(super) fn winding(_: &Mesh, topology: &Topology) -> Self {
+        Self::edges(topology, |edge| matches!(topology.edge_sides(edge), [a, b] if a.reversed() == b.reversed()))
+    }
+
+    /// Edges of two triangles with different normals.
+    pub(super) fn hard_edges(_: &Mesh, topology: &Topology) -> Self {
+        Self::edges(topology, |edge| edge.kind == EdgeKind::Split)
+    }
+
+    /// Open edges that nearly meet another one.
+    pub(super) fn near_seam(_: &Mesh, topology: &Topology) -> Self {
+        let is_near = near_another(topology);
+        let are_near = |edge: &Edge| topology.edge_points(edge).iter().all(|point| is_near[*point as usize]);
+        Self::edges(topology, |edge| edge.kind == EdgeKind::Boundary && are_near(edge))
+    }
+
+    /// Triangles with a corner whose normal points to the back of their face.
+    pub(super) fn against_faces(mesh: &Mesh, topology: &Topology) -> Self {
+        Self::patches(topology, |patch| {
+            let [a, b, c] = topology.patch_positions(patch).map(|corner| corner.as_dvec3());
+            let face = (b - a).cross(c - a);
+            let mut normals =
+                topology.patch_corners(patch).into_iter().map(|corner| mesh.corners[corner as usize].normal);
+            normals.any(|normal| normal.as_dvec3().dot(face) < 0.0)
         })
     }
 
-    fn edges(topology: &Topology, is_one: &dyn Fn(&Edge) -> bool) -> Self {
+    /// Triangles with two corners on one point, and those with their corners in line.
+    pub(super) fn without_area(mesh: &Mesh, topology: &Topology) -> Self {
+        let mut has_area = vec![false; mesh.triangles.len()];
+        for (patch, of) in topology.patches.iter().enumerate() {
+            has_area[of.triangle as usize] = !topology.is_in_line(to_u32(patch));
+        }
+        Self::Triangles((0..to_u32(has_area.len())).filter(|triangle| !has_area[*triangle as usize]).collect())
+    }
+
+    /// Triangles with the same three points as one before them.
+    pub(super) fn repeated(_: &Mesh, topology: &Topology) -> Self {
+        let mut known = HashSet::with_capacity(topology.patches.len());
+        Self::patches(topology, |patch| {
+            let mut points = topology.patch_points(patch);
+            points.sort_unstable();
+            !known.insert(points)
+        })
+    }
+
+    fn edges(topology: &Topology, is_one: impl Fn(&Edge) -> bool) -> Self {
         let found = topology.edges.iter().enumerate().filter(|(_, edge)| is_one(edge));
         Self::Edges(found.map(|(index, _)| to_u32(index)).collect())
     }
-}
 
-/// Triangles with a corner whose normal points to the back of their face.
-fn against_faces(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
-    let is_one = |patch: &u32| {
-        let [a, b, c] = topology.patch_positions(*patch).map(|corner| corner.as_dvec3());
-        let face = (b - a).cross(c - a);
-        let corners = mesh.triangles[topology.patches[*patch as usize].triangle as usize];
-        corners.iter().any(|corner| mesh.corners[*corner as usize].normal.as_dvec3().dot(face) < 0.0)
-    };
-    let found = (0..to_u32(topology.patches.len())).filter(is_one);
-    found.map(|patch| topology.patches[patch as usize].triangle).collect()
-}
-
-/// Triangles with two corners on one point, and those with their corners in line.
-fn without_area(mesh: &Mesh, topology: &Topology) -> Vec<u32> {
-    let mut has_area = vec![false; mesh.triangles.len()];
-    for (patch, of) in topology.patches.iter().enumerate() {
-        has_area[of.triangle as usize] = !topology.is_in_line(to_u32(patch));
+    /// The triangles of patches.
+    fn patches(topology: &Topology, mut is_one: impl FnMut(u32) -> bool) -> Self {
+        let found = (0..to_u32(topology.patches.len())).filter(|patch| is_one(*patch));
+        Self::Triangles(found.map(|patch| topology.patches[patch as usize].triangle).collect())
     }
-    (0..to_u32(has_area.len())).filter(|triangle| !has_area[*triangle as usize]).collect()
-}
-
-/// Patches with the same three points as one before them.
-fn repeated(topology: &Topology) -> Vec<u32> {
-    let mut known = HashSet::with_capacity(topology.patches.len());
-    let mut is_new = |patch: u32| {
-        let mut points = topology.patch_points(patch);
-        points.sort_unstable();
-        known.insert(points)
-    };
-    let found = (0..to_u32(topology.patches.len())).filter(|patch| !is_new(*patch));
-    found.map(|patch| topology.patches[patch as usize].triangle).collect()
 }
 
 /// For each point, whether it ends open edges, and one that ends others is nearer than [`NEAR`], which is less than half the
@@ -144,8 +120,8 @@ fn near_another(topology: &Topology) -> Vec<bool> {
 mod tests {
     use glam::{Vec2, Vec3, vec3};
 
+    use super::super::{Facts, Found, Gate, GateKind, Judgement, Limit, judge};
     use super::*;
-    use geometry::choice::Choice;
     use geometry::mesh::Corner;
 
     /// A mesh of these triangles, each of which has corners of its own with one normal.
@@ -161,8 +137,13 @@ mod tests {
 
     fn counts(triangles: &[[Vec3; 3]], normals: &[Vec3]) -> Vec<(&'static str, usize)> {
         let (mesh, topology) = mesh(triangles, normals);
-        let of = |kind: &GateKind| Some((kind.name(), Defects::find(*kind, &mesh, &topology)?.0.count()));
-        GateKind::ALL.iter().filter_map(of).filter(|(_, count)| *count > 0).collect()
+        let gates = GateKind::ALL.map(|kind| Gate { kind, limit: Limit::Count(0) });
+        let judged = judge(&gates, &Facts { mesh: Some((&mesh, &topology)), ..Facts::from_mesh(&topology) });
+        let count = |judged: &Judgement| match judged.found? {
+            Found::Count(count) => Some((judged.gate, usize::try_from(count).ok()?)),
+            Found::Length(_) => None,
+        };
+        judged.iter().filter_map(count).filter(|(_, count)| *count > 0).collect()
     }
 
     const A: Vec3 = Vec3::ZERO;
