@@ -193,6 +193,10 @@ fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
         GateKind::HardEdges => {
             defects(Defects::hard_edges, ["# edge has two normals at an end", "# edges have two normals at an end"])
         }
+        GateKind::Inflated => {
+            let words = ["# triangle is blown up at a hard edge", "# triangles are blown up at hard edges"];
+            defects(Defects::inflated, words)
+        }
         GateKind::SelfIntersections => {
             let crossed = known(facts.crossed)?.ok_or("too many triangles were emitted to find those that cross")?;
             let words = ["# pair of patches crosses each other", "# pairs of patches cross each other"];
@@ -401,9 +405,17 @@ fn worst_junction(facts: &Facts) -> Option<Place> {
     Some(place.with(text))
 }
 
-/// The longest edge or the largest triangle that has a defect.
+/// The longest edge or the largest triangle that has a defect, or the one that rises most.
 fn worst_defect(defects: Defects, mesh: &Mesh, topology: &Topology) -> Option<Place> {
-    match defects {
+    let corners =
+        |triangle: u32| mesh.triangles[triangle as usize].map(|corner| mesh.corners[corner as usize].position);
+    let on_triangle = |triangle: u32, words: &str| {
+        let corners = corners(triangle);
+        let at = corners.iter().sum::<Vec3>() / 3.0;
+        let text = format!("{words} triangle {triangle} at {}", position(at));
+        Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) }
+    };
+    Some(match defects {
         Defects::Edges(edges) => {
             let length = |edge: &u32| {
                 let [a, b] = topology.edge_points(&topology.edges[*edge as usize]);
@@ -412,22 +424,20 @@ fn worst_defect(defects: Defects, mesh: &Mesh, topology: &Topology) -> Option<Pl
             let longest = edges.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)))?;
             let place = EdgePlace::new(topology, longest, None);
             let text = format!("the longest is {}", place.words());
-            Some(place.with(text))
+            place.with(text)
         }
         Defects::Triangles(triangles) => {
-            let corners =
-                |triangle: u32| mesh.triangles[triangle as usize].map(|corner| mesh.corners[corner as usize].position);
             let longest = |triangle: &u32| {
                 let [a, b, c] = corners(*triangle);
                 a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
             };
-            let triangle = triangles.into_iter().max_by(|a, b| longest(a).total_cmp(&longest(b)))?;
-            let corners = corners(triangle);
-            let at = corners.iter().sum::<Vec3>() / 3.0;
-            let text = format!("the longest is triangle {triangle} at {}", position(at));
-            Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
+            on_triangle(triangles.into_iter().max_by(|a, b| longest(a).total_cmp(&longest(b)))?, "the longest is")
         }
-    }
+        Defects::Inflated(triangles) => {
+            let (triangle, rise) = triangles.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            on_triangle(triangle, &format!("most, by {} object units, rises", short(rise)))
+        }
+    })
 }
 
 fn worst_crossing(facts: &Facts) -> Option<Place> {

@@ -2,12 +2,18 @@
 
 use std::collections::HashSet;
 
+use glam::DVec3;
+
 use geometry::casts::to_u32;
-use geometry::mesh::{Bounds, Edge, EdgeKind, Mesh, Topology};
+use geometry::mesh::{Bounds, Edge, EdgeKind, Mesh, Side, Topology};
 use geometry::near::TriangleTree;
 
 /// Open edges that another one is nearer to than this part of the bounding diagonal nearly meet it.
 const NEAR: f32 = 1e-4;
+/// The cosine of the largest angle between faces that share normals without being meant as a hard edge: 60 degrees.
+const SMOOTH: f64 = 0.5;
+/// The middle of a triangle that isn't inflated rises by less than this part of its longest edge.
+const RISE: f64 = 0.02;
 
 /// Where a defect is.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,12 +22,15 @@ pub(super) enum Defects {
     Edges(Vec<u32>),
     /// Triangles of the mesh.
     Triangles(Vec<u32>),
+    /// Triangles of the mesh, and how far the middle of each rises, in object units.
+    Inflated(Vec<(u32, f64)>),
 }
 
 impl Defects {
     pub(super) fn count(&self) -> usize {
         match self {
             Self::Edges(all) | Self::Triangles(all) => all.len(),
+            Self::Inflated(all) => all.len(),
         }
     }
 
@@ -55,12 +64,24 @@ impl Defects {
     /// Triangles with a corner whose normal points to the back of their face.
     pub(super) fn against_faces(mesh: &Mesh, topology: &Topology) -> Self {
         Self::patches(topology, |patch| {
-            let [a, b, c] = topology.patch_positions(patch).map(|corner| corner.as_dvec3());
-            let face = (b - a).cross(c - a);
+            let face = face(topology, patch);
             let mut normals =
                 topology.patch_corners(patch).into_iter().map(|corner| mesh.corners[corner as usize].normal);
             normals.any(|normal| normal.as_dvec3().dot(face) < 0.0)
         })
+    }
+
+    /// Triangles beside a sharp edge with smooth normals, whose middle PN triangles raise.
+    pub(super) fn inflated(mesh: &Mesh, topology: &Topology) -> Self {
+        let sharp = topology.edges.iter().filter(|edge| is_sharp_but_smooth(topology, edge));
+        let mut patches: Vec<u32> = sharp.flat_map(|edge| topology.edge_sides(edge)).map(Side::patch).collect();
+        patches.sort_unstable();
+        patches.dedup();
+        let rising = |patch: u32| {
+            let (rise, longest) = rise(mesh, topology, patch);
+            (rise > RISE * longest).then_some((topology.patches[patch as usize].triangle, rise))
+        };
+        Self::Inflated(patches.into_iter().filter_map(rising).collect())
     }
 
     /// Triangles with two corners on one point, and those with their corners in line.
@@ -94,6 +115,35 @@ impl Defects {
     }
 }
 
+/// The normal of a patch's face, at unit length.
+fn face(topology: &Topology, patch: u32) -> DVec3 {
+    let [a, b, c] = topology.patch_positions(patch).map(|corner| corner.as_dvec3());
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
+/// Whether two faces that meet at an edge share its normals, though the angle between them is that of a hard edge.
+fn is_sharp_but_smooth(topology: &Topology, edge: &Edge) -> bool {
+    let [a, b] = topology.edge_sides(edge) else { return false };
+    let shares_normals = matches!(edge.kind, EdgeKind::Smooth | EdgeKind::Seam) && a.reversed() != b.reversed();
+    shares_normals && face(topology, a.patch()).dot(face(topology, b.patch())) < SMOOTH - 1e-6
+}
+
+/// How far PN triangles raise a patch's middle above the flat triangle, and the triangle's longest edge, in object units. The control
+/// points of edges lie at (2 a + b - ((b - a) . n) n) / 3, and the middle is their mean (Vlachos et al. 2001, section 3.1).
+fn rise(mesh: &Mesh, topology: &Topology, patch: u32) -> (f64, f64) {
+    let positions = topology.patch_positions(patch).map(|corner| corner.as_dvec3());
+    let corners = topology.patch_corners(patch).map(|corner| mesh.corners[corner as usize].normal.as_dvec3());
+    let face = face(topology, patch);
+    let raised = |from: usize, to: usize| {
+        let normal = corners[from].normalize_or_zero();
+        (positions[from] - positions[to]).dot(normal) * normal.dot(face) / 18.0
+    };
+    let pairs = [(0, 1), (1, 2), (2, 0)];
+    let rise = pairs.iter().map(|&(a, b)| raised(a, b) + raised(b, a)).sum();
+    let longest = pairs.iter().map(|&(a, b)| positions[a].distance(positions[b])).fold(0.0, f64::max);
+    (rise, longest)
+}
+
 /// For each point, whether it ends open edges, and one that ends others is nearer than [`NEAR`], which is less than half the
 /// length of each of these edges.
 fn near_another(topology: &Topology) -> Vec<bool> {
@@ -122,7 +172,7 @@ mod tests {
 
     use super::super::{Facts, Found, Gate, GateKind, Judgement, Limit, judge};
     use super::*;
-    use geometry::mesh::Corner;
+    use geometry::mesh::{Corner, Shape};
 
     /// A mesh of these triangles, each of which has corners of its own with one normal.
     fn mesh(triangles: &[[Vec3; 3]], normals: &[Vec3]) -> (Mesh, Topology) {
@@ -171,6 +221,27 @@ mod tests {
         for thin in [[A, B, B], [A, A, A], [A, B / 2.0, B]] {
             assert!(counts(&[[A, B, C], thin], &[Vec3::Y]).contains(&("degenerate", 1)), "{thin:?}");
         }
+    }
+
+    #[test]
+    fn a_box_with_smooth_normals_is_inflated_and_round_shapes_are_not() {
+        for shape in Shape::ALL {
+            let mesh = shape.build();
+            let topology = Topology::new(&mesh);
+            let Defects::Inflated(found) = Defects::inflated(&mesh, &topology) else { panic!("triangles that rise") };
+            let expected = if shape == Shape::CubeSmooth { mesh.triangles.len() } else { 0 };
+            assert_eq!(found.len(), expected, "{shape:?}");
+            // Half of a face whose normals lean by 1 / sqrt(3): its legs count four times, and its diagonal twice with both parts.
+            let rise = 8.0 * found.first().map_or(0.0, |(triangle, _)| leg(&mesh, *triangle)) / 3.0 / 18.0;
+            assert!(found.iter().all(|(_, own)| (own - rise).abs() < 1e-6), "{shape:?}: {found:?} and {rise}");
+        }
+    }
+
+    /// The shortest edge of a triangle.
+    fn leg(mesh: &Mesh, triangle: u32) -> f64 {
+        let [a, b, c] =
+            mesh.triangles[triangle as usize].map(|corner| mesh.corners[corner as usize].position.as_dvec3());
+        a.distance(b).min(b.distance(c)).min(c.distance(a))
     }
 
     #[test]

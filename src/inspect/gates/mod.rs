@@ -51,6 +51,8 @@ choices! {
             "No open edge of the mesh nearly meets another one: one that should be welded.";
         HardEdges => "hard-edges", "Edges whose triangles have different normals",
             "No edge of the mesh has two normals at an end, along which an engine that displaces would tear it open.";
+        Inflated => "inflated", "Triangles that smooth normals blow up at a hard edge",
+            "No triangle bulges because an edge of more than 60 degrees has smooth normals.";
         SelfIntersections => "self-intersections", "Pairs of patches that the curved surface makes cross",
             "No two patches cross each other whose triangles in the mesh don't.";
         Deviation => "deviation", "Largest distance from --reference-surface, or back, for certain",
@@ -75,7 +77,8 @@ impl GateKind {
             | Self::Degenerate
             | Self::Duplicates
             | Self::NearSeam
-            | Self::HardEdges => GateSubject::Mesh,
+            | Self::HardEdges
+            | Self::Inflated => GateSubject::Mesh,
             Self::Deviation => GateSubject::Distance,
             Self::Cracks | Self::Factors | Self::Leaks | Self::Folds => GateSubject::Survey,
             Self::AboveTolerance | Self::SelfIntersections => GateSubject::Tessellation,
@@ -95,7 +98,7 @@ impl GateKind {
             Self::NonManifold | Self::Boundary | Self::Winding | Self::NearSeam | Self::HardEdges => {
                 &[Overlay::Wireframe, Overlay::Adjacency]
             }
-            Self::NormalsAgainstFaces => &[Overlay::Patches, Overlay::Normals],
+            Self::NormalsAgainstFaces | Self::Inflated => &[Overlay::Patches, Overlay::Normals],
             Self::Degenerate | Self::Duplicates => &[Overlay::Patches],
             Self::SelfIntersections => &[Overlay::Wireframe, Overlay::Patches],
             Self::Deviation => &[Overlay::Wireframe, Overlay::Deviation],
