@@ -156,7 +156,7 @@ fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &s
         views.push((name, parsed(config, &all, &source)?));
     }
     for (_, own) in &views {
-        own.user_surface.check(false, &gates).map_err(|error| clash(config, error))?;
+        own.check_gates(&gates).map_err(|error| clash(config, error))?;
     }
     // A reference surface that is a file may name other files, which aren't known here.
     let is_kept = matches!(source, Source::File(_))

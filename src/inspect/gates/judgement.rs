@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::mesh_defects::Defects;
 use super::place::{EdgeSpot, Place, Spot};
 use super::{Gate, GateKind, Limit};
-use crate::measure::{CrackedEdge, CrossedPatches, EdgeSide, Measured, PatchesAbove, WorstPoint};
+use crate::measure::{CrackedEdge, CrossedPatches, EdgeSide, Measured, PatchesAbove, Pop, WorstPoint};
 use crate::render::{Leak, Leaks};
 use geometry::choice::Choice;
 use geometry::mesh::{Mesh, TJunction, Topology};
@@ -36,6 +36,8 @@ pub struct Facts<'a> {
     pub crossed: Option<Option<&'a [CrossedPatches]>>,
     /// The distance from the reference surface, or why there is none.
     pub deviation: Option<Result<Deviation, &'static str>>,
+    /// The farthest jump of a flight, none within if nothing in view moved; or why there is none.
+    pub pop: Option<Result<Option<Pop>, &'static str>>,
 }
 
 /// The largest distance between what was emitted and a reference surface, both ways.
@@ -53,8 +55,8 @@ impl<'a> Facts<'a> {
     /// Facts of a mesh that nothing was measured of.
     pub fn from_mesh(topology: &'a Topology) -> Self {
         let (warnings, emitted, measured, junctions, leaks) = (None, None, None, None, None);
-        let (mesh, view, above, crossed, deviation) = (None, None, None, None, None);
-        Self { topology, warnings, emitted, measured, mesh, junctions, leaks, view, above, crossed, deviation }
+        let (mesh, view, above, crossed, deviation, pop) = (None, None, None, None, None, None);
+        Self { topology, warnings, emitted, measured, mesh, junctions, leaks, view, above, crossed, deviation, pop }
     }
 }
 
@@ -77,12 +79,13 @@ pub struct Judgement {
     pub place: Option<Place>,
 }
 
-/// What a gate found: a number, or a length in object units.
+/// What a gate found: a number, a length in object units, or a distance on screen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Found {
     Count(u64),
     Length(Interval),
+    Px(f64),
 }
 
 impl Judgement {
@@ -136,6 +139,7 @@ fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
             }
             length.at_most <= limit
         }
+        (Some(Found::Px(px)), Limit::Px(limit)) => px <= limit,
         _ => false,
     };
     let place = worst.filter(|_| !passed).and_then(|worst| worst());
@@ -206,6 +210,11 @@ fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
             let distance @ Interval { at_least, at_most } = known(facts.deviation)??.distance;
             let text = format!("the largest distance is {} to {} object units", short(at_least), short(at_most));
             Ok(Counted { found: Found::Length(distance), text, worst: Box::new(|| worst_deviation(facts)) })
+        }
+        GateKind::Pops => {
+            let px = known(facts.pop)??.map_or(0.0, |pop| pop.px);
+            let text = format!("the surface jumps by up to {} px from one frame of the flight to the next", short(px));
+            Ok(Counted { found: Found::Px(px), text, worst: Box::new(|| worst_pop(facts)) })
         }
         GateKind::AboveTolerance => {
             let PatchesAbove { patches, tolerance_px, .. } = *known(facts.above)?;
@@ -448,6 +457,14 @@ fn worst_crossing(facts: &Facts) -> Option<Place> {
     let [a, b] = triangles;
     let text = format!("most triangles cross between those of triangles {a} and {b} at {}", position(at));
     Some(Place { text, triangles: triangles.to_vec(), spot: Spot::patch(corners, at) })
+}
+
+fn worst_pop(facts: &Facts) -> Option<Place> {
+    let Pop { patch, at, .. } = facts.pop?.ok()??;
+    let corners = facts.topology.patch_positions(patch);
+    let triangle = facts.topology.patches[patch as usize].triangle;
+    let text = format!("the farthest jump is of triangle {triangle} at {}", position(at));
+    Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
 }
 
 fn worst_deviation(facts: &Facts) -> Option<Place> {

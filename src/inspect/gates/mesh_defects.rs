@@ -191,7 +191,7 @@ mod tests {
         let judged = judge(&gates, &Facts { mesh: Some((&mesh, &topology)), ..Facts::from_mesh(&topology) });
         let count = |judged: &Judgement| match judged.found? {
             Found::Count(count) => Some((judged.gate, usize::try_from(count).ok()?)),
-            Found::Length(_) => None,
+            Found::Length(_) | Found::Px(_) => None,
         };
         judged.iter().filter_map(count).filter(|(_, count)| *count > 0).collect()
     }
