@@ -124,6 +124,14 @@ pub fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
     gates.iter().map(|gate| judged(*gate, facts)).collect()
 }
 
+/// What the gates of the mesh find in it, each with its worst place; nothing of those that find nothing, or that need other facts.
+pub fn found_in_mesh(mesh: &Mesh, topology: &Topology) -> Vec<Judgement> {
+    let of_mesh = GateKind::ALL.into_iter().filter(|kind| kind.is_of_mesh());
+    let gates: Vec<Gate> = of_mesh.map(|kind| Gate { kind, limit: Limit::Count(0) }).collect();
+    let judged = judge(&gates, &Facts { mesh: Some((mesh, topology)), ..Facts::from_mesh(topology) });
+    judged.into_iter().filter(|judgement| judgement.found.is_some() && !judgement.passed).collect()
+}
+
 fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
     let (found, mut text, worst) = match count(kind, facts) {
         Ok(Counted { found, text, worst }) => (Some(found), text, Some(worst)),

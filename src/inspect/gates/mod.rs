@@ -10,7 +10,7 @@ mod standpoint;
 use std::fmt;
 use std::str::FromStr;
 
-pub use judgement::{Deviation, Facts, Found, Judgement, judge};
+pub use judgement::{Deviation, Facts, Found, Judgement, found_in_mesh, judge};
 pub use limit::{Length, Limit, Unit};
 pub use place::{EdgeSpot, PatchSpot, Place, Spot};
 pub use standpoint::Standpoints;
@@ -90,7 +90,7 @@ impl GateKind {
     }
 
     /// The overlays that show what it found. At most one of them colours the surface.
-    pub(crate) const fn overlays(self) -> &'static [Overlay] {
+    pub const fn overlays(self) -> &'static [Overlay] {
         match self {
             Self::Cracks => &[Overlay::Wireframe, Overlay::Cracks],
             Self::Factors => &[Overlay::Wireframe, Overlay::Factors],
@@ -130,6 +130,11 @@ impl GateKind {
     /// Whether it judges the mesh as it was loaded.
     pub const fn is_of_mesh(self) -> bool {
         matches!(self.subject(), GateSubject::Mesh)
+    }
+
+    /// Whether what it counts belongs to many sound meshes.
+    pub const fn is_often_meant(self) -> bool {
+        matches!(self, Self::Boundary | Self::HardEdges)
     }
 
     /// The limit where none is given; none if one must be.
