@@ -18,6 +18,9 @@ use load::files::file_reason;
 
 /// The configuration that is read if there is one and none is named.
 const CONFIG: &str = "pnaen.toml";
+/// The option of the memory for output, and its value in MiB where the configuration has none. With much more, drivers get memory from the
+/// system anew for each asset, which takes as long as all else.
+const ARENA: [&str; 2] = ["arena", "32"];
 /// The options of a camera: those that a named view may have.
 const CAMERA: [&str; 6] = ["camera", "target", "orthographic", "field-of-view", "roll", "file-camera"];
 /// The options whose values are paths, which are relative to the configuration's folder.
@@ -160,6 +163,10 @@ fn job(
     let Section { gates, mut options, cameras } = config.section(place);
     let gates = if args.gates.fail_on.is_empty() { gates.unwrap_or_default() } else { args.gates.fail_on.clone() };
     let mut read: Vec<PathBuf> = options.iter_mut().flat_map(|option| resolved(option, folder)).collect();
+    if !options.iter().any(|option| option.name == ARENA[0]) {
+        let [name, value] = ARENA.map(str::to_owned);
+        options.push(OptionValue { name, values: vec![Some(value)], line: 0 });
+    }
     let hidden = options.iter().filter(|option| option.name == "hide-part").flat_map(|option| hidden(config, option));
     let hidden = hidden.collect();
     let mut views = Vec::new();
