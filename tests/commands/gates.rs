@@ -103,8 +103,8 @@ fn boxes_with_smooth_normals_are_inflated_and_round_meshes_are_not() {
         &["12 triangles are blown up at hard edges", "where 0 are allowed", "most, by 0.1", "rises triangle"],
     );
     assert_eq!(number(&gates[0], "/found"), 12.0);
-    let glass = Path::new(&vase()).with_file_name("glass.glb").display().to_string();
-    for round in ["shape:icosahedron", "shape:torus", "shape:vase", "shape:cylinder", &vase(), &glass] {
+    let glass = Path::new(vase()).with_file_name("glass.glb").display().to_string();
+    for round in ["shape:icosahedron", "shape:torus", "shape:vase", "shape:cylinder", vase(), &glass] {
         assert_eq!(drawn(&[round, "--fail-on", "inflated"]).0, Some(0), "{round}");
     }
 }

@@ -18,8 +18,8 @@ use load::files::file_reason;
 
 /// The configuration that is read if there is one and none is named.
 const CONFIG: &str = "pnaen.toml";
-/// The option of the memory for output, and its value in MiB where the configuration has none. With much more, drivers get memory from the
-/// system anew for each asset, which takes as long as all else.
+/// The option of the memory for output, and its value in MiB where the configuration has none. With much more, drivers get memory
+/// from the system anew for each asset, which takes as long as all else.
 const ARENA: [&str; 2] = ["arena", "32"];
 /// The options of a camera: those that a named view may have.
 const CAMERA: [&str; 6] = ["camera", "target", "orthographic", "field-of-view", "roll", "file-camera"];

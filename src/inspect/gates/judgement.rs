@@ -124,7 +124,7 @@ pub fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
     gates.iter().map(|gate| judged(*gate, facts)).collect()
 }
 
-/// What the gates of the mesh find in it, each with its worst place; nothing of those that find nothing, or that need other facts.
+/// What the gates of the mesh find in it, each with its worst place. Those that find nothing or need other facts are left out.
 pub fn found_in_mesh(mesh: &Mesh, topology: &Topology) -> Vec<Judgement> {
     let of_mesh = GateKind::ALL.into_iter().filter(|kind| kind.is_of_mesh());
     let gates: Vec<Gate> = of_mesh.map(|kind| Gate { kind, limit: Limit::Count(0) }).collect();

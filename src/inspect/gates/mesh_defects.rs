@@ -128,8 +128,8 @@ fn is_sharp_but_smooth(topology: &Topology, edge: &Edge) -> bool {
     shares_normals && face(topology, a.patch()).dot(face(topology, b.patch())) < SMOOTH - 1e-6
 }
 
-/// How far PN triangles raise a patch's middle above the flat triangle, and the triangle's longest edge, in object units. The control
-/// points of edges lie at (2 a + b - ((b - a) . n) n) / 3, and the middle is their mean (Vlachos et al. 2001, section 3.1).
+/// How far PN triangles raise a patch's middle above the flat triangle, and the triangle's longest edge, in object units. The
+/// control points of edges lie at (2 a + b - ((b - a) . n) n) / 3, and the middle is their mean (Vlachos et al. 2001, section 3.1).
 fn rise(mesh: &Mesh, topology: &Topology, patch: u32) -> (f64, f64) {
     let positions = topology.patch_positions(patch).map(|corner| corner.as_dvec3());
     let corners = topology.patch_corners(patch).map(|corner| mesh.corners[corner as usize].normal.as_dvec3());
@@ -231,7 +231,7 @@ mod tests {
             let Defects::Inflated(found) = Defects::inflated(&mesh, &topology) else { panic!("triangles that rise") };
             let expected = if shape == Shape::CubeSmooth { mesh.triangles.len() } else { 0 };
             assert_eq!(found.len(), expected, "{shape:?}");
-            // Half of a face whose normals lean by 1 / sqrt(3): its legs count four times, and its diagonal twice with both parts.
+            // Half of a face whose normals have parts of 1 / sqrt(3): legs count four times, and the diagonal as much.
             let rise = 8.0 * found.first().map_or(0.0, |(triangle, _)| leg(&mesh, *triangle)) / 3.0 / 18.0;
             assert!(found.iter().all(|(_, own)| (own - rise).abs() < 1e-6), "{shape:?}: {found:?} and {rise}");
         }

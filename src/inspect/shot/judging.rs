@@ -138,7 +138,7 @@ impl Shot {
         Ok(deviation)
     }
 
-    /// The farthest jump while the camera flies to where it is, each frame seen from where the camera is then; or why there is none.
+    /// The farthest jump while the camera flies to where it is, each frame seen from where it is then; or why there is none.
     ///
     /// # Errors
     /// The device was lost, or `progress` was cancelled.
