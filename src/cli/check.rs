@@ -1,5 +1,6 @@
 //! `pnaen check`: holds a folder of assets to gates, and reports what was found.
 
+mod golden;
 mod measuring;
 mod plan;
 
@@ -52,6 +53,13 @@ pub struct Args {
     /// Folder that keeps what was found, so that an unchanged asset isn't measured again; made if it isn't there
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
+    /// Folder of golden pictures in place of that of the configuration: each view must be the same as ASSET.png, or if it has a
+    /// name, ASSET/VIEW.png
+    #[arg(long, value_name = "DIR")]
+    pub golden: Option<PathBuf>,
+    /// Write the golden pictures in place of comparing with them
+    #[arg(long)]
+    pub update_golden: bool,
     /// How many assets are loaded and measured at the same time; by default as many as there are cores, and at most 4
     #[arg(long, value_name = "N", value_parser = options::whole(1..=256_u16))]
     pub jobs: Option<u16>,

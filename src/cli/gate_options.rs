@@ -45,8 +45,8 @@ impl GateOptions {
     /// Refuses what needs the device that draws, where the CPU computes.
     pub(super) fn check(&self, is_on_cpu: bool) -> Result<(), CliError> {
         refuse(
-            is_on_cpu && (self.evidence.is_some() || self.gates.has(GateKind::Leaks)),
-            "--fail-on leaks and --evidence need --device gpu, which draws",
+            is_on_cpu && (self.evidence.is_some() || self.gates.has(GateKind::Leaks) || self.gates.has(GateKind::Pops)),
+            "--fail-on leaks, --fail-on pops and --evidence need --device gpu, which draws",
         )
     }
 

@@ -24,7 +24,7 @@ use load::HeightSource;
 use load::files::Limits;
 use load::format::known_extensions;
 
-pub(crate) use cameras::{CamerasOption, NamedView};
+pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
 use declared::GivenTessellation;
 pub(crate) use declared::{
     Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,

@@ -90,7 +90,7 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
     let places: Vec<Option<PathBuf>> = views.iter().map(|view| args.reference_of(view)).collect();
     let read: Vec<_> = places.iter().map(Option::as_deref).chain([args.cameras.file()]).collect();
     args.shot.check(&args.file, &read, &written)?;
-    args.shot.user_surface.check(false, &args.gates.gates.fail_on)?;
+    args.shot.check_gates(&args.gates.gates.fail_on)?;
     let references = args.references(&places)?;
     let (subject, factors_file) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(engine()?, subject)?;

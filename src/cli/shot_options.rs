@@ -11,6 +11,7 @@ use super::{
 use geometry::progress::Progress;
 use gpu::Given;
 use inspect::engine::{Engine, Loaded};
+use inspect::gates::{Gate, GateKind};
 use inspect::render::Camera;
 use inspect::render::environment::Environment;
 use inspect::settings::{ColorSource, Lighting};
@@ -78,6 +79,17 @@ impl ShotOptions {
         let shaders = [self.user_lod.lod_shader.as_deref(), self.user_surface.surface_shader.as_deref()];
         let own = [file_of(file), reference_shape, heights, factors, matcap, self.environment.as_deref()];
         keep_apart(own.into_iter().chain(shaders).chain(read.iter().copied()), written.iter().copied())
+    }
+
+    /// Refuses gates that these options leave nothing to judge.
+    pub(super) fn check_gates(&self, gates: &[Gate]) -> Result<(), CliError> {
+        self.user_surface.check(false, gates)?;
+        let stays = self.lod.lod_camera.is_some() || self.surface.view.view_projection.is_some();
+        refuse(
+            stays && gates.iter().any(|gate| gate.kind == GateKind::Pops),
+            "--fail-on pops flies the camera, which LOD doesn't follow with --lod-camera, and which --view-projection keeps \
+             where it is: leave them out",
+        )
     }
 
     /// Checks a camera that isn't known before the mesh is.

@@ -72,8 +72,8 @@ impl Args {
         self.adapter.check(self.device == Some(Device::Cpu))?;
         refuse(
             GateKind::ALL.into_iter().any(|kind| kind.is_of_one_tessellation() && self.gates.gates.has(kind)),
-            "--fail-on above-tolerance, self-intersections, deviation, triangles and bytes judge one tessellation, and stability runs many: use render or \
-                 tessellate",
+            "--fail-on above-tolerance, self-intersections, deviation, pops, triangles and bytes judge one tessellation, and stability runs many: use \
+             render or tessellate",
         )?;
         self.gates.check(self.device == Some(Device::Cpu))
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Folder, command, failure, output, run, sentence, vase, write_corners};
+use crate::{Folder, assert_says, command, failure, output, run, sentence, vase, write_corners};
 
 /// The configuration of [`assets`]: each file that fails has a section of its own.
 const CONFIG: &str = r#"
@@ -215,6 +215,48 @@ fn an_unchanged_asset_is_not_measured_again() {
     assert_eq!(unchanged(&["--page", &page]).0.len(), 7);
     let html = std::fs::read_to_string(Path::new(&page).join("index.html")).expect("a page");
     assert!(html.contains("unchanged, not measured again") && html.matches("src=\"pictures/").count() > 10);
+}
+
+#[test]
+fn views_are_compared_with_golden_pictures_that_an_option_writes() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("assets")).expect("a writable folder");
+    std::fs::copy(vase(), folder.path("assets/good.glb")).expect("a copy");
+    let configure = |golden: &str, surface: &str| {
+        let options = format!("[options]\nsize = \"160x120\"\nfactor = 3\nsurface = \"{surface}\"\n");
+        let text = format!("{golden}\n{options}[cameras.front]\ncamera = [0, 10]\n[cameras.side]\ncamera = [90, 0]\n");
+        std::fs::write(folder.path("pnaen.toml"), text).expect("a writable folder");
+    };
+    let run = |arguments: &[&str]| {
+        let (code, out, errors) = check(&folder, arguments);
+        (code, out + &errors)
+    };
+    configure("golden = \"kept\"", "pn-aen");
+    let (code, said) = run(&[]);
+    assert_eq!(code, Some(1), "{said}");
+    assert_says(&said, &["golden (front): there is no golden picture", "front.png; write it with --update-golden"]);
+    assert_eq!(run(&["--update-golden"]).0, Some(0));
+    assert!(
+        ["front", "side"]
+            .iter()
+            .all(|view| Path::new(&folder.path(&format!("kept/assets/good.glb/{view}.png"))).is_file())
+    );
+    let cache = ["--cache", &folder.path("cache")];
+    assert_eq!(run(&cache).0, Some(0));
+    assert_says(&run(&cache).1, &["1 unchanged"]);
+    std::fs::remove_file(folder.path("kept/assets/good.glb/side.png")).expect("a picture");
+    assert_says(&run(&cache).1, &["golden (side): there is no golden picture", "1 failed"]);
+    configure("", "flat");
+    let kept = folder.path("kept");
+    let (code, said) = run(&["--golden", &kept, "--page", &folder.path("page"), "--format", "sarif"]);
+    assert_eq!(code, Some(1), "{said}");
+    assert_says(&said, &["\"ruleId\": \"golden\"", "it differs from ", "px differ, by up to", "none may since"]);
+    let page = std::fs::read_to_string(folder.path("page/index.html")).expect("a page");
+    assert_eq!(page.matches("<figcaption>golden (front)").count(), 1);
+    let (code, _, errors) = check(&folder, &["--update-golden"]);
+    assert!(code == Some(2) && errors.contains("give --golden"), "{errors}");
+    std::fs::write(folder.path("pnaen.toml"), "[cameras.\"a/b\"]\ncamera = [0, 0]\n").expect("a writable folder");
+    assert_says(&run(&["--golden", &kept]).1, &["a/b can't be the name of a file"]);
 }
 
 #[test]

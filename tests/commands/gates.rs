@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Folder, assert_says, failure, number, output, run, write_corners};
+use crate::{Folder, assert_says, failure, number, output, run, vase, write_corners};
 
 const VIEW: [&str; 2] = ["--size", "160x120"];
 
@@ -39,12 +39,12 @@ fn write_folds(folder: &Folder) -> String {
 #[test]
 fn a_sound_mesh_passes_all_gates() {
     let gates = "cracks,factors,leaks,folds,t-junctions,warnings,above-tolerance,triangles:100000,bytes:4000000,\
-                 non-manifold,boundary,winding,normals-against-faces,degenerate,duplicates,near-seam,hard-edges,\
-                 self-intersections,deviation:2%";
+                 non-manifold,boundary,winding,normals-against-faces,degenerate,duplicates,near-seam,hard-edges,inflated,\
+                 self-intersections,deviation:2%,pops:1px";
     let torus = ["shape:torus", "--reference-surface", "shape:torus", "--lod", "error", "--tolerance", "0.5"];
     let (code, said, gates) = drawn(&[&torus[..], &["--fail-on", gates]].concat());
     assert_eq!((code, said.as_str()), (Some(0), ""));
-    assert_eq!(gates.len(), 19);
+    assert_eq!(gates.len(), 21);
     for gate in &gates {
         assert_eq!((&gate["passed"], &gate["where"]), (&true.into(), &Value::Null), "{gate}");
     }
@@ -92,6 +92,50 @@ fn a_mesh_is_judged_by_what_decides_how_it_tessellates() {
         assert!(std::fs::read_dir(&evidence).expect("a picture of the place").any(is_picture));
         assert_eq!(gates[0]["passed"], false);
     }
+}
+
+#[test]
+fn boxes_with_smooth_normals_are_inflated_and_round_meshes_are_not() {
+    let (code, said, gates) = drawn(&["shape:cube-smooth", "--fail-on", "inflated"]);
+    assert_eq!(code, Some(1));
+    assert_says(
+        &said,
+        &["12 triangles are blown up at hard edges", "where 0 are allowed", "most, by 0.1", "rises triangle"],
+    );
+    assert_eq!(number(&gates[0], "/found"), 12.0);
+    let glass = Path::new(vase()).with_file_name("glass.glb").display().to_string();
+    for round in ["shape:icosahedron", "shape:torus", "shape:vase", "shape:cylinder", vase(), &glass] {
+        assert_eq!(drawn(&[round, "--fail-on", "inflated"]).0, Some(0), "{round}");
+    }
+}
+
+#[test]
+fn the_farthest_jump_of_a_flight_is_held_to_a_limit() {
+    let flown = |options: &[&str], limit: &str| {
+        drawn(&[&["shape:cube-smooth", "--fail-on", &format!("pops:{limit}")], options].concat())
+    };
+    let by_length = ["--lod", "edge-length", "--pixels", "8", "--partitioning"];
+    let px = |partitioning: &str| {
+        let (code, said, gates) = flown(&[&by_length[..], &[partitioning]].concat(), "0px");
+        assert_eq!(code, Some(1), "{partitioning}: {said}");
+        assert_says(
+            &said,
+            &["px from one frame of the flight to the next, where 0px is allowed", "jump is of triangle"],
+        );
+        number(&gates[0], "/found")
+    };
+    let (integer, fractional) = (px("integer"), px("fractional-even"));
+    assert!(fractional < 0.5 * integer, "{fractional} and {integer}");
+    let (code, said, gates) = flown(&[&by_length[..], &["fractional-even"]].concat(), &format!("{integer}px"));
+    assert_eq!((code, &gates[0]["passed"]), (Some(0), &true.into()), "{said}");
+    assert_eq!(gates[0]["limit"], format!("{integer}px"));
+    let (code, _, gates) = flown(&["--factor", "5"], "0px");
+    assert_eq!((code, number(&gates[0], "/found")), (Some(0), 0.0), "nothing moves");
+    let refused = |command: &[&str]| failure(&[command, &["shape:torus", "--fail-on", "pops:1px"]].concat(), 2);
+    assert!(refused(&["render", "-o", "x.png", "--lod-camera", "0,0"]).contains("flies the camera"));
+    assert!(refused(&["tessellate", "-o", "x.glb", "--device", "cpu"]).contains("--fail-on pops"));
+    assert!(refused(&["stability"]).contains("pops"));
+    failure(&["render", "shape:torus", "-o", "x.png", "--fail-on", "pops:1"], 2);
 }
 
 /// Writes a triangle whose normals lean outwards, so that its patch bulges, and one above it that the bulge goes through.

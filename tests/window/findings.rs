@@ -4,7 +4,7 @@ use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use geometry::mesh::Shape;
+use geometry::mesh::{EdgeKind, Shape};
 use geometry::view::project;
 use glam::{Vec2, vec2};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, OUTLINE_COLOR, SIDE_COLORS};
@@ -149,6 +149,27 @@ fn the_gap_of_the_selected_edge_is_that_of_the_headline_while_lod_is_frozen() {
     let (_, px) = finding.split_once("widest ").expect("a width");
     // In the headline's facts, and in the selected edge's; the picture comes much nearer.
     assert_eq!(harness.get_all_by_label(px).count(), 2, "{px}");
+}
+
+#[test]
+fn what_gates_find_in_the_mesh_has_lines_that_lead_to_the_worst_places() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 3 4 1\n");
+    click(&mut harness, "1 triangle repeats another one");
+    assert_eq!(harness.state().selected_triangle(), Some(2));
+    click(&mut harness, "1 edge has three triangles or more");
+    let app = harness.state();
+    let topology = &app.loaded().expect("a mesh").topology;
+    let kind = |edge: u32| topology.edges[edge as usize].kind;
+    assert_eq!(app.selected_edge().map(kind), Some(EdgeKind::NonManifold));
+    click(&mut harness, "2 edges are open");
+    for none in ["blown up", "no area"] {
+        assert!(harness.query_by_label_contains(none).is_none(), "there is none");
+    }
+    let mut harness = window(Some(Source::Shape(Shape::CubeSmooth)));
+    click(&mut harness, "12 triangles are blown up at hard edges");
+    assert!(harness.state().selected_triangle().is_some());
+    assert!(harness.query_by_label_contains("are open").is_none(), "it is closed");
 }
 
 #[test]

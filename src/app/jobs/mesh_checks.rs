@@ -1,4 +1,5 @@
-//! Checks of a mesh that run on a thread of their own once it is loaded: bad normals, T-junctions, and edges that nearly meet.
+//! Checks of a mesh that run on a thread of their own once it is loaded: bad normals, T-junctions,
+//! what gates of the mesh find, and edges that nearly meet.
 
 use std::sync::{Arc, OnceLock};
 
@@ -6,12 +7,14 @@ use super::job_list::Work;
 use crate::app::App;
 use geometry::mesh::{NormalFaults, TJunction, WeldPreview, t_junctions, weld_previews};
 use geometry::progress::Progress;
+use inspect::gates::{Judgement, found_in_mesh};
 
 /// What the checks of a mesh have found so far.
 #[derive(Default)]
 pub(crate) struct Checks {
     normal_faults: OnceLock<NormalFaults>,
     t_junctions: OnceLock<Vec<TJunction>>,
+    found: OnceLock<Vec<Judgement>>,
     joins: OnceLock<Vec<WeldPreview>>,
 }
 
@@ -23,6 +26,11 @@ impl Checks {
 
     pub(crate) fn t_junctions(&self) -> Option<&[TJunction]> {
         self.t_junctions.get().map(Vec::as_slice)
+    }
+
+    /// What the gates of the mesh find in it; nothing until they are judged.
+    pub(crate) fn found(&self) -> &[Judgement] {
+        self.found.get().map(Vec::as_slice).unwrap_or_default()
     }
 
     /// What each weld tolerance would join, once known.
@@ -43,6 +51,8 @@ impl App {
             if let Ok(all) = t_junctions(&topology, wanted) {
                 let _ = found.t_junctions.set(all);
             }
+            repainted.request_repaint();
+            let _ = found.found.set(found_in_mesh(&mesh, &topology));
             repainted.request_repaint();
             let exact = (weld == 0.0 && Arc::ptr_eq(&read, &mesh)).then_some(&*topology);
             if let Ok(all) = weld_previews(&read, exact, wanted) {

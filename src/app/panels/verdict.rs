@@ -7,8 +7,10 @@ use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
+use geometry::casts::to_u32;
+use inspect::gates::{EdgeSpot, GateKind, Judgement, Place, Spot};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
-use inspect::settings::Overlay;
+use inspect::settings::{Choice, Overlay, SplitSide};
 use load::{Import, NormalSource, is_of_lacking_normals};
 
 /// Where a click on a line leads.
@@ -21,6 +23,8 @@ enum Destination {
     /// The overlay of folds, and the patch whose folds have the largest area.
     Folds,
     TJunctions,
+    /// The overlays of a gate of the mesh, and the worst place that it found.
+    Mesh(GateKind),
     /// The edge with the most points whose normals differ.
     ShadingSeams,
     /// The edge whose sides were given the most different factors.
@@ -65,12 +69,12 @@ impl App {
     /// The colour of the first line that says what is wrong, rather than what could be better.
     pub(in crate::app) fn worst(&self, ui: &egui::Ui) -> Option<Color32> {
         let lines = self.verdict_lines(ui.visuals());
-        lines
-            .into_iter()
-            .filter(|line| {
-                !matches!(line.leads, Destination::Sizes | Destination::CreaseAngle(_) | Destination::Patches)
-            })
-            .find_map(|line| line.color)
+        let is_wrong = |line: &Line| match line.leads {
+            Destination::Sizes | Destination::CreaseAngle(_) | Destination::Patches => false,
+            Destination::Mesh(gate) => !gate.is_often_meant(),
+            _ => true,
+        };
+        lines.into_iter().filter(is_wrong).find_map(|line| line.color)
     }
 
     fn verdict_lines(&self, visuals: &egui::Visuals) -> Vec<Line> {
@@ -87,7 +91,7 @@ impl App {
             self.normals_line(visuals),
             Some(self.warnings_line(visuals.warn_fg_color)),
         ];
-        lines.into_iter().flatten().collect()
+        lines.into_iter().flatten().chain(self.mesh_lines(visuals)).collect()
     }
 
     /// The line of what isn't measured yet, or can't be, since its picture isn't drawn.
@@ -191,6 +195,15 @@ impl App {
                 Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Destination::TJunctions)
             }
         }
+    }
+
+    /// A line for each gate of the mesh that found something. What many sound meshes have is no warning.
+    fn mesh_lines(&self, visuals: &egui::Visuals) -> impl Iterator<Item = Line> {
+        let found = self.document.iter().flat_map(|document| document.checks.found());
+        found.map(|Judgement { kind, text, .. }| {
+            let color = if kind.is_often_meant() { visuals.text_color() } else { visuals.warn_fg_color };
+            Line::bad(text.clone(), color, kind.text(), Destination::Mesh(*kind))
+        })
     }
 
     fn seams_line(&self, color: Color32) -> Option<Line> {
@@ -307,6 +320,10 @@ impl App {
                 let first = junctions.and_then(|junctions| junctions.first()).copied();
                 first.into_iter().for_each(|junction| self.show_junction(&junction));
             }
+            Destination::Mesh(gate) => {
+                gate.overlays().iter().for_each(|overlay| overlays.turn_on(*overlay));
+                self.show_found(gate);
+            }
             Destination::ShadingSeams => {
                 let seams = self.results().map(|results| results.found.cracks.shading_seams());
                 let worst =
@@ -324,6 +341,24 @@ impl App {
             Destination::CreaseAngle(angle) => self.settings.import.crease_angle = angle,
             Destination::Patches => self.panels.open.set(Section::Patches, true),
             Destination::Warnings => self.dialogs.shows_warnings = true,
+        }
+    }
+}
+
+impl App {
+    /// Selects the edge or the triangle that is the worst of what a gate of the mesh found, and shows it.
+    fn show_found(&mut self, gate: GateKind) {
+        let Some(document) = &self.document else { return };
+        let found = document.checks.found().iter().find(|judgement| judgement.kind == gate);
+        let Some(Place { triangles, spot, .. }) = found.and_then(|judgement| judgement.place.clone()) else { return };
+        if let Spot::Edge(EdgeSpot { ends, .. }) = spot {
+            let topology = &document.loaded.topology;
+            let at = |point: u32| topology.points[point as usize];
+            let edge = topology.edges.iter().position(|edge| topology.edge_points(edge).map(at) == ends);
+            edge.into_iter().for_each(|edge| self.select_edge(to_u32(edge)));
+        } else {
+            self.select_triangle(triangles.first().copied());
+            self.show_place(SplitSide::Right, &spot, self.selected_patch());
         }
     }
 }
@@ -346,7 +381,7 @@ fn row(ui: &mut egui::Ui, text: String, color: Option<Color32>, hover: &str) -> 
         match color {
             Some(color) => {
                 let text = RichText::new(text).color(legible(ui, color));
-                hover_beside(&ui.button(text), hover).clicked()
+                hover_beside(&ui.add(egui::Button::new(text).truncate()), hover).clicked()
             }
             None => {
                 ui.add_space(ui.spacing().button_padding.x);

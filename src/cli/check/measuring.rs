@@ -6,16 +6,17 @@ use std::time::{Instant, SystemTime};
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use image::DynamicImage;
 use image::imageops::FilterType;
-use image::{DynamicImage, RgbaImage};
 
+use super::golden::Compared;
 use super::plan::Job;
 use crate::cli::{CliError, file_error, file_of, note};
 use geometry::names::on_one_line;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded, Preparation};
 use inspect::shot::png_bytes;
-use lab::check::{Asset, Cache, GateResult, View};
+use lab::check::{Asset, Cache, GOLDEN, GateResult, View};
 use load::LoadError;
 use load::files::file_reason;
 
@@ -69,17 +70,26 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
     for (index, (name, options)) in job.views.iter().enumerate() {
         let (subject, _) = options.subject_of(loaded.clone())?;
         let mut shot = options.shot(engine.clone(), subject)?;
-        let picture = if pictures { Some(encoded(job, shot.picture(None, &progress)?)?) } else { None };
+        let is_drawn = pictures || job.golden.is_some();
+        let drawn = is_drawn.then(|| shot.picture(None, &progress)).transpose()?;
         // What is about the mesh itself is the same in all views.
         let wanted = job.gates.iter().copied().filter(|gate| index == 0 || !gate.kind.is_of_mesh());
         let tolerance = options.surface.tessellation().tolerance;
         let mut gates = Vec::new();
+        if let Some((golden, drawn)) = job.golden.as_ref().zip(drawn.as_ref()) {
+            let start = Instant::now();
+            let Compared { is_same, text, difference } = golden.compare(name, drawn, shot.adapter())?;
+            let evidence = difference.filter(|_| pictures).map(|picture| encoded(job, picture)).transpose()?;
+            let (name, seconds) = (GOLDEN[0].to_owned(), start.elapsed().as_secs_f64());
+            gates.push(GateResult { name, passed: is_same, text, evidence, seconds, ..GateResult::default() });
+        }
+        let picture = drawn.filter(|_| pictures).map(|drawn| encoded(job, drawn.into())).transpose()?;
         for gate in wanted {
             let start = Instant::now();
             for judgement in &shot.judge(&[gate], tolerance, &progress)? {
                 // A gate that fails has a picture of its place.
                 let shown = if pictures && !judgement.passed { shot.evidence(judgement, &progress)? } else { None };
-                let evidence = shown.map(|picture| encoded(job, picture)).transpose()?;
+                let evidence = shown.map(|picture| encoded(job, picture.into())).transpose()?;
                 gates.push(GateResult::new(judgement, evidence, start.elapsed().as_secs_f64()));
             }
         }
@@ -104,8 +114,7 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
 }
 
 /// A picture as it is on the page: no larger than it is shown there on a dense screen, a PNG file in base64.
-fn encoded(job: &Job, picture: RgbaImage) -> Result<String, CliError> {
-    let mut picture = DynamicImage::from(picture);
+fn encoded(job: &Job, mut picture: DynamicImage) -> Result<String, CliError> {
     if picture.width() > MOST_PX || picture.height() > MOST_PX {
         picture = picture.resize(MOST_PX, MOST_PX, FilterType::Triangle);
     }

@@ -6,8 +6,10 @@ use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, Command, CommandFactory, Parser};
 
 use super::Args;
+use super::golden::Golden;
+use crate::cli::options::check_view_name;
 use crate::cli::shot_options::ShotOptions;
-use crate::cli::{CliError, file_error, note};
+use crate::cli::{CliError, file_error, note, refuse};
 use geometry::names::{on_one_line, shown, shown_path};
 use inspect::gates::Gate;
 use lab::check::{Config, FolderError, Inputs, OptionValue, Section, assets};
@@ -16,6 +18,9 @@ use load::files::file_reason;
 
 /// The configuration that is read if there is one and none is named.
 const CONFIG: &str = "pnaen.toml";
+/// The option of the memory for output, and its value in MiB where the configuration has none. With much more, drivers get memory
+/// from the system anew for each asset, which takes as long as all else.
+const ARENA: [&str; 2] = ["arena", "32"];
 /// The options of a camera: those that a named view may have.
 const CAMERA: [&str; 6] = ["camera", "target", "orthographic", "field-of-view", "roll", "file-camera"];
 /// The options whose values are paths, which are relative to the configuration's folder.
@@ -34,6 +39,7 @@ pub(super) struct Job {
     pub read: Vec<PathBuf>,
     /// The parts that are left out, each with a sentence for the case that no asset has it.
     pub hidden: Vec<(String, String)>,
+    pub golden: Option<Golden>,
     /// All of the configuration that holds for it, as text.
     configuration: String,
     /// Whether what is found may be kept.
@@ -74,9 +80,16 @@ pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
     if found.is_empty() {
         return Err(CliError::NoAssets);
     }
+    let golden = args.golden.clone().or_else(|| config.golden.as_ref().map(|own| folder.join(own)));
+    refuse(
+        args.update_golden && golden.is_none(),
+        "--update-golden needs the folder of golden pictures: give --golden, or golden in the configuration",
+    )?;
+    let golden = |place: &str| golden.as_deref().map(|folder| Golden::new(folder, place, args.update_golden));
     let places: Vec<String> = found.iter().map(|source| place(source, folder)).collect();
     config.unmatched(&places).iter().for_each(|said| note(said));
-    found.into_iter().zip(&places).map(|(source, place)| job(args, &config, folder, (source, place))).collect()
+    let jobs = found.into_iter().zip(&places);
+    jobs.map(|(source, place)| job(args, &config, folder, golden(place), (source, place))).collect()
 }
 
 /// Checks each value by itself, also those of sections that hold for no asset.
@@ -138,12 +151,22 @@ fn plain(path: &Path) -> PathBuf {
     plain
 }
 
-fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &str)) -> Result<Job, CliError> {
+fn job(
+    args: &Args,
+    config: &Config,
+    folder: &Path,
+    golden: Option<Golden>,
+    (source, place): (Source, &str),
+) -> Result<Job, CliError> {
     let name = on_one_line(&source.to_string());
     let name = if cfg!(windows) { name.replace('\\', "/") } else { name };
     let Section { gates, mut options, cameras } = config.section(place);
     let gates = if args.gates.fail_on.is_empty() { gates.unwrap_or_default() } else { args.gates.fail_on.clone() };
-    let read: Vec<PathBuf> = options.iter_mut().flat_map(|option| resolved(option, folder)).collect();
+    let mut read: Vec<PathBuf> = options.iter_mut().flat_map(|option| resolved(option, folder)).collect();
+    if !options.iter().any(|option| option.name == ARENA[0]) {
+        let [name, value] = ARENA.map(str::to_owned);
+        options.push(OptionValue { name, values: vec![Some(value)], line: 0 });
+    }
     let hidden = options.iter().filter(|option| option.name == "hide-part").flat_map(|option| hidden(config, option));
     let hidden = hidden.collect();
     let mut views = Vec::new();
@@ -151,19 +174,25 @@ fn job(args: &Args, config: &Config, folder: &Path, (source, place): (Source, &s
         views.push((String::new(), parsed(config, &options, &source)?));
     }
     for (name, camera) in cameras {
+        if golden.is_some() {
+            check_view_name(&name).map_err(|reason| config.clash(&reason))?;
+        }
         let others = options.iter().filter(|option| !CAMERA.contains(&option.name.as_str()));
         let all: Vec<OptionValue> = others.chain(&camera).cloned().collect();
         views.push((name, parsed(config, &all, &source)?));
     }
     for (_, own) in &views {
-        own.user_surface.check(false, &gates).map_err(|error| clash(config, error))?;
+        own.check_gates(&gates).map_err(|error| clash(config, error))?;
     }
+    let of_views = golden.as_ref().map(|golden| golden.files(views.iter().map(|(name, _)| name.as_str())));
+    read.extend(of_views.iter().flatten().flatten().cloned());
     // A reference surface that is a file may name other files, which aren't known here.
     let is_kept = matches!(source, Source::File(_))
+        && of_views.is_none_or(|files| files.is_some())
         && views.iter().all(|(_, options)| !matches!(options.reference_shape.reference_shape, Some(Source::File(_))));
     let pictures = args.page.is_some();
-    let configuration = format!("{gates:?} {views:?} {pictures} {:?}", args.adapter.adapter);
-    Ok(Job { source, name, gates, views, read, hidden, configuration, is_kept })
+    let configuration = format!("{gates:?} {views:?} {pictures} {golden:?} {:?}", args.adapter.adapter);
+    Ok(Job { source, name, gates, views, read, hidden, golden, configuration, is_kept })
 }
 
 /// The parts that an option leaves out, each with a sentence for the case that no asset has it.

@@ -121,12 +121,20 @@ fn parse_words(words: Vec<String>) -> Result<NamedView, String> {
         on_one_line(text.lines().next().unwrap_or_default().trim_start_matches("error: "))
     };
     let own = NamedView::try_parse_from(words).map_err(said)?;
-    let is_part = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ');
-    if own.name.is_empty() || own.name.starts_with(['.', ' ']) || !own.name.chars().all(is_part) {
-        let name = shown(&own.name);
-        return Err(format!("{name} can't be the name of a file; use letters, digits, and - _ . between them"));
-    }
+    check_view_name(&own.name)?;
     Ok(own)
+}
+
+/// Refuses the name of a view that its files can't have.
+pub(crate) fn check_view_name(name: &str) -> Result<(), String> {
+    let is_part = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ');
+    if name.is_empty() || name.starts_with(['.', ' ']) || !name.chars().all(is_part) {
+        return Err(format!(
+            "{} can't be the name of a file; use letters, digits, and - _ . between them",
+            shown(name)
+        ));
+    }
+    Ok(())
 }
 
 /// Reads one camera a line: its name and then its options, as on the command line. Lines that begin with # say nothing.

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::mesh_defects::Defects;
 use super::place::{EdgeSpot, Place, Spot};
 use super::{Gate, GateKind, Limit};
-use crate::measure::{CrackedEdge, CrossedPatches, EdgeSide, Measured, PatchesAbove, WorstPoint};
+use crate::measure::{CrackedEdge, CrossedPatches, EdgeSide, Measured, PatchesAbove, Pop, WorstPoint};
 use crate::render::{Leak, Leaks};
 use geometry::choice::Choice;
 use geometry::mesh::{Mesh, TJunction, Topology};
@@ -36,6 +36,8 @@ pub struct Facts<'a> {
     pub crossed: Option<Option<&'a [CrossedPatches]>>,
     /// The distance from the reference surface, or why there is none.
     pub deviation: Option<Result<Deviation, &'static str>>,
+    /// The farthest jump of a flight, none within if nothing in view moved; or why there is none.
+    pub pop: Option<Result<Option<Pop>, &'static str>>,
 }
 
 /// The largest distance between what was emitted and a reference surface, both ways.
@@ -53,8 +55,8 @@ impl<'a> Facts<'a> {
     /// Facts of a mesh that nothing was measured of.
     pub fn from_mesh(topology: &'a Topology) -> Self {
         let (warnings, emitted, measured, junctions, leaks) = (None, None, None, None, None);
-        let (mesh, view, above, crossed, deviation) = (None, None, None, None, None);
-        Self { topology, warnings, emitted, measured, mesh, junctions, leaks, view, above, crossed, deviation }
+        let (mesh, view, above, crossed, deviation, pop) = (None, None, None, None, None, None);
+        Self { topology, warnings, emitted, measured, mesh, junctions, leaks, view, above, crossed, deviation, pop }
     }
 }
 
@@ -77,12 +79,13 @@ pub struct Judgement {
     pub place: Option<Place>,
 }
 
-/// What a gate found: a number, or a length in object units.
+/// What a gate found: a number, a length in object units, or a distance on screen.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Found {
     Count(u64),
     Length(Interval),
+    Px(f64),
 }
 
 impl Judgement {
@@ -101,8 +104,16 @@ impl Judgement {
     }
 }
 
-/// What was counted for a gate: the number with its words; or why there is none, and what to do.
-type Count = Result<(Found, String), &'static str>;
+/// What was counted for a gate; or why nothing could be, and what to do.
+type Count<'a> = Result<Counted<'a>, &'static str>;
+
+struct Counted<'a> {
+    found: Found,
+    /// What was found, in a sentence without its end.
+    text: String,
+    /// Finds the worst place.
+    worst: Box<dyn FnOnce() -> Option<Place> + 'a>,
+}
 
 /// What a gate says whose limit lies between the ends of what was measured. Such a gate fails.
 const UNDECIDED: &str = ", so that it isn't decided whether that is more than the limit, which a limit above the second number \
@@ -113,10 +124,18 @@ pub fn judge(gates: &[Gate], facts: &Facts) -> Vec<Judgement> {
     gates.iter().map(|gate| judged(*gate, facts)).collect()
 }
 
+/// What the gates of the mesh find in it, each with its worst place. Those that find nothing or need other facts are left out.
+pub fn found_in_mesh(mesh: &Mesh, topology: &Topology) -> Vec<Judgement> {
+    let of_mesh = GateKind::ALL.into_iter().filter(|kind| kind.is_of_mesh());
+    let gates: Vec<Gate> = of_mesh.map(|kind| Gate { kind, limit: Limit::Count(0) }).collect();
+    let judged = judge(&gates, &Facts { mesh: Some((mesh, topology)), ..Facts::from_mesh(topology) });
+    judged.into_iter().filter(|judgement| judgement.found.is_some() && !judgement.passed).collect()
+}
+
 fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
-    let (found, mut text) = match count(kind, facts) {
-        Ok((found, text)) => (Some(found), text),
-        Err(why) => (None, why.to_owned()),
+    let (found, mut text, worst) = match count(kind, facts) {
+        Ok(Counted { found, text, worst }) => (Some(found), text, Some(worst)),
+        Err(why) => (None, why.to_owned(), None),
     };
     let passed = match (found, limit) {
         (Some(Found::Count(count)), Limit::Count(limit)) => count <= limit,
@@ -128,84 +147,133 @@ fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
             }
             length.at_most <= limit
         }
+        (Some(Found::Px(px)), Limit::Px(limit)) => px <= limit,
         _ => false,
     };
-    let place = if passed { None } else { worst(kind, facts) };
+    let place = worst.filter(|_| !passed).and_then(|worst| worst());
     Judgement { gate: kind.name(), kind, limit, found, passed, text, place }
 }
 
-fn count(kind: GateKind, facts: &Facts) -> Count {
-    let some = |number: u64, one: &str, several: &str| {
-        let words = if number == 1 { one } else { several };
-        Ok((Found::Count(number), words.replace('#', &grouped(number))))
+fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
+    let some = |number: u64, words: [&str; 2], worst: fn(&Facts) -> Option<Place>| {
+        Ok(Counted::new(number, words, move || worst(facts)))
     };
+    let defects = |find, words| defects(facts, find, words);
     match kind {
         GateKind::Cracks => {
             let cracked = known(facts.measured)?.cracks.cracked().len() as u64;
-            some(cracked, "# edge is cracked", "# edges are cracked")
+            some(cracked, ["# edge is cracked", "# edges are cracked"], worst_crack)
         }
         GateKind::Factors => {
             let different = known(facts.measured)?.cracks.different_factors;
-            some(different, "# edge has sides with different factors", "# edges have sides with different factors")
+            let words = ["# edge has sides with different factors", "# edges have sides with different factors"];
+            some(different, words, worst_factors)
         }
-        GateKind::Folds => some(known(facts.measured)?.folds, "# triangle is folded", "# triangles are folded"),
-        GateKind::Leaks => match known(facts.leaks)? {
-            Leaks::Counted(leaks) => {
-                let px = leaks.iter().map(|leak| u64::from(leak.pixels)).sum();
-                some(px, "# px shows the inside of the mesh", "# px show the inside of the mesh")
-            }
-            Leaks::Open => {
-                Err("leaks can be counted only in a closed mesh, and this one is open: leave this gate out for it")
-            }
-            Leaks::BothWays => {
-                Err("leaks can be counted only where triangles that meet are wound the same way, and some of \
-                                    this mesh aren't: mend it, or leave this gate out for it")
-            }
-            Leaks::NearPlane => Err("leaks can't be counted where the near plane cuts the mesh: move the camera away"),
-            Leaks::InNoView => {
-                Err("leaks could be counted in none of the views: the near plane cuts the mesh in each, or \
-                                    positions aren't finite")
-            }
-        },
+        GateKind::Leaks => some(leaking(facts)?, LEAKING, worst_leak),
+        GateKind::Folds => {
+            some(known(facts.measured)?.folds, ["# triangle is folded", "# triangles are folded"], worst_fold)
+        }
         GateKind::TJunctions => {
             let junctions = known(facts.junctions)?.len() as u64;
-            some(junctions, "the mesh has # T-junction", "the mesh has # T-junctions")
+            some(junctions, ["the mesh has # T-junction", "the mesh has # T-junctions"], worst_junction)
         }
         GateKind::Warnings => {
             let (count, text) = warnings(known(facts.warnings)?);
-            Ok((Found::Count(count), text))
+            Ok(Counted { text, ..Counted::new(count, [""; 2], || None) })
         }
-        GateKind::NonManifold
-        | GateKind::Boundary
-        | GateKind::Winding
-        | GateKind::NormalsAgainstFaces
-        | GateKind::Degenerate
-        | GateKind::Duplicates
-        | GateKind::NearSeam
-        | GateKind::HardEdges => {
-            let (mesh, topology) = known(facts.mesh)?;
-            let (found, [one, several]) = known(Defects::find(kind, mesh, topology))?;
-            some(found.count() as u64, one, several)
+        GateKind::NonManifold => defects(
+            Defects::non_manifold,
+            ["# edge has three triangles or more", "# edges have three triangles or more"],
+        ),
+        GateKind::Boundary => defects(Defects::boundary, ["# edge is open", "# edges are open"]),
+        GateKind::Winding => {
+            let words = ["# edge has triangles wound opposite ways", "# edges have triangles wound opposite ways"];
+            defects(Defects::winding, words)
+        }
+        GateKind::NormalsAgainstFaces => {
+            let several = "# triangles have a normal that points behind them";
+            defects(Defects::against_faces, ["# triangle has a normal that points behind it", several])
+        }
+        GateKind::Degenerate => defects(Defects::without_area, ["# triangle has no area", "# triangles have no area"]),
+        GateKind::Duplicates => {
+            defects(Defects::repeated, ["# triangle repeats another one", "# triangles repeat another one"])
+        }
+        GateKind::NearSeam => {
+            let words = ["# open edge nearly meets another one", "# open edges nearly meet another one"];
+            defects(Defects::near_seam, words)
+        }
+        GateKind::HardEdges => {
+            defects(Defects::hard_edges, ["# edge has two normals at an end", "# edges have two normals at an end"])
+        }
+        GateKind::Inflated => {
+            let words = ["# triangle is blown up at a hard edge", "# triangles are blown up at hard edges"];
+            defects(Defects::inflated, words)
         }
         GateKind::SelfIntersections => {
             let crossed = known(facts.crossed)?.ok_or("too many triangles were emitted to find those that cross")?;
-            some(crossed.len() as u64, "# pair of patches crosses each other", "# pairs of patches cross each other")
+            let words = ["# pair of patches crosses each other", "# pairs of patches cross each other"];
+            some(crossed.len() as u64, words, worst_crossing)
         }
         GateKind::Deviation => {
-            let Interval { at_least, at_most } = known(facts.deviation)??.distance;
+            let distance @ Interval { at_least, at_most } = known(facts.deviation)??.distance;
             let text = format!("the largest distance is {} to {} object units", short(at_least), short(at_most));
-            Ok((Found::Length(Interval { at_least, at_most }), text))
+            Ok(Counted { found: Found::Length(distance), text, worst: Box::new(|| worst_deviation(facts)) })
+        }
+        GateKind::Pops => {
+            let px = known(facts.pop)??.map_or(0.0, |pop| pop.px);
+            let text = format!("the surface jumps by up to {} px from one frame of the flight to the next", short(px));
+            Ok(Counted { found: Found::Px(px), text, worst: Box::new(|| worst_pop(facts)) })
         }
         GateKind::AboveTolerance => {
             let PatchesAbove { patches, tolerance_px, .. } = *known(facts.above)?;
-            let beyond = |words: &str| format!("{words} farther than {} px from its surface", exact(tolerance_px));
-            some(patches, &beyond("# patch is"), &beyond("# patches are").replace("its surface", "their surface"))
+            let px = exact(tolerance_px);
+            let one = format!("# patch is farther than {px} px from its surface");
+            some(patches, [&one, &format!("# patches are farther than {px} px from their surface")], worst_error)
         }
-        GateKind::Triangles => some(known(facts.emitted)?.1, "# triangle is emitted", "# triangles are emitted"),
+        GateKind::Triangles => {
+            some(known(facts.emitted)?.1, ["# triangle is emitted", "# triangles are emitted"], |_| None)
+        }
         GateKind::Bytes => {
             let (vertices, triangles) = known(facts.emitted)?;
-            let bytes = output_bytes(vertices, triangles);
-            some(bytes, "vertices and indices take # byte", "vertices and indices take # bytes")
+            let words = ["vertices and indices take # byte", "vertices and indices take # bytes"];
+            some(output_bytes(vertices, triangles), words, |_| None)
+        }
+    }
+}
+
+impl<'a> Counted<'a> {
+    /// A number with the words for one and for several, in which `#` stands for it, and what finds the worst place.
+    fn new(number: u64, [one, several]: [&str; 2], worst: impl FnOnce() -> Option<Place> + 'a) -> Self {
+        let words = if number == 1 { one } else { several };
+        let text = words.replace('#', &grouped(number));
+        Self { found: Found::Count(number), text, worst: Box::new(worst) }
+    }
+}
+
+/// Counts the mesh's defects that `find` finds.
+fn defects<'a>(facts: &Facts<'a>, find: fn(&Mesh, &Topology) -> Defects, words: [&str; 2]) -> Count<'a> {
+    let (mesh, topology) = known(facts.mesh)?;
+    let found = find(mesh, topology);
+    Ok(Counted::new(found.count() as u64, words, move || worst_defect(found, mesh, topology)))
+}
+
+const LEAKING: [&str; 2] = ["# px shows the inside of the mesh", "# px show the inside of the mesh"];
+
+/// The px that leak.
+fn leaking(facts: &Facts) -> Result<u64, &'static str> {
+    match known(facts.leaks)? {
+        Leaks::Counted(leaks) => Ok(leaks.iter().map(|leak| u64::from(leak.pixels)).sum()),
+        Leaks::Open => {
+            Err("leaks can be counted only in a closed mesh, and this one is open: leave this gate out for it")
+        }
+        Leaks::BothWays => {
+            Err("leaks can be counted only where triangles that meet are wound the same way, and some of \
+                                this mesh aren't: mend it, or leave this gate out for it")
+        }
+        Leaks::NearPlane => Err("leaks can't be counted where the near plane cuts the mesh: move the camera away"),
+        Leaks::InNoView => {
+            Err("leaks could be counted in none of the views: the near plane cuts the mesh in each, or \
+                                positions aren't finite")
         }
     }
 }
@@ -235,28 +303,6 @@ fn clause(warning: &str) -> String {
 /// The memory of emitted vertices and indices, in bytes.
 fn output_bytes(vertices: u64, triangles: u64) -> u64 {
     vertices * size_of::<Vertex>() as u64 + triangles * size_of::<[u32; 3]>() as u64
-}
-
-fn worst(kind: GateKind, facts: &Facts) -> Option<Place> {
-    match kind {
-        GateKind::Cracks => worst_crack(facts),
-        GateKind::Factors => worst_factors(facts),
-        GateKind::Leaks => worst_leak(facts),
-        GateKind::Folds => worst_fold(facts),
-        GateKind::TJunctions => worst_junction(facts),
-        GateKind::AboveTolerance => worst_error(facts),
-        GateKind::NonManifold
-        | GateKind::Boundary
-        | GateKind::Winding
-        | GateKind::NormalsAgainstFaces
-        | GateKind::Degenerate
-        | GateKind::Duplicates
-        | GateKind::NearSeam
-        | GateKind::HardEdges => worst_defect(kind, facts),
-        GateKind::SelfIntersections => worst_crossing(facts),
-        GateKind::Deviation => worst_deviation(facts),
-        GateKind::Warnings | GateKind::Triangles | GateKind::Bytes => None,
-    }
 }
 
 /// A place on an edge of the mesh.
@@ -376,10 +422,17 @@ fn worst_junction(facts: &Facts) -> Option<Place> {
     Some(place.with(text))
 }
 
-/// The longest edge or the largest triangle that has a defect.
-fn worst_defect(kind: GateKind, facts: &Facts) -> Option<Place> {
-    let (mesh, topology) = facts.mesh?;
-    match Defects::find(kind, mesh, topology)?.0 {
+/// The longest edge or the largest triangle that has a defect, or the one that rises most.
+fn worst_defect(defects: Defects, mesh: &Mesh, topology: &Topology) -> Option<Place> {
+    let corners =
+        |triangle: u32| mesh.triangles[triangle as usize].map(|corner| mesh.corners[corner as usize].position);
+    let on_triangle = |triangle: u32, words: &str| {
+        let corners = corners(triangle);
+        let at = corners.iter().sum::<Vec3>() / 3.0;
+        let text = format!("{words} triangle {triangle} at {}", position(at));
+        Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) }
+    };
+    Some(match defects {
         Defects::Edges(edges) => {
             let length = |edge: &u32| {
                 let [a, b] = topology.edge_points(&topology.edges[*edge as usize]);
@@ -388,22 +441,20 @@ fn worst_defect(kind: GateKind, facts: &Facts) -> Option<Place> {
             let longest = edges.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)))?;
             let place = EdgePlace::new(topology, longest, None);
             let text = format!("the longest is {}", place.words());
-            Some(place.with(text))
+            place.with(text)
         }
         Defects::Triangles(triangles) => {
-            let corners =
-                |triangle: u32| mesh.triangles[triangle as usize].map(|corner| mesh.corners[corner as usize].position);
             let longest = |triangle: &u32| {
                 let [a, b, c] = corners(*triangle);
                 a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
             };
-            let triangle = triangles.into_iter().max_by(|a, b| longest(a).total_cmp(&longest(b)))?;
-            let corners = corners(triangle);
-            let at = corners.iter().sum::<Vec3>() / 3.0;
-            let text = format!("the longest is triangle {triangle} at {}", position(at));
-            Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
+            on_triangle(triangles.into_iter().max_by(|a, b| longest(a).total_cmp(&longest(b)))?, "the longest is")
         }
-    }
+        Defects::Inflated(triangles) => {
+            let (triangle, rise) = triangles.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            on_triangle(triangle, &format!("most, by {} object units, rises", short(rise)))
+        }
+    })
 }
 
 fn worst_crossing(facts: &Facts) -> Option<Place> {
@@ -414,6 +465,14 @@ fn worst_crossing(facts: &Facts) -> Option<Place> {
     let [a, b] = triangles;
     let text = format!("most triangles cross between those of triangles {a} and {b} at {}", position(at));
     Some(Place { text, triangles: triangles.to_vec(), spot: Spot::patch(corners, at) })
+}
+
+fn worst_pop(facts: &Facts) -> Option<Place> {
+    let Pop { patch, at, .. } = facts.pop?.ok()??;
+    let corners = facts.topology.patch_positions(patch);
+    let triangle = facts.topology.patches[patch as usize].triangle;
+    let text = format!("the farthest jump is of triangle {triangle} at {}", position(at));
+    Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
 }
 
 fn worst_deviation(facts: &Facts) -> Option<Place> {

@@ -13,6 +13,8 @@ use load::LengthUnit;
 pub enum Limit {
     Count(u64),
     Length(Length),
+    /// A distance on screen.
+    Px(f64),
 }
 
 /// A length as it was given: a number of 0 or more, and its unit.
@@ -78,11 +80,18 @@ impl fmt::Display for Limit {
         match self {
             Self::Count(count) => write!(f, "{count}"),
             Self::Length(length) => write!(f, "{length}"),
+            Self::Px(px) => write!(f, "{px}px"),
         }
     }
 }
 
 impl Limit {
+    /// Reads a number of 0 or more with `px` after it.
+    pub(super) fn from_px(text: &str) -> Option<Self> {
+        let px: f64 = text.strip_suffix("px")?.trim().parse().ok()?;
+        (px.is_finite() && px.is_sign_positive()).then_some(Self::Px(px))
+    }
+
     /// What the limit says, as the end of a clause.
     pub fn allowed(self) -> String {
         match self {
@@ -92,24 +101,25 @@ impl Limit {
                 format!("where {length} object units are allowed")
             }
             Self::Length(length) => format!("where {length} is allowed"),
+            Self::Px(_) => format!("where {self} is allowed"),
         }
     }
 
-    /// The largest count that passes; none if the limit is a length.
+    /// The largest count that passes; none if the limit is another.
     pub fn count(self) -> Option<u64> {
         match self {
             Self::Count(count) => Some(count),
-            Self::Length(_) => None,
+            Self::Length(_) | Self::Px(_) => None,
         }
     }
 }
 
-/// A number, or a length as text.
+/// A number, or a length or distance as text.
 impl Serialize for Limit {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Count(count) => serializer.serialize_u64(*count),
-            Self::Length(length) => serializer.collect_str(length),
+            Self::Length(_) | Self::Px(_) => serializer.collect_str(self),
         }
     }
 }
@@ -126,6 +136,10 @@ mod tests {
         assert!(near(units("1in"), 0.0254) && near(units("0"), 0.0) && near(units("1e-3"), 1e-3));
         for text in ["0.2mm", "0.1%", "3", "0.0254in"] {
             assert_eq!(text.parse::<Length>().expect("a length").to_string(), text);
+        }
+        assert_eq!(Limit::from_px("0.1px"), Some(Limit::Px(0.1)));
+        for bad in ["0.1", "px", "-1px", "infpx", "1 pxx", "1mm"] {
+            assert_eq!(Limit::from_px(bad), None, "{bad}");
         }
         for bad in ["", "mm", "-1", "-0", "inf", "NaN", "1px", "1 %%", "0.2mmm", "1e-3 e"] {
             assert!(bad.parse::<Length>().is_err(), "{bad}");

@@ -10,7 +10,7 @@ mod standpoint;
 use std::fmt;
 use std::str::FromStr;
 
-pub use judgement::{Deviation, Facts, Found, Judgement, judge};
+pub use judgement::{Deviation, Facts, Found, Judgement, found_in_mesh, judge};
 pub use limit::{Length, Limit, Unit};
 pub use place::{EdgeSpot, PatchSpot, Place, Spot};
 pub use standpoint::Standpoints;
@@ -51,10 +51,14 @@ choices! {
             "No open edge of the mesh nearly meets another one: one that should be welded.";
         HardEdges => "hard-edges", "Edges whose triangles have different normals",
             "No edge of the mesh has two normals at an end, along which an engine that displaces would tear it open.";
+        Inflated => "inflated", "Triangles that smooth normals blow up at a hard edge",
+            "No triangle bulges because an edge of more than 60 degrees has smooth normals.";
         SelfIntersections => "self-intersections", "Pairs of patches that the curved surface makes cross",
             "No two patches cross each other whose triangles in the mesh don't.";
         Deviation => "deviation", "Largest distance from --reference-surface, or back, for certain",
             "No point is farther from the reference surface, or from what was emitted, than the limit.";
+        Pops => "pops", "Farthest jump on screen as the camera flies to where it is",
+            "No point of the surface jumps farther on screen than the limit while the camera comes nearer.";
         Triangles => "triangles", "Emitted triangles",
             "There are no more triangles than allowed.";
         Bytes => "bytes", "Bytes of emitted vertices and indices",
@@ -75,8 +79,10 @@ impl GateKind {
             | Self::Degenerate
             | Self::Duplicates
             | Self::NearSeam
-            | Self::HardEdges => GateSubject::Mesh,
+            | Self::HardEdges
+            | Self::Inflated => GateSubject::Mesh,
             Self::Deviation => GateSubject::Distance,
+            Self::Pops => GateSubject::Flight,
             Self::Cracks | Self::Factors | Self::Leaks | Self::Folds => GateSubject::Survey,
             Self::AboveTolerance | Self::SelfIntersections => GateSubject::Tessellation,
             Self::Triangles | Self::Bytes => GateSubject::Budget,
@@ -84,7 +90,7 @@ impl GateKind {
     }
 
     /// The overlays that show what it found. At most one of them colours the surface.
-    pub(crate) const fn overlays(self) -> &'static [Overlay] {
+    pub const fn overlays(self) -> &'static [Overlay] {
         match self {
             Self::Cracks => &[Overlay::Wireframe, Overlay::Cracks],
             Self::Factors => &[Overlay::Wireframe, Overlay::Factors],
@@ -95,9 +101,9 @@ impl GateKind {
             Self::NonManifold | Self::Boundary | Self::Winding | Self::NearSeam | Self::HardEdges => {
                 &[Overlay::Wireframe, Overlay::Adjacency]
             }
-            Self::NormalsAgainstFaces => &[Overlay::Patches, Overlay::Normals],
+            Self::NormalsAgainstFaces | Self::Inflated => &[Overlay::Patches, Overlay::Normals],
             Self::Degenerate | Self::Duplicates => &[Overlay::Patches],
-            Self::SelfIntersections => &[Overlay::Wireframe, Overlay::Patches],
+            Self::SelfIntersections | Self::Pops => &[Overlay::Wireframe, Overlay::Patches],
             Self::Deviation => &[Overlay::Wireframe, Overlay::Deviation],
             Self::Warnings | Self::Triangles | Self::Bytes => &[],
         }
@@ -108,13 +114,17 @@ impl GateKind {
         match self.subject() {
             GateSubject::Budget => format!("{}:N", self.name()),
             GateSubject::Distance => format!("{}:LENGTH", self.name()),
+            GateSubject::Flight => format!("{}:LENGTHpx", self.name()),
             GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation => self.name().to_owned(),
         }
     }
 
-    /// Whether it judges one tessellation, so that it says nothing of many.
+    /// Whether it judges one tessellation from one camera, so that it says nothing of many.
     pub const fn is_of_one_tessellation(self) -> bool {
-        matches!(self.subject(), GateSubject::Tessellation | GateSubject::Budget | GateSubject::Distance)
+        match self.subject() {
+            GateSubject::Tessellation | GateSubject::Budget | GateSubject::Distance | GateSubject::Flight => true,
+            GateSubject::Mesh | GateSubject::Survey => false,
+        }
     }
 
     /// Whether it judges the mesh as it was loaded.
@@ -122,11 +132,16 @@ impl GateKind {
         matches!(self.subject(), GateSubject::Mesh)
     }
 
+    /// Whether what it counts belongs to many sound meshes.
+    pub const fn is_often_meant(self) -> bool {
+        matches!(self, Self::Boundary | Self::HardEdges)
+    }
+
     /// The limit where none is given; none if one must be.
     fn usual_limit(self) -> Option<Limit> {
         match self.subject() {
             GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation => Some(Limit::Count(0)),
-            GateSubject::Budget | GateSubject::Distance => None,
+            GateSubject::Budget | GateSubject::Distance | GateSubject::Flight => None,
         }
     }
 
@@ -149,6 +164,8 @@ pub enum GateSubject {
     Budget,
     /// The distance from a reference surface.
     Distance,
+    /// The tessellations of a camera that moves.
+    Flight,
 }
 
 /// A limit that a result is held to.
@@ -159,7 +176,7 @@ pub struct Gate {
     pub limit: Limit,
 }
 
-/// Reads `NAME`, which allows none, or `NAME:N`, which allows up to N. Budgets need their N, and distances a length.
+/// Reads `NAME`, which allows none, or `NAME:N`, which allows up to N. Budgets need their N, distances a length, and flights px.
 impl FromStr for Gate {
     type Err = String;
 
@@ -168,16 +185,21 @@ impl FromStr for Gate {
         let (name, limit) = text.split_once(':').map_or((text, None), |(name, limit)| (name, Some(limit)));
         let names = || GateKind::ALL.map(GateKind::name).join(", ");
         let kind = GateKind::named(name).ok_or_else(|| format!("expected one of {}", names()))?;
-        let is_length = kind.subject() == GateSubject::Distance;
-        let read = |text: &str| match is_length {
-            true => text.parse().ok().map(Limit::Length),
-            false => text.parse().ok().map(Limit::Count),
+        let read = |text: &str| match kind.subject() {
+            GateSubject::Distance => text.parse().ok().map(Limit::Length),
+            GateSubject::Flight => Limit::from_px(text),
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation | GateSubject::Budget => {
+                text.parse().ok().map(Limit::Count)
+            }
         };
-        let expected = || match is_length {
-            true => format!(
+        let expected = || match kind.subject() {
+            GateSubject::Distance => format!(
                 "expected a length after {name}, such as {name}:0.2mm, {name}:0.1% (of the diagonal) or {name}:0.003"
             ),
-            false => format!("expected a whole number after {name}, such as {name}:100000"),
+            GateSubject::Flight => format!("expected a number of px after {name}, such as {name}:0.1px"),
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation | GateSubject::Budget => {
+                format!("expected a whole number after {name}, such as {name}:100000")
+            }
         };
         let limit = limit.map_or(kind.usual_limit(), read).ok_or_else(expected)?;
         Ok(Self { kind, limit })
@@ -205,7 +227,13 @@ mod tests {
             assert!(Overlays::new(kind.overlays()).is_some(), "{kind:?}: two overlays colour the surface");
             let counts = [0, 7, u64::MAX].map(Limit::Count);
             let lengths = ["0", "0.2mm", "0.1%"].map(|text| Limit::Length(text.parse().expect("a length")));
-            for limit in if kind == GateKind::Deviation { lengths } else { counts } {
+            let px = ["0", "0.1", "20"].map(|text| Limit::Px(text.parse().expect("a number")));
+            let limits = match kind {
+                GateKind::Deviation => lengths,
+                GateKind::Pops => px,
+                _ => counts,
+            };
+            for limit in limits {
                 let gate = Gate { kind, limit };
                 assert_eq!(gate.to_string().parse(), Ok(gate));
             }
@@ -223,6 +251,8 @@ mod tests {
             "deviation",
             "deviation:-1",
             "deviation:1px",
+            "pops",
+            "pops:1",
         ] {
             assert!(bad.parse::<Gate>().is_err(), "{bad}");
         }

@@ -99,7 +99,7 @@ fn places() -> Vec<[u32; 2]> {
 
 /// The triangle that holds a place, and the place's weights in it.
 #[derive(Clone, Copy, Debug)]
-struct Spot {
+pub(super) struct Spot {
     /// The indices of the patch's points.
     corners: [u32; 3],
     weights: [f64; 3],
@@ -107,49 +107,58 @@ struct Spot {
 
 impl Spot {
     /// The position on a patch with these vertices, in object units.
-    fn position(&self, vertices: &[Vertex]) -> DVec3 {
+    pub(super) fn position(&self, vertices: &[Vertex]) -> DVec3 {
         let corner = |k: usize| Vec3::from(vertices[self.corners[k] as usize].position).as_dvec3() * self.weights[k];
         corner(0) + corner(1) + corner(2)
     }
 }
 
 /// Places, sorted into bins over the domain.
-struct Places {
+pub(super) struct Places {
     /// All places, bin after bin.
     places: Vec<[u32; 2]>,
     /// The places of bin b are `starts[b]..starts[b + 1]`.
     starts: Vec<u32>,
-}
-
-/// The number of bins along U and along V: a power of two.
-const BINS: u32 = 64;
-
-/// The bin of a coordinate.
-fn bin(x: u32) -> u32 {
-    (x / (FIXED_ONE / BINS)).min(BINS - 1)
+    /// The number of bins along U and along V: a power of two.
+    bins: u32,
 }
 
 impl Places {
-    fn new(mut places: Vec<[u32; 2]>) -> Self {
-        let bin_of = |place: &[u32; 2]| bin(place[1]) * BINS + bin(place[0]);
+    /// Sorts places into about as many bins as there are places.
+    pub(super) fn new(mut places: Vec<[u32; 2]>) -> Self {
+        let bins = 1 << (places.len().max(1).ilog2() / 2).min(FIXED_ONE.ilog2());
+        let mut sorted = Self { places: Vec::new(), starts: Vec::new(), bins };
+        let bin_of = |place: &[u32; 2]| sorted.bin(place[1]) * bins + sorted.bin(place[0]);
         places.sort_by_key(bin_of);
-        let start = |b: u32| places.partition_point(|place| bin_of(place) < b) as u32;
-        let starts = (0..=BINS * BINS).map(start).collect();
-        Self { places, starts }
+        let mut next = 0;
+        let mut start = |b: u32| {
+            while places.get(next).is_some_and(|place| bin_of(place) < b) {
+                next += 1;
+            }
+            next as u32
+        };
+        let starts = (0..=bins * bins).map(&mut start).collect();
+        (sorted.places, sorted.starts) = (places, starts);
+        sorted
+    }
+
+    /// The bin of a coordinate.
+    fn bin(&self, x: u32) -> u32 {
+        (x / (FIXED_ONE / self.bins)).min(self.bins - 1)
     }
 
     /// Finds the triangle of every place. The triangles cover the domain, so every place has one.
-    fn locate(&self, points: &[[u32; 2]], triangles: &[[u32; 3]]) -> Vec<Option<Spot>> {
+    pub(super) fn locate(&self, points: &[[u32; 2]], triangles: &[[u32; 3]]) -> Vec<Option<Spot>> {
         let mut spots = vec![None; self.places.len()];
         for &corners in triangles {
             let at = corners.map(|i| points[i as usize]);
             let [[left, right], [bottom, top]] = [0, 1].map(|k| {
                 let [a, b, c] = at.map(|point| point[k]);
-                [bin(a.min(b).min(c)), bin(a.max(b).max(c))]
+                [self.bin(a.min(b).min(c)), self.bin(a.max(b).max(c))]
             });
             for row in bottom..=top {
-                let first = self.starts[(row * BINS + left) as usize] as usize;
-                let end = self.starts[(row * BINS + right) as usize + 1] as usize;
+                let first = self.starts[(row * self.bins + left) as usize] as usize;
+                let end = self.starts[(row * self.bins + right) as usize + 1] as usize;
                 for (spot, &place) in spots[first..end].iter_mut().zip(&self.places[first..end]) {
                     if spot.is_none() {
                         *spot = weights(at, place).map(|weights| Spot { corners, weights });

@@ -7,14 +7,21 @@ use super::reference_surface::ReferenceSurface;
 use super::{Shot, ShotError};
 use crate::engine::Measurements;
 use crate::gates::{Deviation, Facts, Gate, GateKind, Judgement, Limit, Spot, Standpoints, judge};
-use crate::measure::{Accuracy, AccuracyOptions, CrossedPatches, CrossingMeasurement, Narrow, Sight};
+use crate::measure::{
+    Accuracy, AccuracyOptions, CrossedPatches, CrossingMeasurement, MOST_KEPT, Narrow, Pop, Sight, farthest_pop,
+};
 use crate::render::{Camera, Leaks, worst_lines};
 use crate::settings::{Overlays, Settings, SplitSide};
 use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
-use geometry::tessellate::Inputs;
+use geometry::tessellate::{Inputs, Tessellated};
 use geometry::view::ScreenView;
-use gpu::GpuError;
+use gpu::{GpuError, Timing};
+
+/// A flight begins so many times as far from the camera's target as the camera is, and takes so many frames of one ratio of
+/// distances: a second.
+const FLIGHT_FROM: f32 = 4.0;
+const FLIGHT_FRAMES: u32 = 60;
 
 /// How much there is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -54,6 +61,7 @@ impl Shot {
         let deviation =
             has(GateKind::Deviation).then(|| self.deviation_both_ways(gates, &inputs, progress)).transpose()?;
         let crossed = has(GateKind::SelfIntersections).then(|| self.crossed_patches(progress)).transpose()?;
+        let pop = has(GateKind::Pops).then(|| self.farthest_pop(progress)).transpose()?;
         let Self { scene, .. } = self;
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
@@ -72,6 +80,7 @@ impl Shot {
                 above: above.as_ref(),
                 crossed: crossed.as_ref().map(Option::as_deref),
                 deviation,
+                pop,
             },
         );
         Ok(self.judged.clone())
@@ -120,13 +129,42 @@ impl Shot {
             deviation = Ok(Deviation { distance, diagonal, worst });
             let lies_between = |gate: &Gate| match gate.limit {
                 Limit::Length(length) => (distance.at_least..distance.at_most).contains(&length.in_units(diagonal)),
-                Limit::Count(_) => false,
+                Limit::Count(_) | Limit::Px(_) => false,
             };
             if !gates.iter().any(lies_between) {
                 break;
             }
         }
         Ok(deviation)
+    }
+
+    /// The farthest jump while the camera flies to where it is, each frame seen from where it is then; or why there is none.
+    ///
+    /// # Errors
+    /// The device was lost, or `progress` was cancelled.
+    fn farthest_pop(&mut self, progress: &Progress) -> Result<Result<Option<Pop>, &'static str>, ShotError> {
+        let Self { engine, scene, subject, view, target, .. } = self;
+        if view.camera.rows.is_some() || view.lod_camera.is_some() {
+            return Ok(Err("LOD can't follow this camera as it flies: judge from --camera, without one of LOD's own"));
+        }
+        let (mut before, mut farthest): (Option<Tessellated>, Option<Pop>) = (None, None);
+        // The last frame is the picture's, which the scene is counted for again then.
+        for frame in 0..=FLIGHT_FRAMES {
+            progress.check()?;
+            let left = 1.0 - frame as f32 / FLIGHT_FRAMES as f32;
+            let camera = Camera { distance: view.camera.distance * FLIGHT_FROM.powf(left), ..view.camera };
+            let lod_view = camera.lod_view(target.viewport(), &scene.bounds);
+            engine.count(scene, &subject.settings.inputs(lod_view), &mut Timing::Off)?;
+            if scene.tessellator.totals().1 > MOST_KEPT as u64 {
+                engine.count(scene, &subject.settings.inputs(self.lod_view), &mut Timing::Off)?;
+                return Ok(Err("too many triangles were emitted to follow the surface"));
+            }
+            let after = engine.read_tessellated(scene)?;
+            let jumped = before.and_then(|before| farthest_pop(&before, &after, &lod_view));
+            farthest = farthest.into_iter().chain(jumped).reduce(Pop::farther);
+            before = Some(after);
+        }
+        Ok(Ok(farthest))
     }
 
     /// The patches that cross each other; none if there are too many triangles to find them.

@@ -70,7 +70,7 @@ impl Verdict {
     }
 
     /// How much they differ and how much they may, as clauses of a sentence.
-    fn in_words(&self) -> String {
+    pub fn in_words(&self) -> String {
         let Comparison { px, largest, worst_square } = self.comparison;
         let (px, why) = (format!("{px} px differ, by up to {largest} steps of 255"), self.why);
         match self.threshold {
@@ -130,6 +130,11 @@ impl Reference {
         Ok(Verdict { comparison: compare(picture, &self.picture)?, threshold, why })
     }
 
+    /// Where a picture that was compared differs: px that differ by more than is allowed are grey to white, and all others black.
+    pub fn difference(&self, picture: &RgbaImage, verdict: &Verdict) -> GrayImage {
+        difference_picture(picture, &self.picture, verdict.threshold.unwrap_or(0.0))
+    }
+
     /// Compares the picture at `output`, which this adapter has drawn, with it. If they differ, it writes the difference beside
     /// the picture.
     ///
@@ -142,8 +147,7 @@ impl Reference {
         let said = if verdict.is_same() {
             Ok(format!("{} is the same as {own}: {}", shown_path(output), verdict.in_words()))
         } else {
-            let map = difference_picture(picture, &self.picture, verdict.threshold.unwrap_or(0.0));
-            let see = write_difference(output, map)?;
+            let see = write_difference(output, self.difference(picture, &verdict))?;
             Err(ShotError::Different { picture: shown_path(output), reference: own, how: verdict.in_words(), see })
         };
         Ok(Judged { stats: verdict.stats(), said })

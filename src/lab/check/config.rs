@@ -15,7 +15,7 @@ use load::files::file_reason;
 const MOST_BYTES: u64 = 1 << 20;
 
 /// The keys that a configuration may have outside of its sections.
-const SECTION_KEYS: [&str; 4] = ["fail-on", "options", "cameras", "files"];
+const SECTION_KEYS: [&str; 5] = ["fail-on", "options", "cameras", "files", "golden"];
 
 /// What is wrong with a configuration.
 #[derive(Debug, Error)]
@@ -34,6 +34,8 @@ pub struct Config {
     /// Its path, for messages.
     path: String,
     base: Section,
+    /// The folder of golden pictures.
+    pub golden: Option<String>,
     files: Vec<Files>,
 }
 
@@ -104,6 +106,7 @@ impl Config {
         for (key, value) in table.get_ref().iter() {
             match key.get_ref().as_ref() {
                 "files" => config.files = reader.files(value)?,
+                "golden" => config.golden = Some(reader.text(value)?),
                 name if reader.take(name, value, &mut config.base)? => {}
                 name => return Err(reader.unknown(key.span(), name, &SECTION_KEYS)),
             }

@@ -15,5 +15,5 @@ pub use cache::{Cache, Inputs};
 pub use config::{Config, ConfigError, OptionValue, Section};
 pub use junit::junit;
 pub use page::{PICTURES, page, pictures};
-pub use report::{Asset, GateResult, Report, View};
+pub use report::{Asset, GOLDEN, GateResult, Report, View};
 pub use sarif::sarif;

@@ -126,7 +126,7 @@ fn of_view(asset: &Asset, view: &View) -> String {
     text += "</ul>\n</div>\n";
     for gate in &view.gates {
         let caption = gate_title(&view.name, &gate.name);
-        let of = |evidence: &String| figure(evidence, &format!("The worst place of {name} for {caption}"), &caption);
+        let of = |evidence: &String| figure(evidence, &format!("What {caption} found in {name}"), &caption);
         text.extend(gate.evidence.as_ref().map(of));
     }
     text + "</div>\n"

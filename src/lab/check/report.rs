@@ -69,6 +69,9 @@ pub struct GateResult {
     pub seconds: f64,
 }
 
+/// What is judged beside the gates, and what passing it means.
+pub const GOLDEN: [&str; 2] = ["golden", "The view is the same as its golden picture."];
+
 /// The worst place of a gate that failed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GatePlace {

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::report::{Asset, Report, gate_title};
+use super::report::{Asset, GOLDEN, Report, gate_title};
 use inspect::gates::GateKind;
 use inspect::settings::Choice;
 
@@ -16,7 +16,8 @@ const BROKEN: &str = "opens";
 pub fn sarif(report: &Report) -> serde_json::Result<String> {
     let rule = |name: &str, text: &str| json!({ "id": name, "shortDescription": { "text": text } });
     let gates = GateKind::ALL.map(|kind| rule(kind.name(), kind.text()));
-    let rules: Vec<Value> = gates.into_iter().chain([rule(BROKEN, "The asset can be opened and measured.")]).collect();
+    let others = [GOLDEN, [BROKEN, "The asset can be opened and measured."]].map(|[name, text]| rule(name, text));
+    let rules: Vec<Value> = gates.into_iter().chain(others).collect();
     let results: Vec<Value> = report.assets.iter().flat_map(results).collect();
     let sarif = json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
