@@ -108,14 +108,15 @@ fn list_patches_main(invocation: Invocation) {
     if is_first {
         edges = first_least(&seen, edges_of(index, params.factor_count));
     }
+    let heights = heights_need(&seen).w;
     var inside = whole_segments(params.partitioning, 1.0);
     if params.surface != SURFACE_FLAT || params.displacement != 0u {
-        let sought = Sought(edges, 1.0, known.inner, GOAL_GIVEN);
+        let sought = Sought(edges, heights, known.inner, GOAL_GIVEN);
         inside = without_search(&seen, BOUND_SHARE * params.tolerance, params.partitioning, sought);
         if inside == 0.0 {
             // In place of the inside factor the search reads the size that was chosen.
             inside = select(chosen_size(known.edges, bitcast<f32>(inside_of(index))), 0.0, is_first);
-            search_later(select(GIVEN, REQUESTING, is_first), index, edges, 1.0);
+            search_later(select(GIVEN, REQUESTING, is_first), index, edges, heights);
         }
     }
     if is_first && inside > 0.0 {
@@ -185,8 +186,8 @@ fn search_patches_main(invocation: Invocation) {
         let index = select(0u, next, is_searched);
         var seen = load_seen(index);
         let known = known_from(atomicLoad(&edge_factors[known_at(index)]));
-        let inside = select(BEYOND_LAST, 1.0, is_searched);
-        let sought = Sought(known.edges, inside, known.inner, wanted);
+        let heights = select(BEYOND_LAST, heights_need(&seen).w, is_searched);
+        let sought = Sought(known.edges, heights, known.inner, wanted);
         var found: Chosen;
         if SEARCHES_ROWS == 1u {
             found = fewest_rows(&seen, params.tolerance, sought);
@@ -203,7 +204,7 @@ fn search_patches_main(invocation: Invocation) {
             if list == REQUESTING {
                 request(index, found.edges);
             } else if before + 1u < 2u * ROUNDS && needs_more(chosen, found) {
-                search_later(REQUESTING, index, known.edges, 1.0);
+                search_later(REQUESTING, index, known.edges, heights);
             }
         }
         next = next_patch(list, invocation.workgroups.x);

@@ -72,3 +72,56 @@ fn heights_error(
     // NaN counts as infinite.
     return select(3.4e38, error, error < 3.4e38);
 }
+
+// Returns the longest side, in px of level 0, of triangles over which heights are at most `lost` from linear ones.
+fn longest_within(relief: PatchRelief, lost: f32) -> f32 {
+    if relief.range <= lost {
+        return 3.4e38;
+    }
+    var found = 0.0;
+    var longest = relief.longest;
+    for (var step = 0u; step < RELIEF_STEPS; step++) {
+        let loss = relief.losses[step];
+        var side = 0.0;
+        if loss.x <= lost {
+            side = sqrt((lost - loss.x) / max(loss.y, 1e-30));
+        }
+        found = max(found, min(side, longest));
+        longest *= 0.5;
+    }
+    return found;
+}
+
+// The part of the segments that heights need by their bounds that is requested before triangles are looked at.
+const NEEDED_SHARE: f32 = 0.98;
+
+// Returns into how many segments sides 0, 1 and 2 must be cut at least so that heights are within a tolerance, and the inside; of rows as
+// many as the shortest side. Not rounded, and 1 or more. A search starts with these.
+fn least_for_heights(seen: ptr<function, SeenPatch>, tolerance: f32, has_rows: bool) -> vec4<f32> {
+    let relief = (*seen).relief.relief;
+    // How far heights may be from linear ones at each corner.
+    var lost = vec3<f32>(3.4e38);
+    for (var i = 0u; i < 3u; i++) {
+        let corner = (*seen).points[i];
+        let direction = (*seen).relief.directions[i];
+        let along = length(direction.xy - corner.xy / corner.z * direction.z);
+        if corner.z > (*seen).near && corner.z > 0.0 && along > 0.0 {
+            lost[i] = tolerance * (corner.z + (*seen).deep) / along;
+        }
+    }
+    let form = relief.form;
+    let squares = vec3<f32>(form.x - 2.0 * form.y + form.z, form.z, form.x);
+    var least = vec4<f32>(1.0);
+    if relief.longest < 0.0 {
+        return least;
+    }
+    for (var k = 0u; k < 3u; k++) {
+        let within = longest_within(relief, min(lost[k], lost[(k + 1u) % 3u]));
+        least[k] = max(NEEDED_SHARE * sqrt(max(squares[k], 0.0)) / max(within, 1e-30), 1.0);
+    }
+    let within = longest_within(relief, max(max(lost.x, lost.y), lost.z));
+    let shortest = min(min(squares.x, squares.y), squares.z);
+    let longest = max(max(squares.x, squares.y), squares.z);
+    least.w = max(NEEDED_SHARE * sqrt(max(select(longest, shortest, has_rows), 0.0)) / max(within, 1e-30), 1.0);
+    return least;
+}

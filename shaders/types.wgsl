@@ -100,7 +100,7 @@ struct Share {
     dominant: u32,
 }
 
-// What is known of the heights over a patch: see src/geometry/tessellate/relief.rs.
+// What is known of the heights over a patch: see src/geometry/mesh/heights/relief.rs.
 struct PatchRelief {
     form: vec3<f32>,
     // Negative where no image displaces the patch.

@@ -139,7 +139,7 @@ pub struct Share {
     pub _pad: [u32; 3],
 }
 
-/// What is known of the heights over a patch: a [`geometry::tessellate::PatchRelief`].
+/// What is known of the heights over a patch: a [`geometry::mesh::PatchRelief`].
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct PatchRelief {

@@ -3,8 +3,7 @@
 use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
 use super::layout::{HeightMap, PatchRelief, Share};
 use super::{Gpu, GpuError};
-use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
-use geometry::tessellate::patch_reliefs;
+use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology, patch_reliefs};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
 pub const HEIGHTS_ACROSS: u32 = 4096;
@@ -116,7 +115,7 @@ pub fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
 pub fn reliefs(mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
     let own = patch_reliefs(mesh.heights.as_deref(), mesh, topology).into_iter();
     own.map(|own| {
-        let geometry::tessellate::PatchRelief { form, longest, range, slope, losses } = own;
+        let geometry::mesh::PatchRelief { form, longest, range, slope, losses } = own;
         PatchRelief { form, longest, range, slope, losses }
     })
     .collect()

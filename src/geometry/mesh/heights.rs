@@ -4,7 +4,7 @@
 mod pyramid;
 mod relief;
 
-pub use relief::{RELIEF_STEPS, Relief};
+pub use relief::{PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 
 use glam::Vec2;
 

@@ -60,7 +60,7 @@ pub use build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};
 pub use curves::{Curve, CurveItems, Curves, Sharing};
 pub use dominance::Dominance;
-pub use heights::{MAX_MAPS, RELIEF_STEPS, Relief};
+pub use heights::{MAX_MAPS, PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 pub use normal_faults::NormalFaults;
 pub use orientation::UpAxis;
 pub use shapes::Shape;

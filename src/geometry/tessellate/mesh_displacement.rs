@@ -11,11 +11,10 @@ use super::displace::{
 use super::factors::{inside_value, last_factor};
 use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
-use super::relief::{PatchRelief, patch_reliefs};
 use super::surface::{UNIT, linear_uv, patch_tangents};
 use super::vertex::Vertex;
 use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
-use crate::mesh::{Curves, Dominance, HeightMap, Heights, Mesh, Sharing, Topology};
+use crate::mesh::{Curves, Dominance, HeightMap, Heights, Mesh, PatchRelief, Sharing, Topology, patch_reliefs};
 
 /// Returns the heights that displace a mesh with these inputs, if any.
 pub fn displacing_heights<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {

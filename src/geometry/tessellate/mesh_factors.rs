@@ -14,6 +14,7 @@ use super::least_factors::{
 use super::least_rows::{fewest_rows, rows_request_again};
 use super::mesh_displacement::MeshDisplacement;
 use super::piece_error::{SeenPatch, may_slide, seen_patch, seen_relief};
+use super::relief::least_for_heights;
 use super::{
     HullFactors, Inputs, Lod, Tessellation, distance_factor, edge_length_factor, last_factor, paper_edge_factor,
     process, triangle_count,
@@ -181,10 +182,15 @@ impl MeshLod<'_> {
     /// each. Where points may slide along an edge, what the edge needs at the same places doesn't count.
     pub(super) fn first_least(&self, patch: u32, seen: &SeenPatch, least: impl Fn(u32) -> f32) -> [f32; 3] {
         let Tessellation { partitioning, tolerance, .. } = self.inputs.tessellation;
-        match may_slide(seen, tolerance) {
-            true => [whole_segments(partitioning, 1.0); 3],
-            false => [1, 2, 0].map(|k| least(self.nets.patch_factor(patch, k))),
+        if may_slide(seen, tolerance) {
+            return [whole_segments(partitioning, 1.0); 3];
         }
+        let heights = least_for_heights(seen, tolerance, partitioning.has_rows());
+        let of_side = |k: usize| {
+            let own = heights[k].min(last_factor(partitioning));
+            least(self.nets.patch_factor(patch, k)).max(whole_segments(partitioning, own))
+        };
+        [1, 2, 0].map(of_side)
     }
 
     /// Returns the factors with which a patch keeps LOD by error's tolerance with the fewest triangles. `least` are the least that
@@ -194,7 +200,8 @@ impl MeshLod<'_> {
         if self.is_exact() {
             return ChosenFactors { edges: least, inside: whole_segments(partitioning, 1.0), inner };
         }
-        let sought = FactorSearch { least, inside: 1.0, inner, wanted };
+        let [.., inside] = least_for_heights(seen, tolerance, partitioning.has_rows());
+        let sought = FactorSearch { least, inside, inner, wanted };
         match partitioning.has_rows() {
             true => fewest_rows(seen, tolerance, &sought),
             false => fewest_triangles(seen, tolerance, partitioning, &sought),

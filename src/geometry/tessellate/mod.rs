@@ -88,7 +88,6 @@ pub(crate) use normal::{quadratic_edge_normal, quadratic_normal, surface_normal}
 pub use octahedral_normal::pack_normal;
 pub use piece_error::{SeenPatch, piece_error};
 pub use posed_mesh::{Deformed, PosedMesh, bounds_through, deform};
-pub use relief::{PatchRelief, patch_reliefs};
 pub use solid::{Solid, is_beyond_near};
 pub use surface::{ControlNet, edge_position, edge_uv, linear_uv, outline_place, patch_position, patch_tangents};
 pub use triangle_budget::tolerance_within_budget;
@@ -114,6 +113,6 @@ pub mod shared_constants {
     pub use super::least_rows::{LESSENINGS, REQUESTED_SEGMENT};
     pub use super::normal::CANCELLED;
     pub use super::piece_error::{FINEST_GRID, PARTIAL_STEPS};
-    pub use super::relief::DIRECTION_ROUNDING;
+    pub use super::relief::{DIRECTION_ROUNDING, NEEDED_SHARE};
     pub use super::surface::UNIT;
 }

@@ -18,8 +18,9 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::lod::{LodView, clip_row};
-use super::relief::{PatchRelief, SeenRelief, heights_error, turning_of};
+use super::relief::{SeenRelief, heights_error, turning_of};
 use super::surface::ControlNet;
+use crate::mesh::PatchRelief;
 
 /// The steps of the finest grid. The margin is then at most 1/64 of the bound without a grid.
 pub const FINEST_GRID: u32 = 8;
@@ -32,14 +33,14 @@ pub const PARTIAL_STEPS: u32 = 8;
 #[derive(Clone, Copy, Debug)]
 pub struct SeenPatch {
     /// The ten control points: corners, edges, centre.
-    points: [Vec3; 10],
+    pub(super) points: [Vec3; 10],
     /// A sixth of the second derivatives at each corner: twice along a, along a and b, twice along b. Direction a leads
     /// from corner 2 to corner 0, b from corner 2 to corner 1.
     second: [[Vec3; 3]; 3],
     /// Half the viewport's width and height, in px.
     half_viewport: Vec2,
     /// The depth of the near plane; 0 in an orthographic view.
-    near: f32,
+    pub(super) near: f32,
     /// How far displacement may move a point: in depth, and across the view in px times depth.
     pub(super) deep: f32,
     pub(super) across: Vec2,

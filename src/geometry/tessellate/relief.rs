@@ -5,47 +5,13 @@
 //!
 //! n(x) h(x) - sum w n(i) h(i) = n(x) (h(x) - sum w h(i)) + sum w (n(x) - n(i)) h(i).
 //!
-//! The first part is along directions over the patch, and [`Relief`] bounds it. The second is at most the directions' distance from
+//! The first part is along directions over the patch, and [`PatchRelief`] bounds it. The second is at most the directions' distance from
 //! linear ones times the reach of displacement, and their differences times those of the heights.
 
 use glam::{Vec2, Vec3};
 
 use super::piece_error::SeenPatch;
-use crate::mesh::{Heights, Mesh, RELIEF_STEPS, Relief, Topology};
-
-/// What passes know of the heights over a patch. Lengths are in px of the image's level 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PatchRelief {
-    /// The squared length of a step in the domain is x x `form[0]` + 2 x y `form[1]` + y y `form[2]`; x and y are the weights of
-    /// corners 0 and 1.
-    pub form: [f32; 3],
-    /// As in [`Relief`]; negative where no image displaces the patch.
-    pub longest: f32,
-    pub range: f32,
-    pub slope: f32,
-    pub losses: [[f32; 2]; RELIEF_STEPS],
-}
-
-impl PatchRelief {
-    /// Of a patch that no image displaces.
-    pub const NONE: Self =
-        Self { form: [0.0; 3], longest: -1.0, range: 0.0, slope: 0.0, losses: [[0.0; 2]; RELIEF_STEPS] };
-}
-
-/// Returns what is known of the heights over every patch; nothing without heights.
-pub fn patch_reliefs(heights: Option<&Heights>, mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
-    let Some(heights) = heights else { return Vec::new() };
-    let of_patch = |(index, patch): (u32, &crate::mesh::Patch)| {
-        let map = heights.map_of(topology.material_of(index));
-        let Some(map) = map.and_then(|map| heights.maps.get(map as usize)) else { return PatchRelief::NONE };
-        let Relief { longest, range, slope, losses } = heights.reliefs[patch.triangle as usize];
-        let size = Vec2::from(map.size.map(|side| side as f32));
-        let [a, b, c] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv * size);
-        let (x, y) = (a - c, b - c);
-        PatchRelief { form: [x.dot(x), x.dot(y), y.dot(y)], longest, range, slope, losses }
-    };
-    (0..).zip(&topology.patches).map(of_patch).collect()
-}
+use crate::mesh::{PatchRelief, RELIEF_STEPS};
 
 /// The heights over a patch, as it is seen.
 #[derive(Clone, Copy, Debug)]
@@ -116,6 +82,53 @@ pub(super) fn heights_error(patch: &SeenPatch, at: [Vec2; 3], middle: Vec2, spre
     let error = DIRECTION_ROUNDING * (along * lost / shortest + any * turns) / depth;
     // NaN counts as infinite.
     if error < 3.4e38 { error } else { 3.4e38 }
+}
+
+/// Returns the longest side, in px of level 0, of triangles over which heights are at most `lost` from linear ones.
+fn longest_within(relief: &PatchRelief, lost: f32) -> f32 {
+    if relief.range <= lost {
+        return 3.4e38;
+    }
+    let (mut found, mut longest) = (0.0f32, relief.longest);
+    for [constant, square] in relief.losses {
+        let side = if constant <= lost { ((lost - constant) / square.max(1e-30)).sqrt() } else { 0.0 };
+        found = found.max(side.min(longest));
+        longest *= 0.5;
+    }
+    found
+}
+
+/// The part of the segments that heights need by their bounds that is requested before triangles are looked at.
+pub const NEEDED_SHARE: f32 = 0.98;
+
+/// Returns into how many segments sides 0, 1 and 2 must be cut at least so that heights are within a tolerance, and the inside; of rows as
+/// many as the shortest side. Not rounded, and 1 or more. A search starts with these.
+pub(super) fn least_for_heights(patch: &SeenPatch, tolerance: f32, has_rows: bool) -> [f32; 4] {
+    let SeenRelief { relief, directions, .. } = &patch.relief;
+    // How far heights may be from linear ones at each corner.
+    let mut lost = [3.4e38f32; 3];
+    for i in 0..3 {
+        let corner = patch.points[i];
+        let along = (directions[i].truncate() - corner.truncate() / corner.z * directions[i].z).length();
+        if corner.z > patch.near && corner.z > 0.0 && along > 0.0 {
+            lost[i] = tolerance * (corner.z + patch.deep) / along;
+        }
+    }
+    let [aa, ab, bb] = relief.form;
+    let squares = [aa - 2.0 * ab + bb, bb, aa];
+    let mut least = [1.0f32; 4];
+    if relief.longest < 0.0 {
+        return least;
+    }
+    for k in 0..3 {
+        let within = longest_within(relief, lost[k].min(lost[(k + 1) % 3]));
+        least[k] = (NEEDED_SHARE * squares[k].max(0.0).sqrt() / within.max(1e-30)).max(1.0);
+    }
+    let within = longest_within(relief, lost[0].max(lost[1]).max(lost[2]));
+    let [p, q, r] = squares;
+    let square = if has_rows { p.min(q).min(r) } else { p.max(q).max(r) };
+    least[3] = (NEEDED_SHARE * square.max(0.0).sqrt() / within.max(1e-30)).max(1.0);
+    least
 }
 
 #[cfg(test)]

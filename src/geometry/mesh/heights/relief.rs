@@ -14,8 +14,9 @@ use std::ops::Range;
 
 use glam::Vec2;
 
-use super::{HeightMap, Mesh};
+use super::{HeightMap, Heights, Mesh};
 use crate::cores::in_ranges;
+use crate::mesh::{Patch, Topology};
 use crate::progress::{Cancelled, Progress};
 
 /// For how many lengths of sides there are bounds, each half as long as the one before.
@@ -74,6 +75,40 @@ pub(super) fn reliefs(
         }
     }
     Ok(all)
+}
+
+/// What passes know of the heights over a patch. Lengths are in px of the image's level 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PatchRelief {
+    /// The squared length of a step in the domain is x x `form[0]` + 2 x y `form[1]` + y y `form[2]`; x and y are the weights of
+    /// corners 0 and 1.
+    pub form: [f32; 3],
+    /// As in [`Relief`]; negative where no image displaces the patch.
+    pub longest: f32,
+    pub range: f32,
+    pub slope: f32,
+    pub losses: [[f32; 2]; RELIEF_STEPS],
+}
+
+impl PatchRelief {
+    /// Of a patch that no image displaces.
+    pub const NONE: Self =
+        Self { form: [0.0; 3], longest: -1.0, range: 0.0, slope: 0.0, losses: [[0.0; 2]; RELIEF_STEPS] };
+}
+
+/// Returns what is known of the heights over every patch; nothing without heights.
+pub fn patch_reliefs(heights: Option<&Heights>, mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
+    let Some(heights) = heights else { return Vec::new() };
+    let of_patch = |(index, patch): (u32, &Patch)| {
+        let map = heights.map_of(topology.material_of(index));
+        let Some(map) = map.and_then(|map| heights.maps.get(map as usize)) else { return PatchRelief::NONE };
+        let Relief { longest, range, slope, losses } = heights.reliefs[patch.triangle as usize];
+        let size = Vec2::from(map.size.map(|side| side as f32));
+        let [a, b, c] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv * size);
+        let (x, y) = (a - c, b - c);
+        PatchRelief { form: [x.dot(x), x.dot(y), y.dot(y)], longest, range, slope, losses }
+    };
+    (0..).zip(&topology.patches).map(of_patch).collect()
 }
 
 /// The texture coordinates of the triangles that an image displaces.

@@ -4,7 +4,7 @@ use glam::{Mat4, Vec4, vec2, vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::{Corner, HeightMap, Material};
+use crate::mesh::{Corner, HeightMap, Heights, Material, Mesh, Topology, patch_reliefs};
 use crate::tessellate::displace::bilinear_height;
 use crate::tessellate::lod::LodView;
 use crate::tessellate::normal::unit_or;
