@@ -133,6 +133,12 @@ fn second_forms(seen: ptr<function, SeenPatch>, corner: u32, a: vec2<f32>, b: ve
     );
 }
 
+// Returns what least_for_heights does for a patch.
+fn heights_need(seen: ptr<function, SeenPatch>, tolerance: f32, has_rows: bool) -> vec4<f32> {
+    let corners = array<vec3<f32>, 3>((*seen).points[0], (*seen).points[1], (*seen).points[2]);
+    return least_for_heights((*seen).relief, corners, (*seen).deep, (*seen).near, tolerance, has_rows);
+}
+
 // Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in
 // clip space.
 fn turn_of(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> f32 {
@@ -575,7 +581,8 @@ fn piece_error(
         depth = nearest;
     }
     let at = array<vec2<f32>, 3>(p, q, r);
-    let lost = heights_error(seen, at, middle, spread, depth);
+    let any = length((*seen).across + (length(middle) + spread) * (*seen).deep);
+    let lost = heights_error((*seen).relief, any, at, middle, spread, depth);
     if !is_within(lost, tolerance) {
         return lost;
     }

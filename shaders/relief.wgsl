@@ -7,7 +7,7 @@ const RELIEF_STEPS: u32 = 5u;
 // The heights over a patch, as it is seen.
 struct SeenRelief {
     relief: PatchRelief,
-    // How far the corners move from black to white, in clip space as SeenPatch has it; along the way between them it may be more by
+    // How far the corners move from black to white, in clip space: x and y in px times depth, and the depth; along the way between them it may be more by
     // 1 / shortest.
     directions: array<vec3<f32>, 3>,
     // The largest distance between two of the unit directions of the corners, and a bound on the length of weighted means of these.
@@ -28,15 +28,16 @@ fn turning_of(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec2<f32> {
 const DIRECTION_ROUNDING: f32 = 1.0002;
 
 // Returns a bound on how far heights let the triangle between three places of the domain be from the displaced surface, in px: seen
-// within `spread` px of `middle`, from `depth`. Large if none holds.
+// within `spread` px of `middle`, from `depth`. Large if none holds. Displacement moves a point by `any` px times depth at most.
 fn heights_error(
-    seen: ptr<function, SeenPatch>,
+    seen: SeenRelief,
+    any: f32,
     at: array<vec2<f32>, 3>,
     middle: vec2<f32>,
     spread: f32,
     depth: f32,
 ) -> f32 {
-    let relief = (*seen).relief.relief;
+    let relief = seen.relief;
     if relief.longest < 0.0 {
         return 0.0;
     }
@@ -58,17 +59,15 @@ fn heights_error(
     }
     let lost = min(loss.x + loss.y * square, relief.range);
     let rise = min(relief.range, relief.slope * sqrt(square));
-    // How far a direction moves a point from black to white, as it is seen; and by how much displacement in any direction.
+    // How far a direction moves a point from black to white, as it is seen.
     var along = 0.0;
     for (var i = 0u; i < 3u; i++) {
-        let direction = (*seen).relief.directions[i];
+        let direction = seen.directions[i];
         along = max(along, length(direction.xy - middle * direction.z) + spread * abs(direction.z));
     }
-    let any = length((*seen).across + (length(middle) + spread) * (*seen).deep);
-    let shortest = (*seen).relief.shortest;
-    let turned = share * (*seen).relief.turning * DIRECTION_ROUNDING / shortest;
-    let turns = 0.19245 * turned * turned + turned * (*seen).relief.part * rise;
-    let error = DIRECTION_ROUNDING * (along * lost / shortest + any * turns) / depth;
+    let turned = share * seen.turning * DIRECTION_ROUNDING / seen.shortest;
+    let turns = 0.19245 * turned * turned + turned * seen.part * rise;
+    let error = DIRECTION_ROUNDING * (along * lost / seen.shortest + any * turns) / depth;
     // NaN counts as infinite.
     return select(3.4e38, error, error < 3.4e38);
 }
@@ -97,16 +96,25 @@ const NEEDED_SHARE: f32 = 0.98;
 
 // Returns into how many segments sides 0, 1 and 2 must be cut at least so that heights are within a tolerance, and the inside; of rows as
 // many as the shortest side. Not rounded, and 1 or more. A search starts with these.
-fn least_for_heights(seen: ptr<function, SeenPatch>, tolerance: f32, has_rows: bool) -> vec4<f32> {
-    let relief = (*seen).relief.relief;
+//
+// The corners are in clip space, as SeenRelief is; displacement moves them by `deep` at most, and `near` is the near plane.
+fn least_for_heights(
+    seen: SeenRelief,
+    corners: array<vec3<f32>, 3>,
+    deep: f32,
+    near: f32,
+    tolerance: f32,
+    has_rows: bool,
+) -> vec4<f32> {
+    let relief = seen.relief;
     // How far heights may be from linear ones at each corner.
     var lost = vec3<f32>(3.4e38);
     for (var i = 0u; i < 3u; i++) {
-        let corner = (*seen).points[i];
-        let direction = (*seen).relief.directions[i];
+        let corner = corners[i];
+        let direction = seen.directions[i];
         let along = length(direction.xy - corner.xy / corner.z * direction.z);
-        if corner.z > (*seen).near && corner.z > 0.0 && along > 0.0 {
-            lost[i] = tolerance * (corner.z + (*seen).deep) / along;
+        if corner.z > near && corner.z > 0.0 && along > 0.0 {
+            lost[i] = tolerance * (corner.z + deep) / along;
         }
     }
     let form = relief.form;

@@ -26,18 +26,13 @@ fn load_seen(patch_index: u32) -> SeenPatch {
     return seen;
 }
 
-// Returns what least_for_heights does for the patch.
-fn heights_need(seen: ptr<function, SeenPatch>) -> vec4<f32> {
-    return least_for_heights(seen, params.tolerance, params.partitioning == PARTITIONING_ROWS);
-}
-
 // Returns the factors that a patch requests at least, of the edges U == 0, V == 0 and W == 0: `least`. Where points may slide
 // along an edge, what the edge needs at the same places doesn't count.
 fn first_least(seen: ptr<function, SeenPatch>, least: vec3<f32>) -> vec3<f32> {
     if may_slide(seen, params.tolerance) {
         return vec3<f32>(whole_segments(params.partitioning, 1.0));
     }
-    let heights = min(heights_need(seen), vec4<f32>(last_factor(params.partitioning)));
+    let heights = min(heights_need(seen, params.tolerance, params.partitioning == PARTITIONING_ROWS), vec4<f32>(last_factor(params.partitioning)));
     return max(least, vec3<f32>(
         whole_segments(params.partitioning, heights.y),
         whole_segments(params.partitioning, heights.z),

@@ -13,8 +13,7 @@ use super::least_factors::{
 };
 use super::least_rows::{fewest_rows, rows_request_again};
 use super::mesh_displacement::MeshDisplacement;
-use super::piece_error::{SeenPatch, may_slide, seen_patch, seen_relief};
-use super::relief::least_for_heights;
+use super::piece_error::{SeenPatch, heights_need, may_slide, seen_patch, seen_relief};
 use super::{
     HullFactors, Inputs, Lod, Tessellation, distance_factor, edge_length_factor, last_factor, paper_edge_factor,
     process, triangle_count,
@@ -185,7 +184,7 @@ impl MeshLod<'_> {
         if may_slide(seen, tolerance) {
             return [whole_segments(partitioning, 1.0); 3];
         }
-        let heights = least_for_heights(seen, tolerance, partitioning.has_rows());
+        let heights = heights_need(seen, tolerance, partitioning.has_rows());
         let of_side = |k: usize| {
             let own = heights[k].min(last_factor(partitioning));
             least(self.nets.patch_factor(patch, k)).max(whole_segments(partitioning, own))
@@ -200,7 +199,7 @@ impl MeshLod<'_> {
         if self.is_exact() {
             return ChosenFactors { edges: least, inside: whole_segments(partitioning, 1.0), inner };
         }
-        let [.., inside] = least_for_heights(seen, tolerance, partitioning.has_rows());
+        let [.., inside] = heights_need(seen, tolerance, partitioning.has_rows());
         let sought = FactorSearch { least, inside, inner, wanted };
         match partitioning.has_rows() {
             true => fewest_rows(seen, tolerance, &sought),

@@ -18,7 +18,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::lod::{LodView, clip_row};
-use super::relief::{SeenRelief, heights_error, turning_of};
+use super::relief::{SeenRelief, heights_error, least_for_heights, turning_of};
 use super::surface::ControlNet;
 use crate::mesh::PatchRelief;
 
@@ -33,17 +33,17 @@ pub const PARTIAL_STEPS: u32 = 8;
 #[derive(Clone, Copy, Debug)]
 pub struct SeenPatch {
     /// The ten control points: corners, edges, centre.
-    pub(super) points: [Vec3; 10],
+    points: [Vec3; 10],
     /// A sixth of the second derivatives at each corner: twice along a, along a and b, twice along b. Direction a leads
     /// from corner 2 to corner 0, b from corner 2 to corner 1.
     second: [[Vec3; 3]; 3],
     /// Half the viewport's width and height, in px.
     half_viewport: Vec2,
     /// The depth of the near plane; 0 in an orthographic view.
-    pub(super) near: f32,
+    near: f32,
     /// How far displacement may move a point: in depth, and across the view in px times depth.
-    pub(super) deep: f32,
-    pub(super) across: Vec2,
+    deep: f32,
+    across: Vec2,
     /// Which way its triangle turns: see [`turn_of`].
     turn: f32,
     /// Where points may slide along the surface, how far in px it may be off the plane of its triangle, and off its longest
@@ -145,6 +145,12 @@ pub(super) fn second_forms(patch: &SeenPatch, corner: usize, a: Vec2, b: Vec2) -
         ab: seen_at(at, xx * (a.x * b.x) + xy * (a.x * b.y + a.y * b.x) + yy * (a.y * b.y)),
         bb: seen_at(at, xx * (b.x * b.x) + xy * (2.0 * b.x * b.y) + yy * (b.y * b.y)),
     }
+}
+
+/// Returns what [`least_for_heights`] does for a patch.
+pub(super) fn heights_need(patch: &SeenPatch, tolerance: f32, has_rows: bool) -> [f32; 4] {
+    let [a, b, c, ..] = patch.points;
+    least_for_heights(&patch.relief, [a, b, c], [patch.deep, patch.near], tolerance, has_rows)
 }
 
 /// Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in
@@ -532,7 +538,8 @@ pub fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
         spread = a.distance(middle).max(b.distance(middle)).max(c.distance(middle)) + moved;
         depth = nearest;
     }
-    let lost = heights_error(patch, at, middle, spread, depth);
+    let any = (patch.across + (middle.length() + spread) * patch.deep).length();
+    let lost = heights_error(&patch.relief, any, at, middle, spread, depth);
     if !is_within(lost, tolerance) {
         return lost;
     }

@@ -10,14 +10,13 @@
 
 use glam::{Vec2, Vec3};
 
-use super::piece_error::SeenPatch;
 use crate::mesh::{PatchRelief, RELIEF_STEPS};
 
 /// The heights over a patch, as it is seen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SeenRelief {
     pub relief: PatchRelief,
-    /// How far the corners move from black to white, in clip space as [`SeenPatch`] has it; along the way between them it may be more by
+    /// How far the corners move from black to white, in clip space: x and y in px times depth, and the depth; along the way between them it may be more by
     /// `1 / shortest`.
     pub directions: [Vec3; 3],
     /// The largest distance between two of the unit directions of the corners, and a bound on the length of weighted means of these.
@@ -47,9 +46,9 @@ pub(super) fn turning_of([a, b, c]: [Vec3; 3]) -> [f32; 2] {
 pub const DIRECTION_ROUNDING: f32 = 1.0002;
 
 /// Returns a bound on how far heights let the triangle between three places of the domain be from the displaced surface, in px: seen
-/// within `spread` px of `middle`, from `depth`. Large if none holds.
-pub(super) fn heights_error(patch: &SeenPatch, at: [Vec2; 3], middle: Vec2, spread: f32, depth: f32) -> f32 {
-    let SeenRelief { relief, directions, turning, shortest, part } = &patch.relief;
+/// within `spread` px of `middle`, from `depth`. Large if none holds. Displacement moves a point by `any` px times depth at most.
+pub(super) fn heights_error(seen: &SeenRelief, any: f32, at: [Vec2; 3], middle: Vec2, spread: f32, depth: f32) -> f32 {
+    let SeenRelief { relief, directions, turning, shortest, part } = seen;
     if relief.longest < 0.0 {
         return 0.0;
     }
@@ -70,12 +69,11 @@ pub(super) fn heights_error(patch: &SeenPatch, at: [Vec2; 3], middle: Vec2, spre
     }
     let lost = (loss[0] + loss[1] * square).min(relief.range);
     let rise = relief.range.min(relief.slope * square.sqrt());
-    // How far a direction moves a point from black to white, as it is seen; and by how much displacement in any direction.
+    // How far a direction moves a point from black to white, as it is seen.
     let mut along = 0.0f32;
     for direction in directions {
         along = along.max((direction.truncate() - middle * direction.z).length() + spread * direction.z.abs());
     }
-    let any = (patch.across + (middle.length() + spread) * patch.deep).length();
     // The second derivative of unit directions is at most 2 / sqrt(3) times the squared first one of the means, by their squared length.
     let turned = share * turning * DIRECTION_ROUNDING / shortest;
     let turns = 0.19245 * turned * turned + turned * part * rise;
@@ -103,15 +101,23 @@ pub const NEEDED_SHARE: f32 = 0.98;
 
 /// Returns into how many segments sides 0, 1 and 2 must be cut at least so that heights are within a tolerance, and the inside; of rows as
 /// many as the shortest side. Not rounded, and 1 or more. A search starts with these.
-pub(super) fn least_for_heights(patch: &SeenPatch, tolerance: f32, has_rows: bool) -> [f32; 4] {
-    let SeenRelief { relief, directions, .. } = &patch.relief;
+///
+/// The corners are in clip space, as [`SeenRelief`] is; displacement moves them by `deep` at most, and `near` is the near plane.
+pub(super) fn least_for_heights(
+    seen: &SeenRelief,
+    corners: [Vec3; 3],
+    [deep, near]: [f32; 2],
+    tolerance: f32,
+    has_rows: bool,
+) -> [f32; 4] {
+    let SeenRelief { relief, directions, .. } = seen;
     // How far heights may be from linear ones at each corner.
     let mut lost = [3.4e38f32; 3];
     for i in 0..3 {
-        let corner = patch.points[i];
+        let corner = corners[i];
         let along = (directions[i].truncate() - corner.truncate() / corner.z * directions[i].z).length();
-        if corner.z > patch.near && corner.z > 0.0 && along > 0.0 {
-            lost[i] = tolerance * (corner.z + patch.deep) / along;
+        if corner.z > near && corner.z > 0.0 && along > 0.0 {
+            lost[i] = tolerance * (corner.z + deep) / along;
         }
     }
     let [aa, ab, bb] = relief.form;
