@@ -581,8 +581,8 @@ fn piece_error(
         depth = nearest;
     }
     let at = array<vec2<f32>, 3>(p, q, r);
-    let any = length((*seen).across + (length(middle) + spread) * (*seen).deep);
-    let lost = heights_error((*seen).relief, any, at, middle, spread, depth);
+    let anywhere = length((*seen).across + (length(middle) + spread) * (*seen).deep);
+    let lost = heights_error((*seen).relief, anywhere, at, middle, spread, depth);
     if !is_within(lost, tolerance) {
         return lost;
     }

@@ -28,10 +28,10 @@ fn turning_of(a: vec3<f32>, b: vec3<f32>, c: vec3<f32>) -> vec2<f32> {
 const DIRECTION_ROUNDING: f32 = 1.0002;
 
 // Returns a bound on how far heights let the triangle between three places of the domain be from the displaced surface, in px: seen
-// within `spread` px of `middle`, from `depth`. Large if none holds. Displacement moves a point by `any` px times depth at most.
+// within `spread` px of `middle`, from `depth`. Large if none holds. Displacement moves a point by `anywhere` px times depth at most.
 fn heights_error(
     seen: SeenRelief,
-    any: f32,
+    anywhere: f32,
     at: array<vec2<f32>, 3>,
     middle: vec2<f32>,
     spread: f32,
@@ -67,7 +67,7 @@ fn heights_error(
     }
     let turned = share * seen.turning * DIRECTION_ROUNDING / seen.shortest;
     let turns = 0.19245 * turned * turned + turned * seen.part * rise;
-    let error = DIRECTION_ROUNDING * (along * lost / seen.shortest + any * turns) / depth;
+    let error = DIRECTION_ROUNDING * (along * lost / seen.shortest + anywhere * turns) / depth;
     // NaN counts as infinite.
     return select(3.4e38, error, error < 3.4e38);
 }

@@ -538,8 +538,8 @@ pub fn piece_error(patch: &SeenPatch, tolerance: f32, at: [Vec2; 3]) -> f32 {
         spread = a.distance(middle).max(b.distance(middle)).max(c.distance(middle)) + moved;
         depth = nearest;
     }
-    let any = (patch.across + (middle.length() + spread) * patch.deep).length();
-    let lost = heights_error(&patch.relief, any, at, middle, spread, depth);
+    let anywhere = (patch.across + (middle.length() + spread) * patch.deep).length();
+    let lost = heights_error(&patch.relief, anywhere, at, middle, spread, depth);
     if !is_within(lost, tolerance) {
         return lost;
     }

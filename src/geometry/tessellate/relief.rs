@@ -46,7 +46,7 @@ pub(super) fn turning_of([a, b, c]: [Vec3; 3]) -> [f32; 2] {
 pub const DIRECTION_ROUNDING: f32 = 1.0002;
 
 /// Returns a bound on how far heights let the triangle between three places of the domain be from the displaced surface, in px: seen
-/// within `spread` px of `middle`, from `depth`. Large if none holds. Displacement moves a point by `any` px times depth at most.
+/// within `spread` px of `middle`, from `depth`. Large if none holds. Displacement moves a point by `anywhere` px times depth at most.
 pub(super) fn heights_error(seen: &SeenRelief, any: f32, at: [Vec2; 3], middle: Vec2, spread: f32, depth: f32) -> f32 {
     let SeenRelief { relief, directions, turning, shortest, part } = seen;
     if relief.longest < 0.0 {
@@ -77,7 +77,7 @@ pub(super) fn heights_error(seen: &SeenRelief, any: f32, at: [Vec2; 3], middle: 
     // The second derivative of unit directions is at most 2 / sqrt(3) times the squared first one of the means, by their squared length.
     let turned = share * turning * DIRECTION_ROUNDING / shortest;
     let turns = 0.19245 * turned * turned + turned * part * rise;
-    let error = DIRECTION_ROUNDING * (along * lost / shortest + any * turns) / depth;
+    let error = DIRECTION_ROUNDING * (along * lost / shortest + anywhere * turns) / depth;
     // NaN counts as infinite.
     if error < 3.4e38 { error } else { 3.4e38 }
 }
