@@ -47,7 +47,14 @@ pub const DIRECTION_ROUNDING: f32 = 1.0002;
 
 /// Returns a bound on how far heights let the triangle between three places of the domain be from the displaced surface, in px: seen
 /// within `spread` px of `middle`, from `depth`. Large if none holds. Displacement moves a point by `anywhere` px times depth at most.
-pub(super) fn heights_error(seen: &SeenRelief, any: f32, at: [Vec2; 3], middle: Vec2, spread: f32, depth: f32) -> f32 {
+pub(super) fn heights_error(
+    seen: &SeenRelief,
+    anywhere: f32,
+    at: [Vec2; 3],
+    middle: Vec2,
+    spread: f32,
+    depth: f32,
+) -> f32 {
     let SeenRelief { relief, directions, turning, shortest, part } = seen;
     if relief.longest < 0.0 {
         return 0.0;
