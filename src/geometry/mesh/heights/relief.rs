@@ -39,11 +39,16 @@ pub struct Relief {
 impl Relief {
     /// Takes a bound where it says more than what is known. `loss` is as in [`Self::losses`].
     fn offer(&mut self, loss: [f32; 2]) {
-        let longest = self.longest;
+        // In the middle of what each is used for: the last one also for all shorter sides.
+        let mut side = 0.7 * self.longest;
         for (step, own) in self.losses.iter_mut().enumerate() {
-            // In the middle of what it is used for: the last one also for all shorter sides.
-            let share = if step + 1 < RELIEF_STEPS { 0.7 } else { 0.35 };
-            let side = share * longest * 0.5f32.powi(step as i32);
+            side *= if step == 0 {
+                1.0
+            } else if step + 1 < RELIEF_STEPS {
+                0.5
+            } else {
+                0.25
+            };
             let at = |[constant, square]: [f32; 2]| constant + square * side * side;
             if at(loss) < at(*own) {
                 *own = loss;
@@ -206,11 +211,12 @@ fn spans(size: usize, repeats: bool, ends: [f32; 2]) -> [Range<usize>; 2] {
         let end = (to.max(1.0) as usize).min(size);
         return [(from.max(0.0) as usize).min(size - 1)..end, 0..0];
     }
-    if !(to - from < size as f64) {
+    let within = to - from;
+    if within.is_nan() || within >= size as f64 {
         return [0..size, 0..0];
     }
     let start = (from.rem_euclid(size as f64) as usize).min(size - 1);
-    let end = start + (to - from) as usize;
+    let end = start + within as usize;
     [start..end.min(size), 0..end.saturating_sub(size)]
 }
 
