@@ -10,7 +10,7 @@ use image::ColorType;
 use super::memory_budget::Budget;
 use geometry::casts::to_u32;
 use geometry::mesh::build_limits::MemoryRefused;
-use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, angle_bytes};
+use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, bytes_beside_maps};
 use geometry::mesh::{Mesh, Texture};
 use geometry::names::shown_path;
 use geometry::progress::{Cancelled, Progress};
@@ -104,7 +104,7 @@ impl From<OsString> for HeightSource {
 
 /// Loads a PNG, JPEG or WebP image as the height map of all materials.
 fn from_file(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
-    let map = read_map(path, mesh.corners.len(), budget, &progress.part(0.0, 0.8))?;
+    let map = read_map(path, bytes_beside_maps(mesh), budget, &progress.part(0.0, 0.8))?;
     Ok(Heights::all_over(mesh, map, &progress.part(0.8, 1.0))?)
 }
 
@@ -142,7 +142,7 @@ fn from_materials(
         let reason = refused.to_string();
         HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason }
     };
-    budget.hold(angle_bytes(mesh.corners.len())).and_then(|()| budget.hold(kept)).map_err(too_much)?;
+    budget.hold(bytes_beside_maps(mesh)).and_then(|()| budget.hold(kept)).map_err(too_much)?;
     let part = |index: usize| 0.7 * index as f32 / count as f32;
     let of = |(index, texture): (usize, &&Texture)| {
         let progress = progress.part(part(index), part(index + 1));

@@ -155,18 +155,27 @@ fn the_gap_of_the_selected_edge_is_that_of_the_headline_while_lod_is_frozen() {
 fn what_gates_find_in_the_mesh_has_lines_that_lead_to_the_worst_places() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = opened(&folder, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 3 4 1\n");
+    let open = |harness: &mut Harness<App>| {
+        let button = harness.get_by_label_contains("In the mesh: ").accesskit_node().label().expect("a label");
+        click(harness, &button);
+    };
+    open(&mut harness);
     click(&mut harness, "1 triangle repeats another one");
     assert_eq!(harness.state().selected_triangle(), Some(2));
+    open(&mut harness);
     click(&mut harness, "1 edge has three triangles or more");
     let app = harness.state();
     let topology = &app.loaded().expect("a mesh").topology;
     let kind = |edge: u32| topology.edges[edge as usize].kind;
     assert_eq!(app.selected_edge().map(kind), Some(EdgeKind::NonManifold));
+    open(&mut harness);
     click(&mut harness, "2 edges are open");
+    open(&mut harness);
     for none in ["blown up", "no area"] {
         assert!(harness.query_by_label_contains(none).is_none(), "there is none");
     }
     let mut harness = window(Some(Source::Shape(Shape::CubeSmooth)));
+    open(&mut harness);
     click(&mut harness, "12 triangles are blown up at hard edges");
     assert!(harness.state().selected_triangle().is_some());
     assert!(harness.query_by_label_contains("are open").is_none(), "it is closed");

@@ -47,6 +47,11 @@ struct Line {
 }
 
 impl Line {
+    /// Whether many sound meshes have what it says.
+    fn is_often_meant(&self) -> bool {
+        matches!(self.leads, Destination::Mesh(gate) if gate.is_often_meant())
+    }
+
     fn dim(text: impl Into<String>, hover: &'static str, leads: Destination) -> Self {
         Self { text: text.into(), color: None, hover, leads }
     }
@@ -64,17 +69,46 @@ impl App {
                 self.follow(line.leads);
             }
         }
+        self.mesh_findings(ui);
+    }
+
+    /// What gates find in the mesh, behind one line that is always there, so that nothing below moves once they are judged.
+    fn mesh_findings(&mut self, ui: &mut egui::Ui) {
+        let lines: Vec<Line> = self.mesh_lines(ui.visuals()).collect();
+        let Some(first) = lines.first() else {
+            row(
+                ui,
+                "In the mesh: nothing".to_owned(),
+                None,
+                "What gates of the mesh find, such as edges of three triangles.",
+            );
+            return;
+        };
+        let color = lines.iter().find(|line| !line.is_often_meant()).map_or(first.color, |line| line.color);
+        let text = format!("In the mesh: {}", counted(lines.len() as u64, "finding"));
+        let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y + 2.0);
+        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            ui.set_min_height(size.y);
+            let color = color.map_or(ui.visuals().text_color(), |color| legible(ui, color));
+            ui.menu_button(RichText::new(text).color(color), |ui| {
+                for line in lines {
+                    if row(ui, line.text, line.color, line.hover) {
+                        self.follow(line.leads);
+                        ui.close();
+                    }
+                }
+            });
+        });
     }
 
     /// The colour of the first line that says what is wrong, rather than what could be better.
     pub(in crate::app) fn worst(&self, ui: &egui::Ui) -> Option<Color32> {
-        let lines = self.verdict_lines(ui.visuals());
+        let lines = self.verdict_lines(ui.visuals()).into_iter().chain(self.mesh_lines(ui.visuals()));
         let is_wrong = |line: &Line| match line.leads {
             Destination::Sizes | Destination::CreaseAngle(_) | Destination::Patches => false,
-            Destination::Mesh(gate) => !gate.is_often_meant(),
-            _ => true,
+            _ => !line.is_often_meant(),
         };
-        lines.into_iter().filter(is_wrong).find_map(|line| line.color)
+        lines.filter(is_wrong).find_map(|line| line.color)
     }
 
     fn verdict_lines(&self, visuals: &egui::Visuals) -> Vec<Line> {
@@ -91,7 +125,7 @@ impl App {
             self.normals_line(visuals),
             Some(self.warnings_line(visuals.warn_fg_color)),
         ];
-        lines.into_iter().flatten().chain(self.mesh_lines(visuals)).collect()
+        lines.into_iter().flatten().collect()
     }
 
     /// The line of what isn't measured yet, or can't be, since its picture isn't drawn.

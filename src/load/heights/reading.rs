@@ -14,26 +14,26 @@ use crate::memory_budget::Budget;
 use crate::webp;
 use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
-use geometry::mesh::heights::{HeightMap, angle_bytes};
+use geometry::mesh::heights::HeightMap;
 use geometry::progress::{Cancelled, Progress};
 
 /// The bytes before a PNG image's width and height, which have 4 bytes each.
 const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
 
 /// Reads a PNG, JPEG or WebP image. A PNG is read row by row, so that a large image takes no more memory than its map; a
-/// JPEG, a WebP, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `corners` is the number of
-/// corners of the mesh.
+/// JPEG, a WebP, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `beside` is how many
+/// bytes heights take beside their map.
 ///
 /// # Errors
 /// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
 pub(super) fn read_map(
     path: &Path,
-    corners: usize,
+    beside: u64,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<HeightMap, HeightError> {
     progress.check()?;
-    let image = ImageFile { path, corners, budget, progress };
+    let image = ImageFile { path, beside, budget, progress };
     let unread = |error: io::Error| image.fail(file_reason(&error));
     let no_file = || image.fail("it is not a file; choose a PNG, JPEG or WebP image".to_owned());
     let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
@@ -91,7 +91,7 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 /// An image file that is being read, with what reading it needs.
 struct ImageFile<'a> {
     path: &'a Path,
-    corners: usize,
+    beside: u64,
     budget: &'a Budget,
     progress: &'a Progress,
 }
@@ -162,7 +162,7 @@ impl ImageFile<'_> {
     /// Checks that the budget has room for an image of this size: `px` bytes of decoded pixels, `decoding` bytes while
     /// it is decoded, and the map, which is held.
     fn afford(&self, size: [u32; 2], length: u64, px: u64, decoding: u64) -> Result<(), HeightError> {
-        let kept = HeightMap::bytes_to_build(size).saturating_add(angle_bytes(self.corners));
+        let kept = HeightMap::bytes_to_build(size).saturating_add(self.beside);
         let too_much = |refused: MemoryRefused| HeightError::TooMuch {
             path: self.path.to_owned(),
             size,

@@ -190,7 +190,8 @@ impl Triangles<'_> {
     /// Returns the largest of the values over each triangle's px of a level, and over those around it.
     fn largest(&self, level: u32, value: &(dyn Fn(usize, usize) -> f32 + Sync)) -> Result<Vec<f32>, Cancelled> {
         let size = self.map.level_size(level).map(|side| side as usize);
-        let blocks = Blocks::new(size, self.progress, value)?;
+        // Of level 0 blocks of 2 x 2 px take as much memory as level 1.
+        let blocks = Blocks::new(size, if level == 0 { 2 } else { 1 }, self.progress, value)?;
         let over = |[a, b, c]: &[Vec2; 3]| {
             let (least, greatest) = (a.min(*b).min(*c), a.max(*b).max(*c));
             let span = |axis: usize| spans(size[axis], self.map.repeats, [least[axis], greatest[axis]]);
@@ -370,24 +371,40 @@ fn places(count: usize, own: usize, repeats: bool) -> Vec<Between> {
     (0..count).map(place).collect()
 }
 
-/// The largest values of an image's px, of blocks of 2 x 2 of them, of 4 x 4 and so on.
-struct Blocks(Vec<([usize; 2], Vec<f32>)>);
+/// The largest values of blocks of an image's px, of blocks of 2 x 2 of these, of 4 x 4 and so on. The first blocks are `side` px wide.
+struct Blocks {
+    side: usize,
+    levels: Vec<([usize; 2], Vec<f32>)>,
+}
+
+/// How many rows of blocks are computed before they are put with the others.
+const ROWS: usize = 64;
 
 impl Blocks {
     fn new(
         size: [usize; 2],
+        side: usize,
         progress: &Progress,
         value: &(dyn Fn(usize, usize) -> f32 + Sync),
     ) -> Result<Self, Cancelled> {
-        let rows = in_ranges(size[1], 1, |rows| {
-            let mut px = Vec::with_capacity(rows.len() * size[0]);
-            for y in rows {
-                progress.check()?;
-                px.extend((0..size[0]).map(|x| value(x, y)));
-            }
-            Ok(px)
-        });
-        let mut all = vec![(size, rows.into_iter().collect::<Result<Vec<_>, _>>()?.concat())];
+        let first = size.map(|px| px.div_ceil(side));
+        let block = |x: usize, y: usize| {
+            let px = |axis: usize, at: usize| at * side..((at + 1) * side).min(size[axis]);
+            let all = px(1, y).flat_map(|y| px(0, x).map(move |x| (x, y)));
+            all.fold(f32::NEG_INFINITY, |largest, (x, y)| largest.max(value(x, y)))
+        };
+        // As much memory as is needed: an image may have 64 MiB.
+        let mut blocks = Vec::with_capacity(first[0] * first[1]);
+        for start in (0..first[1]).step_by(ROWS) {
+            progress.check()?;
+            let rows = ROWS.min(first[1] - start);
+            let parts = in_ranges(rows, 1, |rows| {
+                let all = rows.flat_map(|y| (0..first[0]).map(move |x| (x, y)));
+                all.map(|(x, y)| block(x, start + y)).collect::<Vec<_>>()
+            });
+            parts.iter().for_each(|part| blocks.extend_from_slice(part));
+        }
+        let mut all = vec![(first, blocks)];
         while let Some((size, px)) = all.last().filter(|(size, _)| *size != [1, 1]) {
             let halved = size.map(|side| side.div_ceil(2));
             let mut next = vec![f32::NEG_INFINITY; halved[0] * halved[1]];
@@ -399,16 +416,17 @@ impl Blocks {
             }
             all.push((halved, next));
         }
-        Ok(Self(all))
+        Ok(Self { side, levels: all })
     }
 
     /// Returns the largest value over these columns and rows, and over others in the same blocks.
     fn largest(&self, columns: &[Range<usize>; 2], rows: &[Range<usize>; 2]) -> f32 {
-        let widest = columns.iter().chain(rows).map(ExactSizeIterator::len).fold(1, usize::max);
-        let level = (widest.ilog2().saturating_sub(2) as usize).min(self.0.len() - 1);
-        let (size, px) = &self.0[level];
+        let widest = columns.iter().chain(rows).map(ExactSizeIterator::len).fold(self.side, usize::max) / self.side;
+        let level = (widest.ilog2().saturating_sub(2) as usize).min(self.levels.len() - 1);
+        let (size, px) = &self.levels[level];
+        let side = self.side << level;
         let mut largest = f32::NEG_INFINITY;
-        let blocks = |range: &Range<usize>| range.start >> level..range.end.div_ceil(1 << level);
+        let blocks = |range: &Range<usize>| range.start / side..range.end.div_ceil(side);
         for rows in rows.iter().filter(|rows| !rows.is_empty()).map(blocks) {
             for columns in columns.iter().filter(|columns| !columns.is_empty()).map(blocks) {
                 for row in px.chunks_exact(size[0]).skip(rows.start).take(rows.len()) {
