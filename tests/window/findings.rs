@@ -157,6 +157,7 @@ fn what_gates_find_in_the_mesh_has_lines_that_lead_to_the_worst_places() {
     let mut harness = opened(&folder, "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\nf 3 4 1\n");
     let open = |harness: &mut Harness<App>| {
         let button = harness.get_by_label_contains("In the mesh: ").accesskit_node().label().expect("a label");
+        scroll_to(harness, &button);
         click(harness, &button);
     };
     open(&mut harness);

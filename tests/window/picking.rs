@@ -26,7 +26,11 @@ fn click_beside_the_middle(harness: &mut Harness<App>, offset: egui::Vec2) {
 }
 
 fn neighbour(harness: &mut Harness<App>, triangle: u32) {
-    harness.get_by_role_and_label(Role::Button, &format!("Neighbour, triangle {triangle}")).click();
+    // The panel is scrolled to it first, since not all rows fit the window.
+    let name = format!("Neighbour, triangle {triangle}");
+    harness.get_by_role_and_label(Role::Button, &name).scroll_to_me();
+    settle(harness);
+    harness.get_by_role_and_label(Role::Button, &name).click();
     settle(harness);
 }
 
