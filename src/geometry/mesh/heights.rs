@@ -135,7 +135,7 @@ impl Heights {
 
 /// Returns how many bytes [`Heights`] take for a mesh beside their maps: for angles, and for bounds over triangles while they are made.
 pub fn bytes_beside_maps(mesh: &Mesh) -> u64 {
-    4 * mesh.corners.len() as u64 + 80 * mesh.triangles.len() as u64
+    4 * mesh.corners.len() as u64 + 132 * mesh.triangles.len() as u64
 }
 
 fn angles(mesh: &Mesh) -> Vec<f32> {
