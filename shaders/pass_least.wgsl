@@ -19,7 +19,7 @@ fn least_triangles_main(invocation: Invocation) {
     let least = first_least(&seen, edges_of(index, params.factor_count));
     var own = whole_segments(params.partitioning, 1.0);
     if params.surface != SURFACE_FLAT || params.displacement != 0u {
-        let sought = Sought(least, heights_need(&seen, params.tolerance, params.partitioning == PARTITIONING_ROWS).w, 0.0, GOAL_MINIMUM);
+        let sought = Sought(least, heights_need(&seen, params.tolerance, params.partitioning).w, 0.0, GOAL_MINIMUM);
         own = without_search(&seen, BOUND_SHARE * params.tolerance, params.partitioning, sought);
     }
     least_triangles[index] = select(triangles_of(least, own), 0u, own == 0.0);
@@ -36,7 +36,7 @@ fn search_least_triangles_main(invocation: Invocation) {
         let is_searched = first + team() == index && least_triangles[index] == 0u;
         var seen = load_seen(index);
         let least = first_least(&seen, edges_of(index, params.factor_count));
-        let inside = select(BEYOND_LAST, heights_need(&seen, params.tolerance, params.partitioning == PARTITIONING_ROWS).w, is_searched);
+        let inside = select(BEYOND_LAST, heights_need(&seen, params.tolerance, params.partitioning).w, is_searched);
         let sought = Sought(least, inside, 0.0, GOAL_MINIMUM);
         var own: Chosen;
         if SEARCHES_ROWS == 1u {

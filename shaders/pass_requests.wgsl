@@ -108,7 +108,7 @@ fn list_patches_main(invocation: Invocation) {
     if is_first {
         edges = first_least(&seen, edges_of(index, params.factor_count));
     }
-    let heights = heights_need(&seen, params.tolerance, params.partitioning == PARTITIONING_ROWS).w;
+    let heights = heights_need(&seen, params.tolerance, params.partitioning).w;
     var inside = whole_segments(params.partitioning, 1.0);
     if params.surface != SURFACE_FLAT || params.displacement != 0u {
         let sought = Sought(edges, heights, known.inner, GOAL_GIVEN);
@@ -186,7 +186,7 @@ fn search_patches_main(invocation: Invocation) {
         let index = select(0u, next, is_searched);
         var seen = load_seen(index);
         let known = known_from(atomicLoad(&edge_factors[known_at(index)]));
-        let heights = select(BEYOND_LAST, heights_need(&seen, params.tolerance, params.partitioning == PARTITIONING_ROWS).w, is_searched);
+        let heights = select(BEYOND_LAST, heights_need(&seen, params.tolerance, params.partitioning).w, is_searched);
         let sought = Sought(known.edges, heights, known.inner, wanted);
         var found: Chosen;
         if SEARCHES_ROWS == 1u {

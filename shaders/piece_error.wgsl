@@ -134,9 +134,9 @@ fn second_forms(seen: ptr<function, SeenPatch>, corner: u32, a: vec2<f32>, b: ve
 }
 
 // Returns what least_for_heights does for a patch.
-fn heights_need(seen: ptr<function, SeenPatch>, tolerance: f32, has_rows: bool) -> vec4<f32> {
+fn heights_need(seen: ptr<function, SeenPatch>, tolerance: f32, partitioning: u32) -> vec4<f32> {
     let corners = array<vec3<f32>, 3>((*seen).points[0], (*seen).points[1], (*seen).points[2]);
-    return least_for_heights((*seen).relief, corners, (*seen).deep, (*seen).near, tolerance, has_rows);
+    return least_for_heights((*seen).relief, corners, (*seen).deep, (*seen).near, tolerance, partitioning == PARTITIONING_ROWS);
 }
 
 // Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in

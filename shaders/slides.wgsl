@@ -32,7 +32,7 @@ fn first_least(seen: ptr<function, SeenPatch>, least: vec3<f32>) -> vec3<f32> {
     if may_slide(seen, params.tolerance) {
         return vec3<f32>(whole_segments(params.partitioning, 1.0));
     }
-    let heights = min(heights_need(seen, params.tolerance, params.partitioning == PARTITIONING_ROWS), vec4<f32>(last_factor(params.partitioning)));
+    let heights = min(heights_need(seen, params.tolerance, params.partitioning), vec4<f32>(last_factor(params.partitioning)));
     return max(least, vec3<f32>(
         whole_segments(params.partitioning, heights.y),
         whole_segments(params.partitioning, heights.z),

@@ -3,9 +3,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
-pub use geometry::mesh::Curve;
-use geometry::mesh::RELIEF_STEPS;
 pub use geometry::mesh::rig::{Binding, Delta, JointMatrix};
+pub use geometry::mesh::{Curve, PatchRelief};
 pub use geometry::tessellate::{PatchFactors, Vertex};
 
 /// The view that factors are computed for.
@@ -137,17 +136,6 @@ pub struct Share {
     /// 4 times a patch, plus which of its corners or sides.
     pub dominant: u32,
     pub _pad: [u32; 3],
-}
-
-/// What is known of the heights over a patch: a [`geometry::mesh::PatchRelief`].
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct PatchRelief {
-    pub form: [f32; 3],
-    pub longest: f32,
-    pub range: f32,
-    pub slope: f32,
-    pub losses: [[f32; 2]; RELIEF_STEPS],
 }
 
 /// One of the height images: width and height of its level 0 in px, its number of mip levels, and where its heights start among

@@ -2,9 +2,9 @@
 
 use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
-use super::relief_buffers::{ReliefBuffers, reliefs, shares};
+use super::relief_buffers::{ReliefBuffers, shares};
 use super::{Gpu, GpuError};
-use geometry::mesh::{CurveItems, Curves, Dominance, Mesh, Sharing, Topology};
+use geometry::mesh::{CurveItems, Curves, Dominance, Mesh, Sharing, Topology, patch_reliefs};
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
 pub const SEARCH_COUNTERS: u32 = 10;
@@ -73,7 +73,7 @@ impl MeshBuffers {
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 1)?,
             shares: filled(gpu, "shares", &all_shares)?,
-            reliefs: filled(gpu, "reliefs", &reliefs(mesh, topology))?,
+            reliefs: filled(gpu, "reliefs", &patch_reliefs(heights, mesh, topology))?,
             relief,
             sharing,
             point_count: topology.points.len() as u32,

@@ -1,9 +1,9 @@
 //! What displacement needs in device memory: height images, and what patches share where they meet.
 
 use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
-use super::layout::{HeightMap, PatchRelief, Share};
+use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
-use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology, patch_reliefs};
+use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
 pub const HEIGHTS_ACROSS: u32 = 4096;
@@ -109,16 +109,6 @@ pub fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
     let share = |&dominant: &u32| Share { dominant, ..bytemuck::Zeroable::zeroed() };
     let shared = dominance.corners.iter().chain(&dominance.sides).map(share);
     shared.chain(std::iter::repeat_n(share(&0), 2 * mesh.corners.len())).collect()
-}
-
-/// What LOD by error knows of the heights over each patch; nothing without heights.
-pub fn reliefs(mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
-    let own = patch_reliefs(mesh.heights.as_deref(), mesh, topology).into_iter();
-    own.map(|own| {
-        let geometry::mesh::PatchRelief { form, longest, range, slope, losses } = own;
-        PatchRelief { form, longest, range, slope, losses }
-    })
-    .collect()
 }
 
 /// Where each corner's list of patches starts in the second vector, and where it ends. Corners that differ in their details alone

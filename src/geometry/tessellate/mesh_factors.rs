@@ -184,7 +184,7 @@ impl MeshLod<'_> {
         if may_slide(seen, tolerance) {
             return [whole_segments(partitioning, 1.0); 3];
         }
-        let heights = heights_need(seen, tolerance, partitioning.has_rows());
+        let heights = heights_need(seen, tolerance, partitioning);
         let of_side = |k: usize| {
             let own = heights[k].min(last_factor(partitioning));
             least(self.nets.patch_factor(patch, k)).max(whole_segments(partitioning, own))
@@ -199,7 +199,7 @@ impl MeshLod<'_> {
         if self.is_exact() {
             return ChosenFactors { edges: least, inside: whole_segments(partitioning, 1.0), inner };
         }
-        let [.., inside] = heights_need(seen, tolerance, partitioning.has_rows());
+        let [.., inside] = heights_need(seen, tolerance, partitioning);
         let sought = FactorSearch { least, inside, inner, wanted };
         match partitioning.has_rows() {
             true => fewest_rows(seen, tolerance, &sought),

@@ -17,6 +17,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
+use super::factors::Partitioning;
 use super::lod::{LodView, clip_row};
 use super::relief::{SeenRelief, heights_error, least_for_heights, turning_of};
 use super::surface::ControlNet;
@@ -148,9 +149,9 @@ pub(super) fn second_forms(patch: &SeenPatch, corner: usize, a: Vec2, b: Vec2) -
 }
 
 /// Returns what [`least_for_heights`] does for a patch.
-pub(super) fn heights_need(patch: &SeenPatch, tolerance: f32, has_rows: bool) -> [f32; 4] {
+pub(super) fn heights_need(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning) -> [f32; 4] {
     let [a, b, c, ..] = patch.points;
-    least_for_heights(&patch.relief, [a, b, c], [patch.deep, patch.near], tolerance, has_rows)
+    least_for_heights(&patch.relief, [a, b, c], [patch.deep, patch.near], tolerance, partitioning.has_rows())
 }
 
 /// Returns a number whose sign tells which way a triangle of a plane turns on screen, wherever the eye is. The points are in

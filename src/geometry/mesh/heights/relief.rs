@@ -12,6 +12,7 @@
 
 use std::ops::Range;
 
+use bytemuck::{Pod, Zeroable};
 use glam::Vec2;
 
 use super::{HeightMap, Heights, Mesh};
@@ -83,7 +84,8 @@ pub(super) fn reliefs(
 }
 
 /// What passes know of the heights over a patch. Lengths are in px of the image's level 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct PatchRelief {
     /// The squared length of a step in the domain is x x `form[0]` + 2 x y `form[1]` + y y `form[2]`; x and y are the weights of
     /// corners 0 and 1.
