@@ -2,13 +2,15 @@
 //! after `--` are mesh files that are measured too.
 //!
 //! Each mesh is seen from 240 places around it, at 1920 x 1080, and every place is drawn as if nothing had been there before. The
-//! times are those of the GPU (on a software driver those of the host). The bench reports its results, and no result makes it fail.
+//! built-in shapes are measured again under waves of heights. The times are those of the GPU (on a software driver those of the
+//! host). The bench reports its results, and no result makes it fail.
 
 use std::error::Error;
 use std::f32::consts::TAU;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use geometry::mesh::heights::{HeightMap, Heights};
 use geometry::mesh::shapes::Shape;
 use geometry::mesh::{Mesh, Topology};
 use geometry::progress::Progress;
@@ -24,6 +26,8 @@ use load::source::Source;
 const FRAMES: usize = 240;
 const SIZE: [u32; 2] = [1920, 1080];
 const TOLERANCES: [f32; 2] = [0.25, 1.0];
+/// Texels of a side of the waves, which are as high as a hundredth of the mesh's size.
+const TEXELS: u32 = 512;
 const PARTITIONINGS: [Partitioning; 3] = [Partitioning::Integer, Partitioning::FractionalOdd, Partitioning::Rows];
 
 /// What one frame took in ms.
@@ -67,7 +71,9 @@ fn measure(engine: &Engine, name: &str, mesh: Mesh) -> Result<(), Box<dyn Error>
     let mut timing = Timing::on(&engine.gpu);
     for tolerance in TOLERANCES {
         for partitioning in PARTITIONINGS {
-            let tessellation = Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() };
+            let height_scale = 0.01 * scene.bounds.radius();
+            let tessellation =
+                Tessellation { lod: Lod::Error, tolerance, partitioning, height_scale, ..Tessellation::default() };
             let settings = Settings::from(tessellation);
             let mut frames = Vec::new();
             // The first frame makes pipelines.
@@ -94,6 +100,18 @@ fn measure(engine: &Engine, name: &str, mesh: Mesh) -> Result<(), Box<dyn Error>
     Ok(())
 }
 
+/// Lays four waves in either direction over a mesh, in steps of 8 bits as most files have them, or in steps of f32.
+fn under_waves(mut mesh: Mesh, in_8_bits: bool) -> Mesh {
+    let along = |texel: u32| (4.0 * TAU * texel as f32 / TEXELS as f32).sin();
+    let height = |i: u32| {
+        let height = 0.5 + 0.25 * (along(i % TEXELS) + along(i / TEXELS));
+        if in_8_bits { (255.0 * height).round() / 255.0 } else { height }
+    };
+    let map = HeightMap::new([TEXELS; 2], (0..TEXELS * TEXELS).map(height).collect());
+    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, map)));
+    mesh
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let engine = Engine::headless()?;
     let files = std::env::args().skip(1).filter(|argument| !argument.starts_with("--"));
@@ -103,7 +121,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("| mesh, patches | px | partitioning | triangles | factors, ms (median, 99 %) | drawing, ms | all, ms |");
     println!("| --- | ---: | --- | ---: | ---: | ---: | ---: |");
     for source in shapes.map(Source::Shape).into_iter().chain(files) {
-        measure(&engine, &source.title(), source.load(&Limits::default(), &Progress::new())?.mesh)?;
+        let mesh = source.load(&Limits::default(), &Progress::new())?.mesh;
+        let title = source.title();
+        let waves = [(", waves", false), (", waves in 8 bits", true)];
+        let displaced = if matches!(source, Source::Shape(_)) { &waves[..] } else { &[] };
+        let displaced = displaced.iter().map(|&(label, in_8_bits)| (label, under_waves(mesh.clone(), in_8_bits)));
+        for (label, mesh) in [("", mesh.clone())].into_iter().chain(displaced) {
+            measure(&engine, &format!("{title}{label}"), mesh)?;
+        }
     }
     Ok(())
 }
