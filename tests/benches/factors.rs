@@ -14,7 +14,7 @@ use geometry::mesh::heights::{HeightMap, Heights};
 use geometry::mesh::shapes::Shape;
 use geometry::mesh::{Mesh, Topology};
 use geometry::progress::Progress;
-use geometry::tessellate::{Lod, Partitioning, Tessellation};
+use geometry::tessellate::{Displacement, Lod, Partitioning, Tessellation};
 use gpu::recorder::{DRAWING, PassTime, Timing, take_times};
 use inspect::engine::Engine;
 use inspect::render::camera::Camera;
@@ -71,9 +71,16 @@ fn measure(engine: &Engine, name: &str, mesh: Mesh) -> Result<(), Box<dyn Error>
     let mut timing = Timing::on(&engine.gpu);
     for tolerance in TOLERANCES {
         for partitioning in PARTITIONINGS {
+            let displacement = Displacement::On;
             let height_scale = 0.01 * scene.bounds.radius();
-            let tessellation =
-                Tessellation { lod: Lod::Error, tolerance, partitioning, height_scale, ..Tessellation::default() };
+            let tessellation = Tessellation {
+                lod: Lod::Error,
+                tolerance,
+                partitioning,
+                displacement,
+                height_scale,
+                ..Tessellation::default()
+            };
             let settings = Settings::from(tessellation);
             let mut frames = Vec::new();
             // The first frame makes pipelines.
