@@ -17,6 +17,7 @@ mod wheel;
 mod widgets;
 pub mod window;
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use image::RgbaImage;
@@ -56,6 +57,8 @@ pub struct App {
     settings: Settings,
     /// The names of parts of the file that are to be left out.
     hidden: Arc<Vec<String>>,
+    /// The meshes that were dropped on the window together.
+    dropped: Vec<PathBuf>,
     history: History<Undoable>,
     /// Whether files of a step of undo are being read.
     takes_back: bool,
@@ -111,6 +114,7 @@ impl App {
             painting,
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
             hidden: Arc::default(),
+            dropped: Vec::new(),
             history: History::default(),
             takes_back: false,
             view_history: ViewHistory::default(),

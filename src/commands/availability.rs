@@ -13,6 +13,8 @@ pub enum Need {
     Document,
     /// A mesh that a file has, with axes and a unit, and not a shape that is made in code.
     File,
+    /// Another mesh in the folder, or among those that were dropped together.
+    Neighbours,
     /// A picture of the document.
     Picture,
     /// No other file is being written.
@@ -57,8 +59,8 @@ pub enum Need {
 }
 
 impl Need {
-    pub const ALL: [Self; 30] = every![Need:
-        Document, File, Picture, NoWriting, ReferenceShape, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
+    pub const ALL: [Self; 31] = every![Need:
+        Document, File, Neighbours, Picture, NoWriting, ReferenceShape, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
         ViewAfter, Bookmarks, RoomForBookmarks, Selection, SelectedPatch, Heights, TextureCoordinates, NormalsAt, Factor, Lod, Culling,
         Split, Frozen, Deviation, MeasurableChart, Chart, Clips,
     ];
@@ -68,6 +70,7 @@ impl Need {
         match self {
             Self::Document => "No mesh is open.",
             Self::File => MADE_IN_CODE,
+            Self::Neighbours => "There is no other mesh in this file's folder.",
             Self::Picture => "Nothing is drawn yet.",
             Self::NoWriting => "Another file is being written.",
             Self::ReferenceShape => "No reference surface was chosen.",

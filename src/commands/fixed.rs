@@ -57,6 +57,16 @@ fn file() -> Vec<Command> {
             .keys([plain(Key::R)])
             .menu(File, 1)
             .needs(document),
+        Command::new(FileAction::NextMesh, "Next mesh")
+            .text("Opens the next mesh of the folder, or of the files that were dropped together. After the last one comes the first.")
+            .keys([ctrl(Key::PageDown)])
+            .menu(File, 0)
+            .needs(&[Need::Neighbours]),
+        Command::new(FileAction::PreviousMesh, "Previous mesh")
+            .text("Opens the mesh before this one in the folder, or among the files that were dropped together.")
+            .keys([ctrl(Key::PageUp)])
+            .menu(File, 0)
+            .needs(&[Need::Neighbours]),
         beside(CompanionFile::ReferenceShape, "Reference surface…", REFERENCE_SURFACE).menu(File, 2),
         close(
             CompanionFile::ReferenceShape,

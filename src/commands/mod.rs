@@ -100,6 +100,9 @@ pub enum FileAction {
     OpenShape(Shape),
     OpenVase,
     Reload,
+    /// The next mesh of the folder, or of those that were dropped together.
+    NextMesh,
+    PreviousMesh,
     Close(CompanionFile),
     /// Opens the window that chooses how a picture is saved.
     SavePicture,

@@ -86,14 +86,19 @@ pub fn open_file(path: &Path) -> io::Result<Option<(File, Metadata)>> {
 }
 
 /// A file's length and time of change. If one of them differs, the file was changed.
-#[derive(Debug, PartialEq)]
-pub(crate) struct Stamp {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stamp {
     bytes: u64,
     /// None if the file system stores no times.
     modified: Option<SystemTime>,
 }
 
 impl Stamp {
+    /// The stamp of the file at `path` as it is now; none if it isn't there.
+    pub fn of(path: &Path) -> Option<Self> {
+        std::fs::metadata(path).ok().map(|about| Self::new(&about))
+    }
+
     pub(crate) fn new(about: &Metadata) -> Self {
         Self { bytes: about.len(), modified: about.modified().ok() }
     }

@@ -10,7 +10,7 @@ use geometry::mesh::Shape;
 use load::Source;
 use pnaen::app::App;
 
-use crate::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, vase};
+use crate::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, uniform_of, vase};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -130,25 +130,79 @@ fn closing_the_window_while_a_mesh_loads_ends_at_once() {
     assert!(start.elapsed() < Duration::from_secs(1), "{:?}", start.elapsed());
 }
 
+const QUAD: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+
 #[test]
-fn one_of_several_dropped_files_is_opened_and_named() {
+fn several_dropped_meshes_are_a_list_to_step_through() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
-    let [image, first, second] = [
-        PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png")),
-        copy_vase(&folder, "a.glb"),
-        copy_vase(&folder, "b.glb"),
-    ];
+    let elsewhere = tempfile::tempdir().expect("a writable temporary folder");
+    let image = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/waves.png"));
+    let [first, second] = [copy_vase(&folder, "z.glb"), copy_vase(&elsewhere, "b.glb")];
     let mut harness = uniform(None);
-    drop_files(&mut harness, &[image, first.clone(), second]);
+    drop_files(&mut harness, &[image, first.clone(), second.clone()]);
     settle(&mut harness);
-    assert_eq!(
-        harness.state().source(),
-        Some(&Source::File(first)),
-        "the first mesh is opened, not the image before it"
-    );
-    harness.get_by_label_contains("3 files were dropped");
-    click(&mut harness, "Close");
+    let source = |harness: &Harness<App>| harness.state().source().cloned();
+    assert_eq!(source(&harness), Some(Source::File(first.clone())), "the first mesh, not the image before it");
     says_nothing(&harness);
+    wait_for_label(&mut harness, "1/2");
+    click(&mut harness, "Next mesh");
+    assert_eq!(source(&harness), Some(Source::File(second)));
+    wait_for_label(&mut harness, "2/2");
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::PageDown);
+    settle(&mut harness);
+    assert_eq!(source(&harness), Some(Source::File(first)), "after the last one comes the first");
+}
+
+#[test]
+fn the_meshes_of_a_folder_are_stepped_through() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let [first, second, last] = ["a.glb", "B.glb", "c.glb"].map(|name| copy_vase(&folder, name));
+    std::fs::write(folder.path().join("b.txt"), "").expect("a writable folder");
+    let mut harness = uniform(Some(Source::File(second)));
+    wait_for_label(&mut harness, "2/3");
+    click(&mut harness, "Previous mesh");
+    assert_eq!(harness.state().source(), Some(&Source::File(first)));
+    wait_for_label(&mut harness, "1/3");
+    click(&mut harness, "Previous mesh");
+    assert_eq!(harness.state().source(), Some(&Source::File(last)));
+}
+
+#[test]
+fn a_mesh_that_changes_on_disk_is_loaded_anew_and_a_broken_one_leaves_the_last_good_one() {
+    let (folder, mut harness) = uniform_of("quad.obj", QUAD);
+    let path = folder.path().join("quad.obj");
+    press(&mut harness, egui::Key::Num3);
+    let (settings, camera) = (*harness.state().settings(), *harness.state().camera());
+    let triangles = |harness: &Harness<App>| harness.state().loaded().map(|loaded| loaded.mesh.triangles.len());
+    assert_eq!(triangles(&harness), Some(2));
+    // The times of file systems are rough, but another length is always seen.
+    std::fs::write(&path, QUAD.replace("f 1 2 3 4", "f 1 2 3 # one")).expect("a writable folder");
+    wait_for_label(&mut harness, "changed on disk, loaded anew");
+    settle(&mut harness);
+    assert_eq!(triangles(&harness), Some(1));
+    assert_eq!((*harness.state().settings(), *harness.state().camera()), (settings, camera));
+    std::fs::write(&path, "f 1 2 3").expect("a writable folder");
+    wait_for_label(&mut harness, "Close");
+    assert_eq!(triangles(&harness), Some(1), "the last good one stays");
+    harness.get_by_label_contains("quad.obj has no triangles");
+    std::fs::write(&path, QUAD).expect("a writable folder");
+    let start = Instant::now();
+    while triangles(&harness) != Some(2) {
+        assert!(start.elapsed() < PATIENCE, "a good version is taken again");
+        std::thread::sleep(Duration::from_millis(20));
+        settle(&mut harness);
+    }
+    says_nothing(&harness);
+}
+
+/// Waits for something that isn't waited for by `settle`.
+fn wait_for_label(harness: &mut Harness<App>, label: &str) {
+    let start = Instant::now();
+    while harness.query_by_label(label).is_none() {
+        assert!(start.elapsed() < PATIENCE, "there is no {label}");
+        std::thread::sleep(Duration::from_millis(20));
+        settle(harness);
+    }
 }
 
 #[test]

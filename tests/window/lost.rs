@@ -14,6 +14,7 @@ use load::files::Limits;
 use load::{Source, load};
 use pnaen::app::App;
 
+use crate::opening::setup;
 use crate::{choose, click, made_uniform, open_alone, press, settle, unfolded};
 
 /// The start of the message if the window goes on, and of no other.
@@ -45,7 +46,7 @@ fn anew(harness: Harness<'static, App>) -> Harness<'static, App> {
     let app = harness.into_state();
     Harness::builder()
         .with_size(SIZE)
-        .wgpu()
+        .wgpu_setup(setup())
         .build_eframe(move |context| app.anew(context, &before).expect("these tests need a graphics adapter"))
 }
 

@@ -4,6 +4,7 @@ use std::ffi::OsStr;
 use std::path::Path;
 
 use crate::app::App;
+use crate::app::jobs::folder_job::Neighbours;
 use crate::app::text::shortened;
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, Menu, Place, Submenu, all, shown_key};
 
@@ -14,14 +15,32 @@ impl App {
                 let shown = ui.menu_button(menu.name(), |ui| scrolled(ui, |ui| self.menu(ui, menu)));
                 self.keep_open(menu, &shown);
             }
-            let source = self.document.as_ref().map(|document| &document.loaded.source);
-            let (title, whole) = source.map_or_else(Default::default, |source| (source.title(), source.to_string()));
-            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.weak(concat!("pnaen ", env!("CARGO_PKG_VERSION")));
-                ui.separator();
-                ui.add(egui::Label::new(egui::RichText::new(title).strong()).truncate()).on_hover_text(whole);
-            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| self.title(ui));
         });
+    }
+
+    /// The mesh's name, where it is among its neighbours, and buttons that open these.
+    fn title(&mut self, ui: &mut egui::Ui) {
+        ui.weak(concat!("pnaen ", env!("CARGO_PKG_VERSION")));
+        ui.separator();
+        let Some(document) = &self.document else { return };
+        let (title, whole) = (document.loaded.source.title(), document.loaded.source.to_string());
+        let (has_changed, neighbours) = (document.has_changed, document.neighbours.clone());
+        if let Some(Neighbours { number, count, .. }) = neighbours {
+            let now = self.availability();
+            let commands = all(&now);
+            for (action, label, name) in
+                [(FileAction::NextMesh, ">", "Next mesh"), (FileAction::PreviousMesh, "<", "Previous mesh")]
+            {
+                self.command_button(ui, &commands, &now, &action.into(), [label, name]);
+            }
+            ui.label(format!("{number}/{count}"));
+        }
+        ui.add(egui::Label::new(egui::RichText::new(title).strong()).truncate()).on_hover_text(whole);
+        if has_changed {
+            let hover = "The file has changed on disk, and was loaded again. Settings and camera stay.";
+            ui.weak("changed on disk, loaded anew").on_hover_text(hover);
+        }
     }
 
     /// Keeps a menu open that is clicked after it opened because the pointer came over its name from another open menu. egui closes

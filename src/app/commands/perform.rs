@@ -26,6 +26,7 @@ impl App {
         let needs = [
             (Need::Document, document.is_some()),
             (Need::File, self.source().is_some_and(|source| source.shape().is_none())),
+            (Need::Neighbours, document.is_some_and(|document| document.neighbours.is_some())),
             (Need::Picture, self.viewport.picture.drawn.is_some()),
             (Need::NoWriting, !self.is_writing()),
             (Need::ReferenceShape, self.reference_shape.is_some()),
@@ -127,6 +128,8 @@ impl App {
             FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
             FileAction::OpenVase => self.open(context, Source::Vase),
             FileAction::Reload => self.reload(context),
+            FileAction::NextMesh => self.open_neighbour(context, |neighbours| neighbours.after),
+            FileAction::PreviousMesh => self.open_neighbour(context, |neighbours| neighbours.before),
             FileAction::Close(beside) => self.close_companion(*beside),
             FileAction::SavePicture => self.dialogs.picture.is_open = true,
             FileAction::SaveTurntable => self.dialogs.turntable.is_open = true,

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::Document;
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
+use crate::app::jobs::file_watch::{Stamped, sources};
 use crate::app::jobs::job_list::{Load, Work};
 use crate::app::jobs::scenes::scene_of;
 use geometry::progress::{Progress, Stage};
@@ -49,6 +50,7 @@ fn load(
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Document, Option<NotLoaded>> {
+    let read_from = Stamped::now(sources(source, preparation.heights.as_ref()));
     let loaded = match engine::load(source, preparation, &progress.part(0.0, READ)) {
         Ok(loaded) => loaded,
         Err(LoadError::Cancelled(_)) => return Err(None),
@@ -63,7 +65,8 @@ fn load(
     progress.set(READ);
     let scene = scene_of(engine, &loaded).map_err(no_room)?;
     engine.prepare(&scene, settings).map_err(no_room)?;
-    Ok(Document::new(loaded, scene))
+    let named = Stamped::now(loaded.files.iter().cloned());
+    Ok(Document::new(loaded, scene, read_from.and(named)))
 }
 
 impl App {
@@ -108,7 +111,7 @@ impl App {
         let (wanted, prepared) = (source.clone(), preparation.clone());
         let read = move |progress: &Progress| load(&engine, &wanted, &prepared, &settings, progress);
         self.jobs.start(context, Work::Mesh, format!("Loading {}", source.title()), read, Self::take_loaded);
-        self.jobs.last_load = Some(Load { source, preparation, keep_view, remark: None });
+        self.jobs.last_load = Some(Load { source, preparation, keep_view, has_changed: false });
     }
 
     /// The preparation of the mesh, or of the load of the same mesh that is under way.
@@ -166,12 +169,9 @@ impl App {
     }
 
     fn take_loaded(&mut self, context: &egui::Context, ended: Result<Result<Document, Option<NotLoaded>>, Stopped>) {
-        let Some(Load { source, keep_view, remark, .. }) = self.jobs.last_load.take() else { return };
+        let Some(Load { source, keep_view, has_changed, .. }) = self.jobs.last_load.take() else { return };
         match ended.unwrap_or_else(|stopped| Err(Some(NotLoaded::panicked(&source, &stopped)))) {
-            Ok(document) => {
-                self.take_document(context, document, keep_view);
-                self.dialogs.error = remark.or(self.dialogs.error.take());
-            }
+            Ok(document) => self.take_document(context, Document { has_changed, ..document }, keep_view),
             Err(Some(NotLoaded { mut why, is_gone })) => {
                 if is_gone && self.persistence.gone(&source) {
                     why += "; it was removed from the recent files";
@@ -198,6 +198,8 @@ impl App {
         let before = self.document.replace(document);
         self.say_title(context);
         self.check_mesh(context);
+        self.watch_mesh(context);
+        self.find_neighbours(context);
         // Scenes may be at different places, and of different sizes.
         let was_placed = before.as_ref().map(place);
         let is_placed_anew = was_placed.is_some_and(|before| before != placed);
@@ -248,7 +250,7 @@ impl App {
     }
 
     /// Opens a file that is dropped on the window. Of several, it opens the first mesh, or else the first file, and the first
-    /// environment beside it.
+    /// environment beside it. The meshes are then the list whose next one can be opened.
     pub(in crate::app) fn take_dropped(&mut self, context: &egui::Context) {
         let dropped: Vec<PathBuf> =
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
@@ -256,14 +258,10 @@ impl App {
         if let Some(path) = environments.into_iter().next() {
             self.open_environment(context, path);
         }
-        let mesh = others.iter().find(|path| Format::from_name(path).is_some());
-        let Some(path) = mesh.or(others.first()) else { return };
-        self.open_path(context, path.clone());
-        if let Some(load) = self.jobs.last_load.as_mut().filter(|_| others.len() > 1) {
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            load.remark =
-                Some(format!("{} files were dropped. Only one can be open, so {name} was opened.", others.len()));
-        }
+        let meshes: Vec<_> = others.iter().filter(|path| Format::from_name(path).is_some()).cloned().collect();
+        let Some(path) = meshes.first().or(others.first()).cloned() else { return };
+        self.dropped = if meshes.len() > 1 { meshes } else { Vec::new() };
+        self.open_path(context, path);
     }
 }
 

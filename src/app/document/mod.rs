@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::jobs::deviation_job::DeviationJob;
 use super::jobs::explain_job::Explanation;
+use super::jobs::file_watch::Stamped;
+use super::jobs::folder_job::Neighbours;
 use super::jobs::given::FromFiles;
 use super::jobs::leak_job::LeakJob;
 use super::jobs::measure_job::MeasureJob;
@@ -26,6 +28,11 @@ use inspect::settings::SplitSide;
 pub(crate) struct Document {
     pub loaded: Loaded,
     pub scene: Scene,
+    /// What it was read from.
+    pub files: Stamped,
+    /// Whether it was loaded because it had changed on disk.
+    pub has_changed: bool,
+    pub neighbours: Option<Neighbours>,
     pub edges: EdgeCounts,
     /// The moment whose pose the scene has; none at rest.
     pub moment: Option<Moment>,
@@ -76,10 +83,13 @@ impl Measurements {
 }
 
 impl Document {
-    fn new(loaded: Loaded, scene: Scene) -> Self {
+    fn new(loaded: Loaded, scene: Scene, files: Stamped) -> Self {
         static GENERATION: AtomicU64 = AtomicU64::new(0);
         let exact = loaded.source.shape().and_then(ReferenceShape::from_shape).map(Arc::new);
         Self {
+            files,
+            has_changed: false,
+            neighbours: None,
             edges: loaded.topology.edge_counts(),
             moment: None,
             from_files: FromFiles::default(),

@@ -25,6 +25,10 @@ pub(crate) enum Work {
     /// Watching the file of the LOD shader. It goes on after the first version.
     LodShader,
     SurfaceShader,
+    /// Watching the mesh's files.
+    MeshFiles,
+    /// Finding the meshes beside the one that is open.
+    Folder,
     /// A file that is being written.
     File,
     Dialog,
@@ -43,7 +47,8 @@ pub(crate) enum Work {
 impl Work {
     /// Whether the picture, or what is said about it, waits for it.
     fn is_waited_for(self) -> bool {
-        !matches!(self, Self::File | Self::Dialog | Self::State | Self::Checks | Self::Chart | Self::StandIn)
+        use Work::{Chart, Checks, Dialog, File, Folder, MeshFiles, StandIn, State};
+        !matches!(self, File | Dialog | State | Checks | Chart | StandIn | MeshFiles | Folder)
     }
 
     /// Whether it reads a file beside the mesh.
@@ -54,7 +59,8 @@ impl Work {
 
     /// Whether it ends with the document.
     fn is_of_document(self) -> bool {
-        matches!(self, Self::Checks | Self::Explanation | Self::Chart | Self::LeftHalf | Self::StandIn)
+        use Work::{Chart, Checks, Explanation, Folder, LeftHalf, MeshFiles, StandIn};
+        matches!(self, Checks | Explanation | Chart | LeftHalf | StandIn | MeshFiles | Folder)
     }
 }
 
@@ -91,8 +97,8 @@ pub(crate) struct Load {
     pub preparation: Preparation,
     /// Whether the camera stays where it is, because the same mesh is loaded again.
     pub keep_view: bool,
-    /// A message to show once the mesh is loaded.
-    pub remark: Option<String>,
+    /// Whether it is loaded because it has changed on disk.
+    pub has_changed: bool,
 }
 
 #[derive(Default)]

@@ -7,6 +7,8 @@ pub(super) mod deviation_job;
 pub(super) mod environment_job;
 pub(super) mod explain_job;
 pub(super) mod export_job;
+pub(super) mod file_watch;
+pub(super) mod folder_job;
 pub(super) mod given;
 pub(super) mod given_factors;
 pub(super) mod job_list;

@@ -4,10 +4,10 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Sender, TryRecvError, channel};
-use std::time::{Duration, SystemTime};
 
 use super::background_job::{caught, spawn};
 use super::companion_files::{absolute_path, file_name, new_generation};
+use super::file_watch::{Stamped, watch};
 use super::job_list::Work;
 use crate::app::App;
 use geometry::names::shown_path;
@@ -147,39 +147,27 @@ impl<S: UserShaderSlot> OpenShader<S> {
     }
 }
 
-/// How often the file is looked at.
-const EVERY: Duration = Duration::from_millis(250);
-
 /// What came of reading the file.
 type Read<S> = Result<Arc<S>, String>;
 
-/// When a file was last written, and its length in bytes; none while it isn't there.
-fn stamp(path: &Path) -> Option<(Option<SystemTime>, u64)> {
-    std::fs::metadata(path).ok().map(|about| (about.modified().ok(), about.len()))
-}
-
 /// Reads and compiles the file, and again after every change, until nobody wants it any more.
-fn watch<S: UserShaderSlot>(
+fn read_versions<S: UserShaderSlot>(
     engine: &Engine,
     context: &egui::Context,
     path: &Path,
     versions: &Sender<Read<S>>,
     wanted: &Progress,
 ) {
-    let mut seen = None;
-    while wanted.check().is_ok() {
-        let now = stamp(path);
-        // An editor may replace the file by another: what isn't there for a moment is no new version, unless it is the first.
-        if seen.as_ref() != Some(&now) && (now.is_some() || seen.is_none()) {
-            seen = Some(now);
-            let version = caught(|| read(engine, path));
-            let version = version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path))));
-            if versions.send(version).is_err() {
-                return;
-            }
-            context.request_repaint();
-        }
-        std::thread::sleep(EVERY);
+    let files = Stamped::now([path.to_owned()]);
+    let send = || {
+        let version = caught(|| read(engine, path));
+        let version = version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path))));
+        let is_wanted = versions.send(version).is_ok();
+        context.request_repaint();
+        is_wanted
+    };
+    if send() {
+        watch(files, wanted, send);
     }
 }
 
@@ -216,7 +204,7 @@ impl App {
         let (sender, versions) = channel();
         let progress = Progress::default();
         let (engine, context, wanted) = (self.engine.clone(), context.clone(), progress.clone());
-        spawn(move || watch(&engine, &context, &path, &sender, &wanted));
+        spawn(move || read_versions(&engine, &context, &path, &sender, &wanted));
         self.jobs.follow(S::WORK, progress, move || {
             let version = versions.try_recv();
             let is_there = !matches!(version, Err(TryRecvError::Empty));

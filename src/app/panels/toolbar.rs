@@ -71,7 +71,7 @@ impl App {
     }
 
     /// A button that gives a command, with its text and key as hover text. It is greyed out where the command isn't possible.
-    fn command_button(
+    pub(in crate::app) fn command_button(
         &mut self,
         ui: &mut egui::Ui,
         commands: &[Command],

@@ -145,6 +145,7 @@ impl App {
         }
         self.watch_shader::<LodShader>(context);
         self.watch_shader::<SurfaceShader>(context);
+        self.watch_mesh(context);
         self.dialogs.pending.iter_mut().for_each(|dialog| dialog.since = f64::NEG_INFINITY);
         self.close_chart();
         self.persistence.move_to_another_window();

@@ -1,0 +1,101 @@
+//! Watches files for changes on disk.
+
+use std::path::PathBuf;
+use std::sync::mpsc::channel;
+use std::time::Duration;
+
+use super::background_job::spawn;
+use super::job_list::Work;
+use crate::app::App;
+use geometry::progress::Progress;
+use load::HeightSource;
+use load::Source;
+use load::files::Stamp;
+
+/// How often files are looked at.
+const EVERY: Duration = Duration::from_millis(200);
+
+/// Files with the stamps that they had when they were read; none for a file that wasn't there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Stamped(Vec<(PathBuf, Option<Stamp>)>);
+
+impl Stamped {
+    pub(crate) fn now(paths: impl IntoIterator<Item = PathBuf>) -> Self {
+        let stamped = |path: PathBuf| {
+            let stamp = Stamp::of(&path);
+            (path, stamp)
+        };
+        Self(paths.into_iter().map(stamped).collect())
+    }
+
+    /// Adds files after these.
+    pub(crate) fn and(mut self, others: Self) -> Self {
+        self.0.extend(others.0);
+        self
+    }
+
+    /// The same files as they are now.
+    fn again(&self) -> Self {
+        Self::now(self.0.iter().map(|(path, _)| path.clone()))
+    }
+
+    /// Whether the first file is there. A program may replace a file by another, so that it is missing for a moment.
+    fn is_there(&self) -> bool {
+        self.0.first().is_some_and(|(_, stamp)| stamp.is_some())
+    }
+}
+
+/// Calls `changed` after every change of the files, once two looks find them the same: what is still being written is waited for. Ends
+/// when nobody wants it any more, or when `changed` returns false.
+pub(super) fn watch(mut known: Stamped, wanted: &Progress, mut changed: impl FnMut() -> bool) {
+    let mut last = known.clone();
+    while wanted.check().is_ok() {
+        std::thread::sleep(EVERY);
+        let now = known.again();
+        if now != known && now == last && now.is_there() {
+            known = now;
+            if !changed() {
+                return;
+            }
+        } else {
+            last = now;
+        }
+    }
+}
+
+/// The files that a mesh is read from, besides those that it names.
+pub(crate) fn sources(source: &Source, heights: Option<&HeightSource>) -> Vec<PathBuf> {
+    let mesh = if let Source::File(path) = source { Some(path) } else { None };
+    let heights = if let Some(HeightSource::File(path)) = heights { Some(path) } else { None };
+    mesh.into_iter().chain(heights).cloned().collect()
+}
+
+impl App {
+    /// Loads the mesh again whenever it, or a file that it names, has changed on disk. A version that can't be read leaves the one that
+    /// is shown.
+    pub(in crate::app) fn watch_mesh(&mut self, context: &egui::Context) {
+        let Some(files) = self.document.as_ref().map(|document| document.files.clone()) else { return };
+        if !matches!(self.source(), Some(Source::File(_))) {
+            return;
+        }
+        let (sender, changes) = channel();
+        let progress = Progress::default();
+        let (wanted, context) = (progress.clone(), context.clone());
+        spawn(move || {
+            watch(files, &wanted, || {
+                context.request_repaint();
+                sender.send(()).is_ok()
+            });
+        });
+        self.jobs.follow(Work::MeshFiles, progress, move || {
+            changes.try_recv().is_ok().then(|| Box::new(|app: &mut Self, context: &_| app.follow_files(context)) as _)
+        });
+    }
+
+    fn follow_files(&mut self, context: &egui::Context) {
+        if self.jobs.load().is_none_or(|load| load.keep_view) {
+            self.reload(context);
+            self.jobs.last_load.iter_mut().for_each(|load| load.has_changed = true);
+        }
+    }
+}
