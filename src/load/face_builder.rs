@@ -10,7 +10,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
 use super::notes::Notes;
-use super::parts::Parts;
+use super::parts::{Part, Parts};
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::{RecentCorners, VertexNumbers};
 use super::tangents;
@@ -92,6 +92,15 @@ pub(super) struct FaceBuilder<'a> {
     cut: Vec<[usize; 3]>,
 }
 
+/// A mesh, and what belongs to it.
+pub(super) struct Finished {
+    pub mesh: Mesh,
+    /// Each corner's number.
+    pub numbers: Vec<u32>,
+    pub notes: Notes,
+    pub parts: Vec<Part>,
+}
+
 impl<'a> FaceBuilder<'a> {
     /// Starts a mesh, whose normals are made, and whose parts are left out, as was selected.
     pub(super) fn new(file: &ModelFile, memory: &'a Budget) -> Self {
@@ -124,7 +133,9 @@ impl<'a> FaceBuilder<'a> {
     /// # Errors
     /// [`ReadError::TooLarge`].
     pub(super) fn enter_part(&mut self, name: &[u8]) -> Result<(), ReadError> {
-        Ok(self.parts.enter(name, self.memory)?)
+        self.parts.enter(name, self.memory)?;
+        self.builder.enter_part(self.parts.current());
+        Ok(())
     }
 
     /// Whether any part was entered.
@@ -340,19 +351,15 @@ impl<'a> FaceBuilder<'a> {
     pub(super) fn finish(mut self, name: &str, holds: String, progress: &Progress) -> Result<LoadedMesh, ReadError> {
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
         let are_colored = self.are_colored;
-        let hides_all = self.builder.is_empty() && self.parts.are_hidden();
-        let holds = if hides_all { format!("{holds}, and its parts are hidden") } else { holds };
-        let (parts, beyond) = std::mem::take(&mut self.parts).into_list();
-        let (mut mesh, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
+        let Finished { mut mesh, numbers, mut notes, parts } = self.finish_numbered(name, holds, progress)?;
         let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
         if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
             tangents::with_details(&mut mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
-        notes.extend(counted([(beyond, "objects and groups beyond the first 65,536, which can't be hidden")]));
         Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, ..LoadedMesh::default() })
     }
 
-    /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the notes too.
+    /// Builds the mesh as [`finish`](Self::finish) does, with what the reader adds to it.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
@@ -361,7 +368,9 @@ impl<'a> FaceBuilder<'a> {
         name: &str,
         holds: String,
         progress: &Progress,
-    ) -> Result<(Mesh, Vec<u32>, Notes), ReadError> {
+    ) -> Result<Finished, ReadError> {
+        let hides_all = self.builder.is_empty() && self.parts.are_hidden();
+        let holds = if hides_all { format!("{holds}, and its parts are hidden") } else { holds };
         // No more corners are stored.
         (self.recent, self.block) = Default::default();
         if self.builder.is_empty() {
@@ -383,9 +392,12 @@ impl<'a> FaceBuilder<'a> {
                 "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap",
             ),
         ]));
-        let (mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
+        let (parts, beyond, places) = self.parts.into_list();
+        self.notes.extend(counted([(beyond, "parts beyond the first 65,536, which can't be hidden")]));
+        let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
+        mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
-        Ok((mesh, numbers, self.notes))
+        Ok(Finished { mesh, numbers, notes: self.notes, parts })
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.

@@ -23,6 +23,7 @@ mod vertices;
 
 use std::sync::Arc;
 
+use super::face_builder::Finished;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
@@ -83,7 +84,8 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(placed);
     drop(scene);
     progress.set(0.8);
-    let (mut mesh, mut numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
+    let finished = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
+    let Finished { mut mesh, mut numbers, mut notes, parts } = finished;
     if let Some(details) = details {
         numbers = tangents::with_details(&mut mesh, details, &numbers, &mut notes, &budget, progress)?;
     }
@@ -93,7 +95,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
         None => {}
     }
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), files, file_bytes, ..LoadedMesh::default() })
+    Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, files, file_bytes, ..LoadedMesh::default() })
 }
 
 #[cfg(test)]

@@ -125,6 +125,7 @@ pub(super) fn read(
     let mut scene = Scene {
         document,
         global: grown.as_deref().unwrap_or(&placed.global),
+        parts: &parsed.parts.of_node,
         instances: &extensions.instances,
         accessors: &accessors,
         materials,
@@ -191,6 +192,8 @@ struct Scene<'a> {
     /// The transform from each node's own space to the scene's, in which the meshes are built.
     global: &'a [DMat4],
     /// By node, the instances of its mesh.
+    /// The part of each node that is one.
+    parts: &'a HashMap<usize, u32>,
     instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
     materials: Materials<'a>,
@@ -210,6 +213,7 @@ impl<'a> Scene<'a> {
         let _scope = Borrowed::from(self.accessors.budget);
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(self.global));
+        self.builder.enter_part(self.parts.get(&node.index()).copied());
         let Some(own) = self.instances.get(&node.index()) else {
             return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
         };

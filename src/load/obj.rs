@@ -25,6 +25,7 @@ use super::face_builder::{FaceBuilder, NumberedCorner, counted, linear_color, re
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
+use super::parts::DEFAULT_PART;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::{Line, Lines, first_word, in_utf8};
@@ -37,9 +38,6 @@ use materials::Materials;
 use pieces::{Piece, in_pieces};
 use smoothing::Smoothing;
 use vertices::{VertexPiece, Vertices};
-
-/// The part of faces that belong to no object and no group; the specification calls it so.
-const DEFAULT_PART: &[u8] = b"default";
 
 /// Builds a mesh from a file's bytes.
 ///

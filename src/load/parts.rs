@@ -5,13 +5,20 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use super::memory_budget::Budget;
+use geometry::casts::to_u32;
 use geometry::mesh::MemoryRefused;
 
 /// The greatest number of parts. The triangles of others belong to none, and are always shown.
 const MAX_PARTS: usize = 1 << 16;
 
+/// The name of faces that belong to no part, or to one without a name; the specification of OBJ calls them so.
+pub(super) const DEFAULT_PART: &[u8] = b"default";
+
 /// Memory for a part besides its name, which is stored twice, in bytes.
 const PER_PART: u64 = 150;
+
+/// Memory for triangles of a part that follow one another, in bytes: while they are collected, and in the mesh.
+const PER_RANGE: u64 = 32;
 
 /// A part of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -46,6 +53,7 @@ impl Parts {
     /// # Errors
     /// [`MemoryRefused`].
     pub(super) fn enter(&mut self, name: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
+        budget.hold(PER_RANGE)?;
         if let Some(&number) = self.numbers.get(name) {
             self.current = Some(number);
             return Ok(());
@@ -62,6 +70,11 @@ impl Parts {
         self.numbers.insert(name.to_vec(), number);
         self.current = Some(number);
         Ok(())
+    }
+
+    /// The part that the next faces belong to.
+    pub(super) fn current(&self) -> Option<u32> {
+        self.current.map(to_u32)
     }
 
     /// Whether any part was entered.
@@ -81,10 +94,17 @@ impl Parts {
         self.current.is_some_and(|number| self.found[number].is_hidden)
     }
 
-    /// Returns the parts that have triangles, and how often one was entered that is one too many.
-    pub(super) fn into_list(mut self) -> (Vec<Part>, usize) {
+    /// Returns the parts that have triangles, how often one was entered that is one too many, and the places in the list of
+    /// the parts that were [current](Self::current).
+    pub(super) fn into_list(mut self) -> (Vec<Part>, usize, Vec<u32>) {
+        let mut listed = 0;
+        let places = self.found.iter().map(|part| {
+            listed += u32::from(part.triangles > 0);
+            listed.saturating_sub(1)
+        });
+        let places = places.collect();
         self.found.retain(|part| part.triangles > 0);
-        (self.found, self.beyond)
+        (self.found, self.beyond, places)
     }
 
     /// Whether triangles are left out.
@@ -112,7 +132,8 @@ mod tests {
             parts.enter(format!("{i}").as_bytes(), &budget).expect("memory is unlimited");
         }
         assert!(!parts.leave_out(7));
-        let (found, beyond) = parts.into_list();
+        let (found, beyond, places) = parts.into_list();
+        assert_eq!(&places[..4], [0, 1, 1, 1], "that without triangles has no place of its own");
         let part = |name: &str, triangles, is_hidden| Part { name: name.to_owned(), triangles, is_hidden };
         assert_eq!((found, beyond), (vec![part("a", u32::MAX, false), part("b", 3, true)], 3));
     }

@@ -110,6 +110,7 @@ fn the_command_line_says_how_the_first_mesh_is_taken() {
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.hidden, ["side"]);
     // Without the side, the square of 2 times 3 stands upright.
     assert_eq!(size(&harness), [0.02, 0.03, 0.0]);
+    eframe::App::on_exit(harness.state_mut());
     drop(harness);
     let again = resumed(state.path(), [1200.0, 960.0], Some(source));
     let loaded = again.state().loaded().expect("a mesh");

@@ -18,6 +18,7 @@ mod loading;
 mod lod_shader;
 mod lost;
 mod opening;
+mod parts;
 mod picking;
 mod saving;
 mod scenes;

@@ -41,6 +41,8 @@ pub(super) struct Panels {
     pub are_hidden: bool,
     /// The panel that is shown where both share a side.
     pub side: Side,
+    /// What the names of listed parts contain.
+    pub parts_filter: String,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
     /// How high the section of the selected patch is, in points.
@@ -56,6 +58,7 @@ impl Default for Panels {
             open: OpenSections::default(),
             are_hidden: false,
             side: Side::default(),
+            parts_filter: String::new(),
             dragged_crease_band: None,
             patch_height: 0.0,
             last_displacement: Displacement::usual(false),

@@ -1,15 +1,34 @@
-//! The list of the file's parts, which can be hidden.
+//! The list of the file's parts, which can be hidden, and the menu of a part, which is over the picture too.
 
 use std::sync::Arc;
 
 use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::counted;
-use crate::app::widgets::list;
+use crate::app::widgets::{list, switch_button, text_width};
+use crate::commands::{Action, CameraAction, all};
 use geometry::names::{shortened, shown};
+use load::parts::Part;
 
 /// The greatest length of a name in the list, in characters.
 const LONGEST: usize = 40;
+
+/// So many parts have a filter.
+const MANY: usize = 8;
+
+/// The button that shows one part alone.
+const SOLO: &str = "Solo";
+
+/// What is done with a part: a place in the list of parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PartAction {
+    Hide(usize),
+    Show(usize),
+    /// Shows it alone.
+    Solo(usize),
+    Frame(usize),
+    ShowAll,
+}
 
 impl App {
     /// A switch for each part, if the file has several. The mesh is loaded again without those that are hidden.
@@ -19,35 +38,141 @@ impl App {
         if !self.panels.open.title(ui, Section::Parts) {
             return;
         }
-        let mut clicked = None;
-        list(ui, "parts", parts.len(), 0, |ui, row| {
-            let part = &parts[row];
-            let mut is_shown = !part.is_hidden;
-            let hover = format!(
-                "{}: {}. A part that is hidden is left out, as if the file didn't have it (--hide-part).",
-                shown(&part.name),
-                counted(part.triangles.into(), "triangle")
-            );
-            let name = shortened(&shown(&part.name), LONGEST);
-            let response = ui.checkbox(&mut is_shown, name).on_hover_text(hover);
-            if response.changed() {
-                clicked = Some(row);
-            }
+        let picked = self.picked_part();
+        let filter = &mut self.panels.parts_filter;
+        if parts.len() > MANY {
+            let field =
+                egui::TextEdit::singleline(filter).hint_text("Filter parts by name").desired_width(f32::INFINITY);
+            let field = ui.add(field).on_hover_text("Lists the parts whose names contain this.");
+            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Filter parts by name"));
+        } else {
+            filter.clear();
+        }
+        let filter = filter.to_lowercase();
+        let listed: Vec<usize> =
+            (0..parts.len()).filter(|&part| parts[part].name.to_lowercase().contains(&filter)).collect();
+        let mut action = None;
+        list(ui, "parts", listed.len(), 0, |ui, row| {
+            let part = listed[row];
+            let (response, chosen) = part_row(ui, &parts, part, picked == Some(part));
+            action = chosen.or(action);
+            response.context_menu(|ui| action = part_entries(ui, &parts, part).or(action));
             response
         });
-        let are_hidden = parts.iter().any(|part| part.is_hidden);
-        if are_hidden && ui.button("Show all parts").on_hover_text("Shows the parts that are hidden.").clicked() {
-            self.hidden = Arc::default();
+        let hidden = parts.iter().filter(|part| part.is_hidden).count();
+        ui.horizontal(|ui| {
+            let button = ui.add_enabled(hidden > 0, egui::Button::new("Show all parts"));
+            if button.on_hover_text("Shows the parts that are hidden.").clicked() {
+                action = Some(PartAction::ShowAll);
+            }
+            ui.weak(format!("{} of {} shown", parts.len() - hidden, counted(parts.len() as u64, "part")));
+        });
+        action.into_iter().for_each(|action| self.act_on_parts(&parts, action));
+    }
+
+    /// The part of the selected triangle: a place in the list of parts.
+    pub(in crate::app) fn picked_part(&self) -> Option<usize> {
+        let (document, triangle) = (self.document.as_ref()?, self.selected_triangle()?);
+        document.loaded.mesh.part_of(triangle).map(|part| part as usize)
+    }
+
+    /// The menu of what was clicked with the right button in the picture.
+    pub(in crate::app) fn part_menu(&mut self, ui: &mut egui::Ui) {
+        let parts = self.document.as_ref().map(|document| document.loaded.parts.clone()).unwrap_or_default();
+        let picked = self.picked_part().filter(|_| parts.len() > 1);
+        let action = picked.and_then(|part| {
+            ui.strong(shortened(&shown(&parts[part].name), LONGEST));
+            part_entries(ui, &parts, part)
+        });
+        if picked.is_some() {
+            ui.separator();
         }
-        if let Some(row) = clicked {
-            toggle(Arc::make_mut(&mut self.hidden), &parts[row].name);
+        let now = self.availability();
+        let commands = all(&now);
+        for (action, label) in [
+            (Action::Camera(CameraAction::FramePatch), "Frame patch"),
+            (Action::Camera(CameraAction::Frame), "Frame all"),
+            (Action::Deselect, "Deselect"),
+        ] {
+            self.command_button(ui, &commands, &now, &action, [label; 2]);
+        }
+        action.into_iter().for_each(|action| self.act_on_parts(&parts, action));
+    }
+
+    fn act_on_parts(&mut self, parts: &[Part], action: PartAction) {
+        let name = |part: usize| parts[part].name.clone();
+        match action {
+            PartAction::Hide(part) => Arc::make_mut(&mut self.hidden).push(name(part)),
+            PartAction::Show(part) => Arc::make_mut(&mut self.hidden).retain(|other| *other != parts[part].name),
+            PartAction::Solo(part) => {
+                let others = (0..parts.len()).filter(|&other| other != part).map(name);
+                self.hidden = Arc::new(others.collect());
+            }
+            PartAction::Frame(part) => self.frame_part(part as u32),
+            PartAction::ShowAll => self.hidden = Arc::default(),
+        }
+    }
+
+    fn frame_part(&mut self, part: u32) {
+        let Some(document) = &self.document else { return };
+        if let Some(bounds) = document.shown().0.part_bounds(part) {
+            self.viewport.camera.frame(&bounds, self.viewport.picture.size());
         }
     }
 }
 
-fn toggle(hidden: &mut Vec<String>, name: &str) {
-    match hidden.iter().position(|other| other == name) {
-        Some(index) => drop(hidden.remove(index)),
-        None => hidden.push(name.to_owned()),
+/// A part's row: whether it is shown, and a button that shows it alone. Returns the switch, and what is to be done.
+fn part_row(ui: &mut egui::Ui, parts: &[Part], number: usize, is_picked: bool) -> (egui::Response, Option<PartAction>) {
+    let part = &parts[number];
+    let hover = format!(
+        "{}: {}. A part that is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
+        shown(&part.name),
+        counted(part.triangles.into(), "triangle")
+    );
+    let is_alone = !part.is_hidden && parts.iter().filter(|part| !part.is_hidden).count() == 1;
+    let mut is_shown = !part.is_hidden;
+    let mut action = None;
+    let response = ui.horizontal(|ui| {
+        let solo = text_width(ui, SOLO) + 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
+        let size = egui::vec2(ui.available_width() - solo, ui.spacing().interact_size.y);
+        let name = shortened(&shown(&part.name), LONGEST);
+        let name = if is_picked { egui::RichText::new(name).strong() } else { egui::RichText::new(name) };
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let switch = ui.allocate_ui_with_layout(size, layout, |ui| {
+            let switch = ui.checkbox(&mut is_shown, name).on_hover_text(hover);
+            ui.set_min_width(size.x);
+            switch
+        });
+        let alone = ui.add(switch_button(is_alone, SOLO));
+        let name = format!("Show only {}", shown(&part.name));
+        alone.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_alone, &name));
+        if alone.on_hover_text("Shows this part alone; a second click shows all.").clicked() {
+            action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(number) });
+        }
+        switch.inner
+    });
+    if response.inner.changed() {
+        action = Some(if is_shown { PartAction::Show(number) } else { PartAction::Hide(number) });
     }
+    (response.inner, action)
+}
+
+/// What can be done with a part.
+fn part_entries(ui: &mut egui::Ui, parts: &[Part], part: usize) -> Option<PartAction> {
+    let (is_hidden, are_hidden) = (parts[part].is_hidden, parts.iter().any(|part| part.is_hidden));
+    let entries = [
+        (PartAction::Frame(part), "Frame this part", !is_hidden),
+        (PartAction::Solo(part), "Show only this part", true),
+        (PartAction::Hide(part), "Hide this part", !is_hidden),
+        (PartAction::Show(part), "Show this part", is_hidden),
+        (PartAction::ShowAll, "Show all parts", are_hidden),
+    ];
+    let chosen = |(action, label, is_possible): (_, &str, bool)| {
+        ui.add_enabled(is_possible, egui::Button::new(label)).clicked().then_some(action)
+    };
+    let chosen = entries.into_iter().filter_map(chosen).last();
+    if chosen.is_some() {
+        ui.close();
+    }
+    chosen
 }

@@ -12,6 +12,7 @@ use crate::app::widgets::{SWATCH, dense, swatch, title};
 use crate::app::{App, Document};
 use crate::commands::{Action, with_key};
 use geometry::mesh::{Mesh, Topology, adjacency};
+use geometry::names;
 use geometry::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
 use geometry::tessellate::{
     Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh, Vertex, domain_plan,
@@ -77,6 +78,10 @@ impl App {
                     hit: self.hit().copied(),
                     is_playing: self.is_playing(),
                 };
+                if let Some((part, document)) = self.picked_part().zip(self.document.as_ref()) {
+                    let name = names::shown(&document.loaded.parts[part].name);
+                    ui.add(egui::Label::new(RichText::new(&name).strong()).truncate()).on_hover_text(name);
+                }
                 // The tables have less space between lines than the rest of the panel.
                 ui.scope(|ui| {
                     ui.spacing_mut().item_spacing.y = 3.0;

@@ -45,6 +45,7 @@ impl App {
         self.move_camera(ui, &response, points);
         let scale = ui.ctx().pixels_per_point();
         self.click(&response, scale);
+        response.context_menu(|ui| self.part_menu(ui));
         let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
         // A camera that frames the whole mesh goes on doing so in a window of another size.
         let resized = self.viewport.picture.target.as_ref().is_some_and(|(target, _)| target.size != size);

@@ -111,7 +111,8 @@ impl App {
 
     /// Starts to answer a click on the picture.
     pub(in crate::app) fn click(&mut self, response: &Response, pixels_per_point: f32) {
-        let Some(pointer) = response.interact_pointer_pos().filter(|_| response.clicked()) else { return };
+        let is_clicked = response.clicked() || response.secondary_clicked();
+        let Some(pointer) = response.interact_pointer_pos().filter(|_| is_clicked) else { return };
         let Some(document) = self.document.as_mut().filter(|_| !self.viewport.closes_list) else { return };
         let place = (pointer - response.rect.min) * pixels_per_point;
         document.selection.clicked = self.viewport.picture.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);

@@ -120,6 +120,7 @@ fn rebuilt(
         progress.check()?;
         let index = builder.material(material.clone());
         for triangle in material.triangles.clone() {
+            builder.enter_part(mesh.part_of(triangle));
             match topology.patch_of(triangle) {
                 Some(patch) => pieces(patch, &mut |corners| made.push(corners)),
                 None => made.push(mesh.triangles[triangle as usize].map(|corner| on_point(mesh, topology, corner))),

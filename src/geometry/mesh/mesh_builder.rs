@@ -14,7 +14,7 @@ use super::generate_normals::generate_normals;
 use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::unfinished_mesh::UnfinishedMesh;
 use super::weld::{plus_zero2, plus_zero3};
-use super::{Corner, Material, Mesh, Repairs};
+use super::{Corner, Material, Mesh, PartRange, Repairs};
 use crate::casts::to_u32;
 use crate::cores::{in_ranges, ranges};
 use crate::progress::{Cancelled, Progress};
@@ -53,6 +53,8 @@ pub struct MeshBuilder {
     expected: [usize; 2],
     /// Counts of the repairs so far.
     repairs: Repairs,
+    /// The part of the file that the next triangles belong to.
+    part: Option<u32>,
     /// The angle up to which faces are smooth where normals are made, in degrees.
     crease_angle: f32,
 }
@@ -63,14 +65,37 @@ impl Default for MeshBuilder {
     }
 }
 
+/// Triangles, the materials that have some, and their parts.
+type Gathered = (Vec<[u32; 3]>, Vec<Material>, Vec<PartRange>);
+
 /// The triangles of one material.
 struct Group {
     material: Material,
     /// Lists of triangles, of which all but the last are full.
     runs: Vec<Vec<[u32; 3]>>,
+    triangles: u32,
+    /// The parts that triangles belong to, each with the first triangle of the group that does.
+    parts: Vec<(u32, Option<u32>)>,
 }
 
 impl Group {
+    /// Counts triangles of a part.
+    fn count(&mut self, triangles: usize, part: Option<u32>) {
+        if triangles > 0 && self.parts.last().map_or(part.is_some(), |(_, last)| *last != part) {
+            self.parts.push((self.triangles, part));
+        }
+        self.triangles += to_u32(triangles);
+    }
+
+    /// The parts of the triangles, of which the first one becomes that of this number.
+    fn ranges(&self, first: u32) -> impl Iterator<Item = PartRange> {
+        let ends = self.parts.iter().skip(1).map(|(next, _)| *next).chain([self.triangles]);
+        let ranges = self.parts.iter().zip(ends);
+        ranges.filter_map(move |(&(start, part), end)| {
+            Some(PartRange { triangles: first + start..first + end, part: part? })
+        })
+    }
+
     /// Returns how many more triangles fit into the last list.
     fn room(&self) -> usize {
         self.runs.last().map_or(0, |run| run.capacity() - run.len())
@@ -105,6 +130,7 @@ impl MeshBuilder {
             offered: 0,
             expected: [0; 2],
             repairs: Repairs::default(),
+            part: None,
             crease_angle,
         }
     }
@@ -171,8 +197,13 @@ impl MeshBuilder {
     /// Adds a material and returns its index for [`triangle`](Self::triangle). The material's `triangles` are set at
     /// the end. The mesh has its materials in the order of these calls.
     pub fn material(&mut self, material: Material) -> usize {
-        self.groups.push(Group { material, runs: Vec::new() });
+        self.groups.push(Group { material, runs: Vec::new(), triangles: 0, parts: Vec::new() });
         self.groups.len() - 1
+    }
+
+    /// Says which part of the file the next triangles belong to.
+    pub fn enter_part(&mut self, part: Option<u32>) {
+        self.part = part;
     }
 
     /// A material that was added.
@@ -253,6 +284,7 @@ impl MeshBuilder {
         if let Some(run) = group.runs.last_mut() {
             run.push(corners.map(|corner| corner.id));
         }
+        group.count(1, self.part);
         self.triangles += 1;
     }
 
@@ -265,6 +297,7 @@ impl MeshBuilder {
         self.repairs.add(repairs);
         self.triangles += triangles.len();
         let group = &mut self.groups[material];
+        group.count(triangles.len(), self.part);
         while !triangles.is_empty() {
             if group.room() == 0 {
                 let count = group.next_run();
@@ -314,7 +347,7 @@ impl MeshBuilder {
         progress: &Progress,
     ) -> Result<(Mesh, Vec<u32>), BuildError> {
         self.distinct.close(budget);
-        let (triangles, materials) = borrowing(budget, || self.gathered(budget))?;
+        let (triangles, materials, part_ranges) = borrowing(budget, || self.gathered(budget))?;
         progress.check()?;
         let DistinctCorners { corners, bindings, .. } = self.distinct;
         let mut mesh = UnfinishedMesh { corners, bindings, triangles };
@@ -332,11 +365,12 @@ impl MeshBuilder {
             corners.shrink_to_fit();
         }
         let repairs = self.repairs;
-        Ok((Mesh { name, corners, triangles: triangles.into(), materials, repairs, ..Mesh::default() }, bindings))
+        let triangles = triangles.into();
+        Ok((Mesh { name, corners, triangles, materials, part_ranges, repairs, ..Mesh::default() }, bindings))
     }
 
-    /// Joins all triangles into one list, and returns it with the materials that have triangles.
-    fn gathered(&mut self, budget: &Budget) -> Result<(Vec<[u32; 3]>, Vec<Material>), BuildError> {
+    /// Joins all triangles into one list, and returns it with the materials that have triangles, and with the parts.
+    fn gathered(&mut self, budget: &Budget) -> Result<Gathered, BuildError> {
         let used = |group: &Group| group.runs.iter().any(|run| !run.is_empty());
         let mut groups: Vec<Group> = std::mem::take(&mut self.groups).into_iter().filter(used).collect();
         let is_full = |run: &Vec<[u32; 3]>| run.len() == run.capacity();
@@ -351,13 +385,16 @@ impl MeshBuilder {
             triangles.reserve_exact(self.triangles);
         }
         let mut materials = Vec::with_capacity(groups.len());
-        for Group { mut material, runs } in groups {
+        let mut parts = Vec::new();
+        for group in groups {
             let first = if is_whole { 0 } else { to_u32(triangles.len()) };
+            parts.extend(group.ranges(first));
+            let Group { mut material, runs, .. } = group;
             runs.into_iter().for_each(|run| triangles.extend(run));
             material.triangles = Range { start: first, end: to_u32(triangles.len()) };
             materials.push(material);
         }
-        Ok((triangles, materials))
+        Ok((triangles, materials, parts))
     }
 }
 

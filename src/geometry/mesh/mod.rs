@@ -40,6 +40,7 @@ pub mod union_find;
 pub mod weld;
 pub mod weld_preview;
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
@@ -91,6 +92,8 @@ pub struct Mesh {
     pub triangles: Arc<Vec<[u32; 3]>>,
     /// The ranges of `triangles` of these materials follow one another and cover all triangles.
     pub materials: Vec<Material>,
+    /// Which triangles are whose part of the file, in their order. Triangles that belong to no part are in none of these.
+    pub part_ranges: Vec<PartRange>,
     /// The height images that displacement can move the surface by.
     pub heights: Option<Arc<Heights>>,
     /// More about each corner, for meshes whose materials need it.
@@ -105,7 +108,31 @@ pub struct Mesh {
     pub cameras: Vec<FileCamera>,
 }
 
+/// Triangles of a part of the file, one after the other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PartRange {
+    pub triangles: Range<u32>,
+    /// An index into the file's list of parts.
+    pub part: u32,
+}
+
 impl Mesh {
+    /// The part of the file that a triangle belongs to: an index into the file's list of parts.
+    pub fn part_of(&self, triangle: u32) -> Option<u32> {
+        let after = self.part_ranges.partition_point(|range| range.triangles.start <= triangle);
+        let range = &self.part_ranges[after.checked_sub(1)?];
+        range.triangles.contains(&triangle).then_some(range.part)
+    }
+
+    /// The box around a part of the file; none if it has no triangles.
+    pub fn part_bounds(&self, part: u32) -> Option<Bounds> {
+        let triangles =
+            self.part_ranges.iter().filter(|range| range.part == part).flat_map(|range| range.triangles.clone());
+        let corners = triangles.flat_map(|triangle| self.triangles[triangle as usize]);
+        let positions = corners.map(|corner| self.corners[corner as usize].position);
+        positions.clone().next().map(|_| Bounds::new(positions))
+    }
+
     /// The size in memory, in bytes. A texture that materials share counts once.
     pub fn bytes(&self) -> u64 {
         let of_material = |material: &Material| {
@@ -121,7 +148,8 @@ impl Mesh {
         let rig = self.rig.as_ref().map_or(0, |rig| rig.bytes());
         let [corners, triangles] = [self.corners.capacity() * 32, self.triangles.capacity() * 12];
         let details = self.details.as_ref().map_or(0, |details| size_of_val(&details[..]));
-        (corners + triangles + textures + materials + rig + details) as u64
+        let parts = self.part_ranges.capacity() * size_of::<PartRange>();
+        (corners + triangles + parts + textures + materials + rig + details) as u64
     }
 
     /// Returns the lights of the file in a pose. One without a finite place there stays where it is at rest.

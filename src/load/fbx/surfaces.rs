@@ -12,6 +12,7 @@ use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::model_file::ModelFile;
 use crate::notes::Notes;
+use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
 use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::uri::Files;
@@ -111,6 +112,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
         });
+        let name = &*node.element.name;
+        self.faces.enter_part(if name.is_empty() { DEFAULT_PART } else { name.as_bytes() })?;
         let mut reader = MeshReader {
             node,
             mesh,

@@ -20,6 +20,8 @@ use geometry::mesh::MemoryRefused;
 #[derive(Debug, Default)]
 pub(super) struct NodeParts {
     pub list: Vec<Part>,
+    /// The place in the list of each node that is a part.
+    pub of_node: HashMap<usize, u32>,
     /// How many nodes aren't parts because there are too many of them.
     pub beyond: usize,
     /// Whether any part was left out.
@@ -39,7 +41,7 @@ pub(super) fn take(
     budget: &Budget,
 ) -> Result<NodeParts, GltfError> {
     let mut parts = Parts::hiding(hidden);
-    let mut cut = Vec::new();
+    let (mut cut, mut entered) = (Vec::new(), Vec::new());
     for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| reach.shown[*i]) {
         let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { continue };
         let Some(name) = node.name.as_ref().or(mesh.name.as_ref()).filter(|name| !name.is_empty()) else { continue };
@@ -48,6 +50,7 @@ pub(super) fn take(
             reason: refused.into(),
         };
         parts.enter(name.as_bytes(), budget).map_err(too_large)?;
+        entered.extend(parts.current().map(|part| (i, part)));
         let first = instances.get(&i).and_then(InstancingExtension::first);
         if parts.leave_out(triangles(root, mesh).saturating_mul(first.map_or(1, |first| count(root, first)))) {
             cut.push(i);
@@ -57,8 +60,9 @@ pub(super) fn take(
     for node in cut {
         (root.nodes[node].mesh, root.nodes[node].skin) = (None, None);
     }
-    let (list, beyond) = parts.into_list();
-    Ok(NodeParts { list, beyond, is_cut })
+    let (list, beyond, places) = parts.into_list();
+    let of_node = entered.into_iter().map(|(node, part)| (node, places[part as usize])).collect();
+    Ok(NodeParts { list, of_node, beyond, is_cut })
 }
 
 /// Returns how many triangles a mesh has, with those of strips that only connect parts.

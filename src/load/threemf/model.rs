@@ -107,6 +107,8 @@ pub(super) struct Part {
 /// An object: a mesh, or components.
 #[derive(Default)]
 pub(super) struct Object {
+    /// Empty if it has none.
+    pub name: String,
     pub vertices: Range<usize>,
     pub triangles: Range<usize>,
     /// The group of properties that triangles have which name none, and the entry.
@@ -291,7 +293,10 @@ impl<'a> ModelReader<'a> {
         let id = self.id(element, "object")?;
         self.budget.hold(PER_ENTRY)?;
         let (vertices, triangles) = (self.geometry.vertices.len(), self.geometry.triangles.len());
+        let name = element.text(b"name").unwrap_or_default();
+        self.budget.hold(name.len() as u64)?;
         let mut object = Object {
+            name,
             vertices: vertices..vertices,
             triangles: triangles..triangles,
             group: element.number(b"pid"),

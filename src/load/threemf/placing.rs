@@ -13,6 +13,7 @@ use crate::face_builder::{FaceBuilder, NumberedCorner, counted};
 use crate::import::Import;
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::notes::Notes;
+use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::mesh_builder::InputCorner;
@@ -167,6 +168,8 @@ impl Placer<'_, '_> {
     }
 
     fn mesh(&mut self, at: ObjectAt, object: &Object, transform: DAffine3) -> Result<(), ReadError> {
+        let name = if object.name.is_empty() { DEFAULT_PART } else { object.name.as_bytes() };
+        self.faces.enter_part(name)?;
         let is_mirrored = transform.matrix3.determinant() < 0.0;
         let mut last: Option<(u32, Resolved)> = None;
         for i in object.triangles.clone() {

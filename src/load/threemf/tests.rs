@@ -287,3 +287,15 @@ fn cancelling_stops_the_work() {
     progress.cancel();
     assert!(matches!(super::read(cube(), &ModelFile::from_test("", &progress)), Err(ReadError::Cancelled(_))));
 }
+
+#[test]
+fn objects_with_triangles_are_parts_by_their_names() {
+    let object = |id: u32, name: &str| format!("<object id=\"{id}\"{name} type=\"model\">{}</object>", cube_mesh());
+    let objects = [object(1, " name=\"lid &amp; rim\""), object(2, ""), object(3, " name=\"lid &amp; rim\"")].concat();
+    let build: String = [3, 2, 1].map(|id| format!("<item objectid=\"{id}\"/>")).concat();
+    let bytes = package::package(&model(&objects, &build));
+    let loaded = read(&bytes);
+    let parts: Vec<_> = loaded.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+    assert_eq!(parts, [("lid & rim", 24), ("default", 12)]);
+    assert_eq!([0, 12, 24].map(|triangle| loaded.part_of(triangle)), [Some(0), Some(1), Some(0)]);
+}

@@ -170,3 +170,22 @@ fn many_corners_at_once_get_the_numbers_of_one_after_another() {
         assert_eq!(stored(cores, at_once), expected, "{cores} cores, {at_once} at once");
     }
 }
+
+#[test]
+fn triangles_keep_their_parts_among_several_materials() {
+    let mut builder = MeshBuilder::new();
+    let materials = ["a", "b"].map(|name| builder.material(Material::plain(name, [1.0; 4])));
+    for (i, (part, material)) in
+        [(Some(3), 0), (Some(3), 1), (None, 1), (Some(5), 1), (Some(5), 0), (Some(3), 0)].into_iter().enumerate()
+    {
+        builder.enter_part(part);
+        let x = i as f32;
+        builder.triangle(materials[material], [corner(x, 0.0), corner(x + 1.0, 0.0), corner(x, 1.0)]);
+    }
+    let mesh = builder.finish(String::new(), &Progress::new()).expect("not cancelled");
+    let of_each: Vec<_> = (0..7).map(|triangle| mesh.part_of(triangle)).collect();
+    assert_eq!(of_each, [Some(3), Some(5), Some(3), Some(3), None, Some(5), None], "the last one isn't there");
+    let bounds = mesh.part_bounds(5).expect("a part with triangles");
+    assert_eq!((bounds.min.x, bounds.max.x), (3.0, 5.0));
+    assert_eq!(mesh.part_bounds(4), None);
+}
