@@ -6,13 +6,12 @@ use egui::{Color32, Rect, Sense, Shape, Stroke, pos2, vec2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Section {
     Surface,
-    Import,
-    Parts,
     LevelOfDetail,
     Displacement,
+    Parts,
     Animation,
-    Overlays,
-    View,
+    Look,
+    Import,
     Advanced,
     Patch,
     Factors,
@@ -27,8 +26,8 @@ pub(in crate::app) enum Section {
 }
 
 impl Section {
-    pub(in crate::app) const ALL: [Self; 19] = geometry::names::every![Section:
-        Surface, Import, Parts, LevelOfDetail, Displacement, Animation, Overlays, View, Advanced, Patch, Factors, LodShader, Deviation, Cracks, Patches, Waste,
+    pub(in crate::app) const ALL: [Self; 18] = geometry::names::every![Section:
+        Surface, LevelOfDetail, Displacement, Parts, Animation, Look, Import, Advanced, Patch, Factors, LodShader, Deviation, Cracks, Patches, Waste,
         Edges, Mesh, Passes,
     ];
 
@@ -36,13 +35,12 @@ impl Section {
     pub(in crate::app) fn title(self) -> &'static str {
         match self {
             Self::Surface => "Surface",
-            Self::Import => "Import",
             Self::Parts => "Parts",
             Self::LevelOfDetail => "Level of detail",
             Self::Displacement => "Displacement",
             Self::Animation => "Animation",
-            Self::Overlays => "Overlays",
-            Self::View => "View",
+            Self::Look => "Look",
+            Self::Import => "Import",
             Self::Advanced => "Advanced",
             Self::Patch => "Patch",
             Self::Factors => "Factors of a file",
@@ -61,7 +59,8 @@ impl Section {
     fn opens(self) -> bool {
         !matches!(
             self,
-            Self::Import
+            Self::Look
+                | Self::Import
                 | Self::Displacement
                 | Self::Advanced
                 | Self::Cracks

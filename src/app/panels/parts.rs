@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::counted;
-use crate::app::widgets::{list, switch_button, text_width};
+use crate::app::widgets::{list, switch_button};
 use crate::commands::{Action, CameraAction, all};
 use geometry::names::{shortened, shown};
 use load::parts::Part;
@@ -15,9 +15,6 @@ const LONGEST: usize = 40;
 
 /// So many parts have a filter.
 const MANY: usize = 8;
-
-/// The button that shows one part alone.
-const SOLO: &str = "Solo";
 
 /// What is done with a part: a place in the list of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -132,24 +129,20 @@ fn part_row(ui: &mut egui::Ui, parts: &[Part], number: usize, is_picked: bool) -
     let is_alone = !part.is_hidden && parts.iter().filter(|part| !part.is_hidden).count() == 1;
     let mut is_shown = !part.is_hidden;
     let mut action = None;
-    let response = ui.horizontal(|ui| {
-        let solo = text_width(ui, SOLO) + 2.0 * ui.spacing().button_padding.x + ui.spacing().item_spacing.x;
-        let size = egui::vec2(ui.available_width() - solo, ui.spacing().interact_size.y);
-        let name = shortened(&shown(&part.name), LONGEST);
-        let name = if is_picked { egui::RichText::new(name).strong() } else { egui::RichText::new(name) };
-        let layout = egui::Layout::left_to_right(egui::Align::Center);
-        let switch = ui.allocate_ui_with_layout(size, layout, |ui| {
-            let switch = ui.checkbox(&mut is_shown, name).on_hover_text(hover);
-            ui.set_min_width(size.x);
-            switch
-        });
-        let alone = ui.add(switch_button(is_alone, SOLO));
+    let height = ui.spacing().interact_size.y;
+    let from_right = egui::Layout::right_to_left(egui::Align::Center);
+    let row = egui::vec2(ui.available_width(), height);
+    let response = ui.allocate_ui_with_layout(row, from_right, |ui| {
+        let alone = ui.add(switch_button(is_alone, "Solo"));
         let name = format!("Show only {}", shown(&part.name));
         alone.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_alone, &name));
         if alone.on_hover_text("Shows this part alone; a second click shows all.").clicked() {
             action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(number) });
         }
-        switch.inner
+        let name = shortened(&shown(&part.name), LONGEST);
+        let name = if is_picked { egui::RichText::new(name).strong() } else { egui::RichText::new(name) };
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        ui.with_layout(layout, |ui| ui.checkbox(&mut is_shown, name).on_hover_text(hover)).inner
     });
     if response.inner.changed() {
         action = Some(if is_shown { PartAction::Show(number) } else { PartAction::Hide(number) });

@@ -8,10 +8,7 @@ use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
 use geometry::tessellate::{Lod, Tessellation};
-use inspect::settings::{Choice, Colors, Control, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
-
-/// The overlays that have a button in the toolbar, and so no row here.
-pub(super) const ON_TOOLBAR: [Overlay; 2] = [Overlay::Wireframe, Overlay::Cracks];
+use inspect::settings::{Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
@@ -22,13 +19,12 @@ impl App {
             ui.spacing_mut().combo_width = controls;
             ui.spacing_mut().slider_width = controls - gap - ui.spacing().interact_size.x;
             self.section(ui, Section::Surface, Self::surface_rows);
-            self.section(ui, Section::Import, Self::import_rows);
-            self.parts_section(ui);
             self.section(ui, Section::LevelOfDetail, Self::lod_rows);
             self.section(ui, Section::Displacement, Self::height_rows);
+            self.parts_section(ui);
             self.animation_section(ui);
-            self.section(ui, Section::Overlays, Self::overlay_rows);
-            self.section(ui, Section::View, Self::view_rows);
+            self.section(ui, Section::Look, Self::look_rows);
+            self.section(ui, Section::Import, Self::import_rows);
             self.section(ui, Section::Advanced, Self::advanced_rows);
         });
     }
@@ -40,15 +36,6 @@ impl App {
         }
     }
 
-    fn overlay_rows(&mut self, ui: &mut egui::Ui) {
-        for overlay in Overlay::ALL.into_iter().filter(|overlay| !ON_TOOLBAR.contains(overlay)) {
-            if let Control::Switch(switch) = self.settings.overlays.control(overlay) {
-                ui.checkbox(switch, overlay.label()).on_hover_text(overlay_hover(overlay));
-                ui.end_row();
-            }
-        }
-    }
-
     fn surface_rows(&mut self, ui: &mut egui::Ui) {
         self.scene_row(ui);
         self.variant_row(ui);
@@ -56,6 +43,9 @@ impl App {
             option_row(ui, &options::SURFACE, &mut self.settings, "");
         }
         shown_option_row(ui, &options::ALPHA, &mut self.settings);
+        if self.settings.split.is_some() {
+            option_row(ui, &options::SPLIT_SURFACE, &mut self.settings, "");
+        }
         self.normals_rows(ui);
         let settings = &mut self.settings;
         option_row(ui, &options::NORMALS, settings, "");
@@ -204,10 +194,7 @@ impl App {
         }
     }
 
-    fn view_rows(&mut self, ui: &mut egui::Ui) {
-        if self.settings.split.is_some() {
-            option_row(ui, &options::SPLIT_SURFACE, &mut self.settings, "");
-        }
+    fn look_rows(&mut self, ui: &mut egui::Ui) {
         shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
         self.matcap_row(ui);
         self.light_rows(ui);

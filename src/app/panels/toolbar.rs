@@ -1,13 +1,18 @@
 //! The toolbar over the picture: what people use every day, one click away.
 
-use super::settings_panel::{ON_TOOLBAR, colors_hover, overlay_hover};
+use egui::containers::menu::{MenuButton, MenuConfig};
+
+use super::settings_panel::{colors_hover, overlay_hover};
 use crate::app::App;
 use crate::app::widgets::{switch_button, text_width};
 use crate::commands::{Action, Availability, CameraAction, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key};
-use inspect::settings::{Choice, ColorSource, Colors, Control};
+use inspect::settings::{Choice, ColorSource, Colors, Control, Overlay};
 
 /// The width of the list of colours, in points: that of its longest entry.
 const COLORS_WIDTH: f32 = 124.0;
+
+/// The overlays that have a button of their own; the list has the others.
+const ON_TOOLBAR: [Overlay; 2] = [Overlay::Wireframe, Overlay::Cracks];
 
 /// How much room a line between buttons takes, in points.
 const DIVIDER_WIDTH: f32 = 6.0;
@@ -34,6 +39,7 @@ impl App {
                     *switch = !*switch;
                 }
             }
+            self.overlays_list(ui);
             self.colors_list(ui);
             divider(ui, "Frame");
             self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
@@ -49,6 +55,23 @@ impl App {
             divider(ui, SAVE);
             self.command_button(ui, &commands, &now, &Action::File(FileAction::SavePicture), [SAVE; 2]);
         });
+    }
+
+    /// The overlays that have no button of their own. The list stays open while they are switched.
+    fn overlays_list(&mut self, ui: &mut egui::Ui) {
+        let others = || Overlay::ALL.into_iter().filter(|overlay| !ON_TOOLBAR.contains(overlay));
+        let overlays = &mut self.settings.overlays;
+        let is_any_on = others().any(|overlay| matches!(overlays.control(overlay), Control::Switch(true)));
+        let button = MenuButton::from_button(switch_button(is_any_on, "Overlays"));
+        let config = MenuConfig::new().close_behavior(egui::PopupCloseBehavior::CloseOnClickOutside);
+        let (response, _) = button.config(config).ui(ui, |ui| {
+            for overlay in others() {
+                if let Control::Switch(switch) = overlays.control(overlay) {
+                    ui.checkbox(switch, overlay.label()).on_hover_text(overlay_hover(overlay));
+                }
+            }
+        });
+        response.on_hover_text("What else is drawn over the surface (--overlay).");
     }
 
     fn colors_list(&mut self, ui: &mut egui::Ui) {
