@@ -177,6 +177,11 @@ fn edit() -> Vec<Command> {
             .keys([ctrl(Key::K)])
             .menu(Edit, 1)
             .needs(&[Need::Document]),
+        Command::new(Action::CopyPicture, "Copy picture")
+            .text("Copies the picture as it is in the window, without labels, for another program to paste.")
+            .keys([ctrl(Key::I)])
+            .menu(Edit, 1)
+            .needs(&[Need::Picture]),
         Command::new(Action::ResetSettings, "Reset settings")
             .text("Sets every setting to its value at the first start. This can be undone.")
             .menu(Edit, 2),
@@ -191,7 +196,7 @@ fn view() -> Vec<Command> {
     vec![
         Command::new(CameraAction::Frame, "Frame")
             .text("Shows all of the mesh, upright and with the usual field of view.")
-            .keys([plain(Key::F)])
+            .keys([plain(Key::F), plain(Key::Home)])
             .menu(View, 0),
         Command::new(CameraAction::FramePatch, "Frame patch")
             .text("Turns the camera to the selected patch.")
@@ -250,6 +255,14 @@ fn view() -> Vec<Command> {
                 "Shows the cracks, and turns the camera to the worst one: the edge whose gap is the widest on \
                  screen.",
             )
+            .needs(&[Need::Document]),
+        Command::new(Action::NextPlace, "Next place")
+            .text("Shows the next place of the finding that is shown, or the worst place of the first finding.")
+            .keys([plain(Key::F8)])
+            .needs(&[Need::Document]),
+        Command::new(Action::PreviousPlace, "Previous place")
+            .text("Shows the place before in the finding that is shown.")
+            .keys([shift(Key::F8)])
             .needs(&[Need::Document]),
         Command::new(Action::HidePanels, "Hide panels")
             .text(

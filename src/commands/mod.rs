@@ -35,6 +35,7 @@ pub enum Action {
     Undo,
     Redo,
     CopyAsCommand,
+    CopyPicture,
     ResetSettings,
     ForgetEverything,
     SplitView,
@@ -52,6 +53,9 @@ pub enum Action {
     Chart,
     MeasureChart,
     WidestCrack,
+    /// The next place of the finding that is shown.
+    NextPlace,
+    PreviousPlace,
     Theme(egui::ThemePreference),
     LargerText,
     SmallerText,

@@ -203,3 +203,18 @@ fn displacement_follows_the_height_map_and_is_undone_with_it() {
     }
     assert_eq!(*harness.state().settings(), settings);
 }
+
+#[test]
+fn the_picture_is_copied_as_it_is_shown() {
+    let mut harness = window(None);
+    let shown = harness.state().read_picture().expect("a device").expect("a picture");
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::I);
+    harness.step();
+    let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
+        OutputCommand::CopyImage(image) => Some(image.clone()),
+        _ => None,
+    });
+    let copied = copied.expect("a picture");
+    assert_eq!(copied.size, [shown.width() as usize, shown.height() as usize]);
+    assert!(copied.pixels.iter().zip(shown.pixels()).all(|(copied, shown)| copied.to_srgba_unmultiplied() == shown.0));
+}

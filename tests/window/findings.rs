@@ -349,3 +349,31 @@ fn a_camera_that_sees_nothing_of_a_file_frames_it() {
     let harness = open();
     assert!((100.0..101.0).contains(&target(&harness)), "{}", target(&harness));
 }
+
+#[test]
+fn a_finding_leads_from_its_worst_place_to_the_next_and_to_the_one_before() {
+    let mut harness = window(None);
+    choose(&mut harness, "Surface", "PN");
+    assert!(harness.query_by_label("Next place").is_none(), "no finding is shown");
+    let finding = button(&harness, |text| text.contains("cracked edges, widest"));
+    click(&mut harness, &finding);
+    let first = harness.state().selected_edge().expect("the worst");
+    let mut seen = vec![first];
+    for place in 2..=3 {
+        click(&mut harness, "Next place");
+        harness.get_by_label(&format!("{place}/12"));
+        let edge = harness.state().selected_edge().expect("another edge");
+        assert!(!seen.contains(&edge), "{edge} was shown before");
+        seen.push(edge);
+    }
+    assert_eq!(button(&harness, |text| text.contains("cracked edges, widest")), finding, "the numbers stay true");
+    press(&mut harness, egui::Key::F8);
+    harness.get_by_label("4/12");
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::F8);
+    settle(&mut harness);
+    assert_eq!(harness.state().selected_edge(), Some(seen[2]));
+    click(&mut harness, &finding);
+    assert_eq!(harness.state().selected_edge(), Some(first), "the finding itself is its worst place");
+    click(&mut harness, "Previous place");
+    harness.get_by_label("12/12");
+}

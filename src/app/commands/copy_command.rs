@@ -18,6 +18,18 @@ impl App {
         self.copy_line(context, self.command_of(context.theme(), choices, &self.viewport.camera, None, None));
     }
 
+    /// Copies the picture that is shown.
+    pub(in crate::app) fn copy_picture(&mut self, context: &egui::Context) {
+        match self.read_picture() {
+            Ok(Some(picture)) => {
+                let size = [picture.width() as usize, picture.height() as usize];
+                context.copy_image(egui::ColorImage::from_rgba_unmultiplied(size, &picture));
+            }
+            Ok(None) => {}
+            Err(error) => self.dialogs.error = Some(error.to_string()),
+        }
+    }
+
     pub(in crate::app) fn copy_line(&mut self, context: &egui::Context, command: Option<String>) {
         let Some(command) = command else { return };
         context.copy_text(command.clone());

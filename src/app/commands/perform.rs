@@ -4,6 +4,7 @@ use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 
 use crate::app::App;
 use crate::app::dialogs::Forgetting;
+use crate::app::panels::destinations::Step;
 use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
@@ -81,6 +82,7 @@ impl App {
             Action::Undo => self.undo(context),
             Action::Redo => self.redo(context),
             Action::CopyAsCommand => self.copy_command(context),
+            Action::CopyPicture => self.copy_picture(context),
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),
             Action::SplitView => self.toggle_split(),
@@ -98,6 +100,8 @@ impl App {
             Action::Chart => self.toggle_chart(),
             Action::MeasureChart => self.measure_chart(context),
             Action::WidestCrack => self.go_to_widest_crack(),
+            Action::NextPlace => self.step_through_finding(Step::Next),
+            Action::PreviousPlace => self.step_through_finding(Step::Previous),
             Action::Theme(theme) => context.set_theme(*theme),
             Action::LargerText => gui_zoom::zoom_in(context),
             Action::SmallerText => gui_zoom::zoom_out(context),

@@ -15,6 +15,7 @@ use super::jobs::measure_job::MeasureJob;
 use super::jobs::mesh_checks::Checks;
 use super::jobs::silhouette_job::SilhouetteJob;
 use super::jobs::stand_in::StandIn;
+use super::panels::destinations::ShownFinding;
 use super::viewport::highlight::Highlight;
 use super::viewport::place::Showing;
 use super::viewport::selection::Selection;
@@ -55,6 +56,7 @@ pub(crate) struct Document {
     pub silhouette: SilhouetteJob,
     pub explanation: Explanation,
     pub selection: Selection,
+    pub shown_finding: Option<ShownFinding>,
     /// The place that is about to be shown.
     pub showing: Option<Showing>,
     /// What the lines over the mesh were last made from.
@@ -104,6 +106,7 @@ impl Document {
             silhouette: SilhouetteJob::default(),
             explanation: None,
             selection: Selection::default(),
+            shown_finding: None,
             showing: None,
             highlight: None,
             left_made: 0,

@@ -6,6 +6,7 @@ mod chart_diagram;
 mod chart_panel;
 mod crack_list;
 mod crease_band;
+pub(super) mod destinations;
 mod deviation;
 pub(super) mod displacement;
 mod factors_list;

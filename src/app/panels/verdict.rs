@@ -3,40 +3,15 @@
 
 use egui::{Color32, RichText};
 
+use super::destinations::{Destination, ShownFinding, Step};
 use crate::app::App;
-use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{legible, rgb};
-use geometry::casts::to_u32;
-use inspect::gates::{EdgeSpot, GateKind, Judgement, Place, Spot};
+use crate::commands::{Action, with_key};
+use inspect::gates::Judgement;
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, T_JUNCTION_COLOR};
-use inspect::settings::{Choice, Overlay, SplitSide};
+use inspect::settings::Choice;
 use load::{Import, NormalSource, is_of_lacking_normals};
-
-/// Where a click on a line leads.
-#[derive(Clone, Copy)]
-enum Destination {
-    /// The overlay of cracks, and the edge with the widest gap.
-    Cracks,
-    /// The overlay of cracks, and the edge at the largest leak.
-    Leaks,
-    /// The overlay of folds, and the patch whose folds have the largest area.
-    Folds,
-    TJunctions,
-    /// The overlays of a gate of the mesh, and the worst place that it found.
-    Mesh(GateKind),
-    /// The edge with the most points whose normals differ.
-    ShadingSeams,
-    /// The edge whose sides were given the most different factors.
-    GivenFactors,
-    Sizes,
-    Factors,
-    /// Another crease angle where the file has no normals: flat triangles, or smooth ones again.
-    CreaseAngle(f32),
-    /// The section that counts what isn't drawn.
-    Patches,
-    Warnings,
-}
 
 struct Line {
     text: String,
@@ -64,9 +39,11 @@ impl Line {
 impl App {
     pub(in crate::app) fn verdict(&mut self, ui: &mut egui::Ui) {
         ui.add_space(6.0);
+        let shown = self.document.as_ref().and_then(|document| document.shown_finding);
         for line in self.verdict_lines(ui.visuals()) {
-            if row(ui, line.text, line.color, line.hover) {
-                self.follow(line.leads);
+            let shown = shown.filter(|shown| shown.leads == line.leads && shown.count > 1);
+            if let Some(step) = row(ui, &line, shown) {
+                self.follow(line.leads, step);
             }
         }
         self.mesh_findings(ui);
@@ -76,12 +53,8 @@ impl App {
     fn mesh_findings(&mut self, ui: &mut egui::Ui) {
         let lines: Vec<Line> = self.mesh_lines(ui.visuals()).collect();
         let Some(first) = lines.first() else {
-            row(
-                ui,
-                "In the mesh: nothing".to_owned(),
-                None,
-                "What gates of the mesh find, such as edges of three triangles.",
-            );
+            let hover = "What gates of the mesh find, such as edges of three triangles.";
+            row(ui, &Line::dim("In the mesh: nothing", hover, Destination::Warnings), None);
             return;
         };
         let color = lines.iter().find(|line| !line.is_often_meant()).map_or(first.color, |line| line.color);
@@ -92,8 +65,8 @@ impl App {
             let color = color.map_or(ui.visuals().text_color(), |color| legible(ui, color));
             ui.menu_button(RichText::new(text).color(color), |ui| {
                 for line in lines {
-                    if row(ui, line.text, line.color, line.hover) {
-                        self.follow(line.leads);
+                    if let Some(step) = row(ui, &line, None) {
+                        self.follow(line.leads, step);
                         ui.close();
                     }
                 }
@@ -109,6 +82,12 @@ impl App {
             _ => !line.is_often_meant(),
         };
         lines.filter(is_wrong).find_map(|line| line.color)
+    }
+
+    /// Where the findings lead, in their order.
+    pub(super) fn destinations(&self) -> Vec<Destination> {
+        let lines = self.verdict_lines(&egui::Visuals::default());
+        lines.into_iter().filter(|line| line.color.is_some()).map(|line| line.leads).collect()
     }
 
     fn verdict_lines(&self, visuals: &egui::Visuals) -> Vec<Line> {
@@ -323,78 +302,6 @@ impl App {
             _ => Line::bad(counted(warnings, "warning"), color, hover, Destination::Warnings),
         }
     }
-
-    /// Shows the cracks, and selects the edge with the widest gap.
-    pub(in crate::app) fn go_to_widest_crack(&mut self) {
-        self.settings.overlays.cracks = true;
-        self.panels.open.set(Section::Cracks, true);
-        let widest = self.results().and_then(|results| results.widest_crack);
-        widest.into_iter().for_each(|(edge, _)| self.select_edge(edge));
-    }
-
-    fn follow(&mut self, leads: Destination) {
-        let overlays = &mut self.settings.overlays;
-        match leads {
-            Destination::Cracks => self.go_to_widest_crack(),
-            Destination::Leaks => {
-                self.panels.open.set(Section::Cracks, true);
-                let largest = self.leaks().and_then(|leaks| leaks.first()).copied();
-                largest.into_iter().for_each(|leak| self.show_leak(&leak));
-            }
-            Destination::Folds => {
-                overlays.folds = true;
-                self.panels.open.set(Section::Cracks, true);
-                let worst = self.results().and_then(|results| results.found.folded.first()).copied();
-                worst.into_iter().for_each(|folded| self.show_fold(&folded));
-            }
-            Destination::TJunctions => {
-                overlays.t_junctions = true;
-                self.panels.open.set(Section::Cracks, true);
-                let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
-                let first = junctions.and_then(|junctions| junctions.first()).copied();
-                first.into_iter().for_each(|junction| self.show_junction(&junction));
-            }
-            Destination::Mesh(gate) => {
-                gate.overlays().iter().for_each(|overlay| overlays.turn_on(*overlay));
-                self.show_found(gate);
-            }
-            Destination::ShadingSeams => {
-                let seams = self.results().map(|results| results.found.cracks.shading_seams());
-                let worst =
-                    seams.and_then(|seams| seams.max_by_key(|seam| seam.different_normals)).map(|seam| seam.edge);
-                worst.into_iter().for_each(|edge| self.select_edge(edge));
-            }
-            Destination::GivenFactors => {
-                let section = if self.uses_lod_shader() { Section::LodShader } else { Section::Factors };
-                self.panels.open.set(section, true);
-                let first = self.agreement().and_then(|agreement| agreement.edges.first()).map(|first| first.edge);
-                first.into_iter().for_each(|edge| self.select_edge(edge));
-            }
-            Destination::Sizes => overlays.turn_on(Overlay::TriangleSize),
-            Destination::Factors => overlays.turn_on(Overlay::Factors),
-            Destination::CreaseAngle(angle) => self.settings.import.crease_angle = angle,
-            Destination::Patches => self.panels.open.set(Section::Patches, true),
-            Destination::Warnings => self.dialogs.shows_warnings = true,
-        }
-    }
-}
-
-impl App {
-    /// Selects the edge or the triangle that is the worst of what a gate of the mesh found, and shows it.
-    fn show_found(&mut self, gate: GateKind) {
-        let Some(document) = &self.document else { return };
-        let found = document.checks.found().iter().find(|judgement| judgement.kind == gate);
-        let Some(Place { triangles, spot, .. }) = found.and_then(|judgement| judgement.place.clone()) else { return };
-        if let Spot::Edge(EdgeSpot { ends, .. }) = spot {
-            let topology = &document.loaded.topology;
-            let at = |point: u32| topology.points[point as usize];
-            let edge = topology.edges.iter().position(|edge| topology.edge_points(edge).map(at) == ends);
-            edge.into_iter().for_each(|edge| self.select_edge(to_u32(edge)));
-        } else {
-            self.select_triangle(triangles.first().copied());
-            self.show_place(SplitSide::Right, &spot, self.selected_patch());
-        }
-    }
 }
 
 /// Shows a hover text on the left, where it covers none of the other lines.
@@ -405,24 +312,40 @@ fn hover_beside<'a>(response: &'a egui::Response, text: &str) -> &'a egui::Respo
     response
 }
 
-/// Shows a line: a button in a colour, or where there is none, weak text at the same place and as high. Returns whether it was
-/// clicked.
-fn row(ui: &mut egui::Ui, text: String, color: Option<Color32>, hover: &str) -> bool {
+/// Shows a line: a button in a colour, or where there is none, weak text at the same place and as high. The finding that is shown has
+/// buttons for its other places. Returns what was clicked.
+fn row(ui: &mut egui::Ui, line: &Line, shown: Option<ShownFinding>) -> Option<Step> {
     let size = egui::vec2(ui.available_width(), ui.spacing().interact_size.y + 2.0);
-    let layout = egui::Layout::left_to_right(egui::Align::Center);
-    ui.allocate_ui_with_layout(size, layout, |ui| {
+    let [from_left, from_right] =
+        [egui::Layout::left_to_right, egui::Layout::right_to_left].map(|to| to(egui::Align::Center));
+    ui.allocate_ui_with_layout(size, from_right, |ui| {
         ui.set_min_height(size.y);
-        match color {
+        let mut step = shown.and_then(|shown| steps(ui, &shown));
+        ui.with_layout(from_left, |ui| match line.color {
             Some(color) => {
-                let text = RichText::new(text).color(legible(ui, color));
-                hover_beside(&ui.add(egui::Button::new(text).truncate()), hover).clicked()
+                let text = RichText::new(&line.text).color(legible(ui, color));
+                let is_clicked = hover_beside(&ui.add(egui::Button::new(text).truncate()), line.hover).clicked();
+                step = step.or(is_clicked.then_some(Step::Worst));
             }
             None => {
                 ui.add_space(ui.spacing().button_padding.x);
-                hover_beside(&ui.weak(text), hover);
-                false
+                hover_beside(&ui.weak(&line.text), line.hover);
             }
-        }
+        });
+        step
     })
     .inner
+}
+
+/// Which of its places the finding shows, and buttons that step to the others.
+fn steps(ui: &mut egui::Ui, shown: &ShownFinding) -> Option<Step> {
+    let mut button = |text: &str, action: Action, name: &str, step: Step| {
+        let button = ui.small_button(text).on_hover_text(with_key(name, &action));
+        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
+        button.clicked().then_some(step)
+    };
+    let next = button(">", Action::NextPlace, "Next place", Step::Next);
+    let previous = button("<", Action::PreviousPlace, "Previous place", Step::Previous);
+    ui.label(format!("{}/{}", grouped(shown.place as u64 + 1), grouped(shown.count as u64)));
+    next.or(previous)
 }
