@@ -208,7 +208,8 @@ fn displacement_follows_the_height_map_and_is_undone_with_it() {
 fn the_picture_is_copied_as_it_is_shown() {
     let mut harness = window(None);
     let shown = harness.state().read_picture().expect("a device").expect("a picture");
-    harness.key_press_modifiers(Modifiers::COMMAND, Key::I);
+    click(&mut harness, "Edit");
+    harness.get_by_label_contains("Copy picture").click();
     harness.step();
     let copied = harness.output().platform_output.commands.iter().find_map(|command| match command {
         OutputCommand::CopyImage(image) => Some(image.clone()),
