@@ -131,7 +131,10 @@ impl SurfaceOptions {
 
     /// The settings of a picture with these options.
     pub(crate) fn settings_of(&self, picture: &Settings) -> Settings {
-        Settings { import: self.weld.import.0, ..picture.with(self.tessellation()) }
+        // A pose may turn a part inside out in either half.
+        let is_still = self.animation.animation.is_none();
+        let left = picture.left.map(|left| Tessellation { cull_back_faces: left.cull_back_faces && is_still, ..left });
+        Settings { import: self.weld.import.0, left, ..picture.with(self.tessellation()) }
     }
 
     /// Returns settings whose tolerance is raised until there are no more triangles than `--max-triangles` allows. Standard

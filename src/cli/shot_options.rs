@@ -64,7 +64,7 @@ impl ShotOptions {
         read: &[Option<&Path>],
         written: &[Option<&Path>],
     ) -> Result<(), CliError> {
-        self.surface.check(self.picture.0.split_surface)?;
+        self.surface.check(self.picture.0.left.map(|left| left.surface))?;
         self.user_lod.check_alone(&self.given)?;
         refuse(
             self.matcap_image.is_some() && self.picture.0.overlays.colors.source() != ColorSource::LitSphere,

@@ -49,6 +49,8 @@ pub enum Need {
     /// Backs of the mesh that can't be seen.
     Culling,
     Split,
+    /// A tessellation left of the split.
+    TwoTessellations,
     Frozen,
     Deviation,
     /// The chart's panel, with something to measure.
@@ -59,10 +61,10 @@ pub enum Need {
 }
 
 impl Need {
-    pub const ALL: [Self; 31] = every![Need:
+    pub const ALL: [Self; 32] = every![Need:
         Document, File, Neighbours, Picture, NoWriting, ReferenceShape, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
         ViewAfter, Bookmarks, RoomForBookmarks, Selection, SelectedPatch, Heights, TextureCoordinates, NormalsAt, Factor, Lod, Culling,
-        Split, Frozen, Deviation, MeasurableChart, Chart, Clips,
+        Split, TwoTessellations, Frozen, Deviation, MeasurableChart, Chart, Clips,
     ];
 
     /// Why a command is not possible without it, in a sentence.
@@ -94,6 +96,7 @@ impl Need {
             Self::Lod => LOD_IS_FIXED,
             Self::Culling => BACKS_ARE_SEEN,
             Self::Split => "Only a split view has a left half.",
+            Self::TwoTessellations => "The left half shows the mesh without tessellation.",
             Self::Frozen => "The LOD camera is not frozen.",
             Self::Deviation => "Only the deviation overlay colours distances.",
             Self::MeasurableChart => "The chart is not open, or has no surface and LOD to measure.",

@@ -1,6 +1,6 @@
 //! Changes of settings that are commands.
 
-use geometry::tessellate::{Edges, Lod};
+use geometry::tessellate::{Edges, Lod, Surface};
 use inspect::settings::options::{self, FACTOR_RANGE};
 use inspect::settings::{Colors, Overlay, Settings, Value};
 
@@ -15,6 +15,10 @@ pub enum Change {
     CullBackFaces,
     MaterialColors,
     Overlay(Overlay),
+    /// The surface left of the split; none for the untessellated mesh.
+    LeftSurface(Option<Surface>),
+    /// Exchanges what is left and right of the split.
+    SwapHalves,
     /// The option with this name gets the value with this name, or none.
     Option(&'static str, Option<&'static str>),
 }
@@ -35,6 +39,12 @@ impl Change {
             Self::CullBackFaces => settings.tessellation.cull_back_faces = !settings.tessellation.cull_back_faces,
             Self::MaterialColors => settings.overlays.colors = Colors::default(),
             Self::Overlay(overlay) => settings.overlays.toggle(overlay),
+            Self::LeftSurface(surface) => settings.set_left_surface(surface),
+            Self::SwapHalves => {
+                if let Some(left) = &mut settings.left {
+                    std::mem::swap(left, &mut settings.tessellation);
+                }
+            }
             Self::Option(name, value) => {
                 if let Some(option) = options::all().find(|option| option.name == name) {
                     option.set(settings, value.map_or(Value::Unset, Value::Name));

@@ -10,6 +10,7 @@ use super::{
 };
 use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
+use geometry::tessellate::Surface;
 use inspect::settings::{Choice, ColorSource, Colors, Control, Declaration, Overlay, Overlays, options};
 
 /// The greatest number of clips that are listed.
@@ -28,9 +29,9 @@ pub(super) fn commands(now: &Availability) -> Vec<Command> {
     all
 }
 
-/// A command for each value of an option, with a label in its name: that of the option, if none is given.
-fn values(option: &'static Declaration, label: Option<&str>, needs: &'static [Need]) -> Vec<Command> {
-    let label = label.unwrap_or(option.label);
+/// A command for each value of an option, with the option's label in its name.
+fn values(option: &'static Declaration, needs: &'static [Need]) -> Vec<Command> {
+    let label = option.label;
     let unset = option.unset.iter().map(|unset| (None, unset.label, unset.text));
     let values = option.kind.descriptions();
     let values = values.iter().map(|value| (Some(value.name), value.label, value.text));
@@ -42,22 +43,37 @@ fn values(option: &'static Declaration, label: Option<&str>, needs: &'static [Ne
 
 fn settings() -> Vec<Command> {
     let all = [
-        values(&options::SURFACE, None, &[Need::Surface]),
-        values(&options::SPLIT_SURFACE, Some("Left of the split"), &[Need::Split]),
-        values(&options::NORMALS, None, &[]),
-        values(&options::NORMALS_AT, None, &[Need::NormalsAt]),
-        values(&options::PARTITIONING, None, &[]),
-        values(&options::EDGES, None, &[]),
-        values(&options::LOD, None, &[Need::Lod]),
-        values(&options::CLIP, None, &[]),
-        values(&options::CONVENTION, None, &[]),
-        values(&options::DISPLACEMENT, None, &[Need::Heights]),
-        values(&options::DEVIATION_IN, None, &[Need::Deviation]),
-        values(&options::MESH_NORMALS, None, &[]),
-        values(&options::UP, None, &[Need::Document, Need::File]),
-        values(&options::UNIT, None, &[Need::Document, Need::File]),
+        values(&options::SURFACE, &[Need::Surface]),
+        left_surfaces(),
+        values(&options::NORMALS, &[]),
+        values(&options::NORMALS_AT, &[Need::NormalsAt]),
+        values(&options::PARTITIONING, &[]),
+        values(&options::EDGES, &[]),
+        values(&options::LOD, &[Need::Lod]),
+        values(&options::CLIP, &[]),
+        values(&options::CONVENTION, &[]),
+        values(&options::DISPLACEMENT, &[Need::Heights]),
+        values(&options::DEVIATION_IN, &[Need::Deviation]),
+        values(&options::MESH_NORMALS, &[]),
+        values(&options::UP, &[Need::Document, Need::File]),
+        values(&options::UNIT, &[Need::Document, Need::File]),
     ];
     all.concat()
+}
+
+/// A command for each surface that the left half can show, and one that exchanges both halves.
+fn left_surfaces() -> Vec<Command> {
+    let unset = options::SPLIT_LEFT.unset.iter().map(|unset| (None, unset.label, unset.text));
+    let surfaces = Surface::ALL.iter().map(|surface| (Some(*surface), surface.label(), surface.text()));
+    let command = |(surface, name, text): (_, &str, &'static str)| {
+        Command::new(Change::LeftSurface(surface), format!("Left of the split: {name}"))
+            .text(text)
+            .needs(&[Need::Split])
+    };
+    let swap = Command::new(Change::SwapHalves, "Swap left and right")
+        .text("Exchanges the tessellations left and right of the split.")
+        .needs(&[Need::TwoTessellations]);
+    unset.chain(surfaces).map(command).chain([swap]).collect()
 }
 
 /// The key that switches an overlay. Those that look at the surface by itself have Shift and a letter, the zebra that of its

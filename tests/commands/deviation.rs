@@ -37,7 +37,7 @@ fn a_flat_icosahedron_is_a_fifth_of_its_radius_off_the_sphere() {
 
 #[test]
 fn both_halves_of_a_split_are_measured_and_share_a_scale() {
-    let split = ["--split", "0.5", "--split-surface", "flat", "--overlay", "deviation,wireframe,cracks"];
+    let split = ["--split", "0.5", "--split-left", "flat", "--overlay", "deviation,wireframe,cracks"];
     let drawn = |split: &[&str]| {
         let options = ["shape:icosahedron", "--surface", "pn-aen", "--factor", "32", "--partitioning", "integer"];
         stats(&[&options[..], split].concat())
@@ -70,7 +70,7 @@ fn both_halves_of_a_split_are_measured_and_share_a_scale() {
 fn without_a_reference_surface_both_halves_are_compared_with_the_right_ones_limit() {
     let smooth = ["shape:cube-smooth", "--factor", "8", "--overlay", "deviation", "--split", "0.5"];
     let of = |surfaces: [&str; 2]| {
-        let both = stats(&[&smooth[..], &["--split-surface", surfaces[0], "--surface", surfaces[1]]].concat());
+        let both = stats(&[&smooth[..], &["--split-left", surfaces[0], "--surface", surfaces[1]]].concat());
         ["/left/deviation/max/at_least", "/deviation/max/at_least"].map(|max| number(&both, max))
     };
     let [flat, curved] = of(["flat", "pn-aen"]);
@@ -83,11 +83,11 @@ fn without_a_reference_surface_both_halves_are_compared_with_the_right_ones_limi
 fn another_surface_needs_a_split() {
     let folder = Folder::new();
     let out = folder.path("out.png");
-    let without = ["render", "shape:torus", "-o", &out, "--split-surface", "flat"];
+    let without = ["render", "shape:torus", "-o", &out, "--split-left", "flat"];
     assert!(failure(&without, 2).contains("--split"), "the error names the missing option");
     let strength = ["render", "shape:torus", "-o", &out, "--size", "60x40", "--split", "0.5", "--alpha", "0.5"];
     failure(&strength, 2);
-    output(&[&strength[..], &["--split-surface", "phong"]].concat());
+    output(&[&strength[..], &["--split-left", "phong"]].concat());
 }
 
 #[test]
@@ -133,4 +133,32 @@ fn a_reference_surface_that_cannot_be_read_is_named() {
     sentence(&missing.each_ref().map(String::as_str), &["nowhere.glb"]);
     let unit = ["render", "shape:torus", "-o", &out, "--deviation-in", "miles"];
     assert!(failure(&unit, 2).contains("units, px"), "clap lists them");
+}
+
+#[test]
+fn either_half_of_a_split_is_what_its_options_draw_alone() {
+    let folder = Folder::new();
+    let draw = |name: &str, options: &[&str]| {
+        let path = folder.path(name);
+        let usual = ["render", "shape:cube-smooth", "--overlay", "wireframe", "--size", "160x120", "-o", &path];
+        output(&[&usual[..], options].concat());
+        image::open(&path).expect("a picture").to_rgba8()
+    };
+    let right = ["--surface", "phong", "--lod", "error", "--tolerance", "2"];
+    let left = "nagata,lod=distance,factor=7,distances=1,6,partitioning=integer,displacement=off";
+    let both = draw("both.png", &[&right[..], &["--split", "0.5", "--split-left", left]].concat());
+    let alone = draw("right.png", &right);
+    let options = ["--lod", "distance", "--factor", "7", "--distances", "1,6", "--partitioning", "integer"];
+    let left = draw("left.png", &[&["--surface", "nagata"], &options[..]].concat());
+    assert!(left != alone);
+    for (x, y, pixel) in both.enumerate_pixels() {
+        let expected = if x < 80 { left.get_pixel(x, y) } else { alone.get_pixel(x, y) };
+        assert_eq!(pixel, expected, "{x}, {y}");
+    }
+    let refused = ["render", "shape:torus", "-o", "a.png", "--split", "0.5", "--split-left"];
+    for (left, said) in
+        [("nowhere", "expected flat, pn"), ("pn,lod=none", "as lod"), ("pn,size=1", "expected a surface")]
+    {
+        assert!(failure(&[&refused[..], &[left]].concat(), 2).contains(said), "{left}");
+    }
 }

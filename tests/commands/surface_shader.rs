@@ -90,7 +90,7 @@ fn a_surface_of_ones_own_is_written_turned_and_split() {
         PN,
     ]);
     let picture = folder.path("split.png");
-    let split = ["--split", "0.5", "--split-surface", "pn-aen", "--size", "160x120", "--stats", "-"];
+    let split = ["--split", "0.5", "--split-left", "pn-aen", "--size", "160x120", "--stats", "-"];
     let (stats, _) =
         both(&[&["render", "shape:cube-split", "-o", &picture, "--surface-shader", PN], &split[..]].concat());
     let stats: Value = serde_json::from_str(&stats).expect("JSON");

@@ -266,7 +266,11 @@ fn both_halves_of_a_split_are_in_one_pose() {
     let target = Target::new(&engine().gpu, [240, 160]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let right = Settings::from(Tessellation { surface: Surface::Flat, ..Tessellation::default() });
-    let split = Settings { split: Some(0.5), split_surface: Some(Surface::Flat), ..right };
+    let split = Settings {
+        split: Some(0.5),
+        left: Some(Tessellation { surface: Surface::Flat, ..right.tessellation }),
+        ..right
+    };
     for moment in moments(&loaded.mesh, 3).into_iter().map(Some).chain([None]) {
         scene.set_moment(moment).expect("a small rig");
         let [both, alone] = [split, right].map(|settings| {

@@ -411,7 +411,7 @@ fn layers_of_many_chunks_and_of_both_halves_give_the_same_picture() {
     // The same surface in both halves.
     let mut scene = engine().scene_of(mesh, topology, 256 << 20).expect("a small mesh");
     engine().split(&mut scene, 1 << 20).expect("a small mesh");
-    let split = Settings { split: Some(0.5), split_surface: Some(settings.tessellation.surface), ..settings };
+    let split = Settings { split: Some(0.5), left: Some(settings.tessellation), ..settings };
     assert!(split.half(SplitSide::Left).is_some());
     assert!(ball_picture(&mut scene, &split) == whole.1);
 }

@@ -49,7 +49,7 @@ fn each_chunk_is_read_back_once_whatever_is_asked_for() {
         assert!(!stats[key].is_null(), "{key} was measured");
     }
     assert!(stats["triangles_in_view"].as_u64() > Some(0), "sizes were measured");
-    let (count, stats) = everything(&["--split", "0.5", "--split-surface", "flat"]);
+    let (count, stats) = everything(&["--split", "0.5", "--split-left", "flat"]);
     assert_eq!(count, left + right, "one walk over each half");
     assert!(!stats["left"]["accuracy"].is_null(), "the left half was measured too");
 }

@@ -4,13 +4,14 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::Shape;
-use geometry::tessellate::Surface;
+use geometry::tessellate::{Partitioning, Surface};
 use glam::Vec3;
 use inspect::render::layout::CRACK_COLOR;
-use inspect::settings::{Colors, DeviationUnit, SplitSide};
+use inspect::settings::{Colors, DeviationUnit, Settings, SplitSide};
 use load::Source;
 use pnaen::app::App;
 
+use crate::editing::{assert_draws, copied};
 use crate::{choose, click, open_list, press, settle, uniform, window};
 
 #[test]
@@ -98,13 +99,16 @@ fn both_halves_of_a_split_show_their_surface_and_deviation() {
     };
     let alone = memory(&harness);
     choose(&mut harness, "Left", "Flat");
-    assert_eq!(harness.state().settings().split_surface, Some(Surface::Flat));
-    assert!(harness.query_by_label("Left: Flat").is_some() && harness.query_by_label("Right: PN-AEN").is_some());
+    assert_eq!(harness.state().settings().left.map(|left| left.surface), Some(Surface::Flat));
+    assert!(
+        harness.query_by_label_contains("Left: Flat").is_some()
+            && harness.query_by_label_contains("Right: PN-AEN").is_some()
+    );
     assert_ne!(memory(&harness), alone, "the left half takes memory");
     press(&mut harness, egui::Key::V);
     let [flat, curved] = SplitSide::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
     assert!((flat - GAP).abs() < 1e-6 && curved < 0.35 * GAP, "{flat} and {curved}");
-    assert!(harness.query_by_label("Left: Flat: 0.205 units").is_some());
+    assert!(harness.query_by_label_contains("Left: Flat: 0.205 units").is_some());
     assert!(harness.query_by_label_contains("Right: PN-AEN: 0.06").is_some());
     harness.get_by_label_contains("Left Worst point in patch").click();
     settle(&mut harness);
@@ -192,4 +196,30 @@ fn each_half_has_its_own_cracks_and_a_click_in_either_selects() {
     settle(&mut harness);
     let [left, right] = SplitSide::BOTH.map(|half| harness.state().deviation(half).expect("measured"));
     assert!((left - right).abs() < 1e-6 && left > 0.01, "{left} and {right}: no normals are split there");
+}
+
+#[test]
+fn either_half_of_a_split_is_a_whole_tessellation_that_is_edited_and_exchanged() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Left", "PN");
+    let right = harness.state().settings().tessellation;
+    click(&mut harness, "Edit left (A)");
+    choose(&mut harness, "Partitioning", "Integer");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(3.0);
+    settle(&mut harness);
+    let left = harness.state().settings().left.expect("a tessellation");
+    assert_eq!((left.surface, left.partitioning, left.factor), (Surface::Pn, Partitioning::Integer, 3.0));
+    assert_eq!(harness.state().settings().tessellation, right, "the right half stays as it was");
+    // Both are counted, beside each other: 12 patches of 9 and of 64 triangles.
+    harness.get_by_label("Left: PN\nFactor 3, Partitioning Integer\n108 triangles, 12 cracked edges");
+    harness.get_by_label_contains("0 cracked edges");
+    click(&mut harness, "Swap");
+    assert_eq!(*harness.state().settings(), Settings { left: Some(right), ..harness.state().settings().with(left) });
+    harness.get_by_label_contains("Right: PN\nFactor 3");
+    let command = copied(&mut harness);
+    assert!(command.contains("--split-left surface=pn-aen,factor="), "{command}");
+    assert_draws(&harness, &command, "cube-split-view");
+    click(&mut harness, "Edit right (B)");
+    assert_eq!(harness.get_by_role_and_label(Role::Slider, "Factor").value().as_deref(), Some("3"));
 }

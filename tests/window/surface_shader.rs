@@ -95,7 +95,7 @@ fn left_of_a_split_is_a_surface_of_ours() {
     press(&mut harness, Key::C);
     assert_eq!(cracked(harness.state()), Some(12));
     let command = copied(&mut harness);
-    assert!(command.contains("--split-surface pn-aen"), "{command}");
+    assert!(command.contains("--split-left surface=pn-aen"), "{command}");
     assert_draws(&harness, &command, "cube-split-view");
     // A left half that is made while the function is there has none either.
     choose(&mut harness, "Left", "Untessellated");

@@ -8,7 +8,7 @@ use crate::app::panels::destinations::Step;
 use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
-use inspect::settings::{ColorSource, Declaration, Settings, options};
+use inspect::settings::{ColorSource, Declaration, Settings, SplitSide, options};
 use load::{HeightSource, Import, Source};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
@@ -51,6 +51,7 @@ impl App {
             (Need::Lod, has_effect(&options::LOD) && lets_lod),
             (Need::Culling, self.can_cull_back_faces()),
             (Need::Split, self.settings.split.is_some()),
+            (Need::TwoTessellations, self.settings.half(SplitSide::Left).is_some()),
             (Need::Frozen, self.viewport.frozen.is_some()),
             (Need::Deviation, self.settings.overlays.colors.source() == ColorSource::ReferenceSurface),
             (Need::MeasurableChart, self.can_measure_chart()),

@@ -29,6 +29,7 @@ mod user_shaders;
 mod verdict;
 
 use geometry::tessellate::Displacement;
+use inspect::settings::SplitSide;
 
 use crate::app::sections::OpenSections;
 use chart::Chart;
@@ -42,6 +43,8 @@ pub(super) struct Panels {
     pub are_hidden: bool,
     /// The panel that is shown where both share a side.
     pub side: Side,
+    /// The half of a split view whose settings are edited.
+    pub edited: SplitSide,
     /// What the names of listed parts contain.
     pub parts_filter: String,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
@@ -59,6 +62,7 @@ impl Default for Panels {
             open: OpenSections::default(),
             are_hidden: false,
             side: Side::default(),
+            edited: SplitSide::Right,
             parts_filter: String::new(),
             dragged_crease_band: None,
             patch_height: 0.0,

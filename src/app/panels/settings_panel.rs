@@ -7,8 +7,8 @@ use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
 use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
-use geometry::tessellate::{Lod, Tessellation};
-use inspect::settings::{Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, options};
+use geometry::tessellate::{Lod, Surface, Tessellation};
+use inspect::settings::{Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, SplitSide, options};
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
@@ -18,15 +18,62 @@ impl App {
             let controls = room - LABEL_WIDTH - gap;
             ui.spacing_mut().combo_width = controls;
             ui.spacing_mut().slider_width = controls - gap - ui.spacing().interact_size.x;
-            self.section(ui, Section::Surface, Self::surface_rows);
-            self.section(ui, Section::LevelOfDetail, Self::lod_rows);
-            self.section(ui, Section::Displacement, Self::height_rows);
+            self.halves_row(ui);
+            self.of_half(|app| {
+                app.section(ui, Section::Surface, Self::surface_rows);
+                app.section(ui, Section::LevelOfDetail, Self::lod_rows);
+                app.section(ui, Section::Displacement, Self::height_rows);
+            });
             self.parts_section(ui);
             self.animation_section(ui);
             self.section(ui, Section::Look, Self::look_rows);
             self.section(ui, Section::Import, Self::import_rows);
-            self.section(ui, Section::Advanced, Self::advanced_rows);
+            self.of_half(|app| app.section(ui, Section::Advanced, Self::advanced_rows));
         });
+    }
+
+    /// Which half of a split view is edited, if both are tessellated, and a button that exchanges them.
+    fn halves_row(&mut self, ui: &mut egui::Ui) {
+        if self.settings.half(SplitSide::Left).is_none() {
+            self.panels.edited = SplitSide::Right;
+            return;
+        }
+        ui.horizontal(|ui| {
+            for (half, name) in [(SplitSide::Left, "Edit left (A)"), (SplitSide::Right, "Edit right (B)")] {
+                let hover =
+                    "The settings of surface, level of detail, displacement and below Advanced are those of this half.";
+                ui.selectable_value(&mut self.panels.edited, half, name).on_hover_text(hover);
+            }
+            if ui.button("Swap").on_hover_text("Exchanges the tessellations left and right.").clicked() {
+                Change::SwapHalves.apply(&mut self.settings);
+            }
+        });
+    }
+
+    /// Shows rows whose settings are those of the half that is edited.
+    fn of_half(&mut self, show: impl FnOnce(&mut Self)) {
+        let is_left = self.panels.edited == SplitSide::Left;
+        let exchange = |settings: &mut Settings| {
+            if is_left {
+                Change::SwapHalves.apply(settings)
+            }
+        };
+        exchange(&mut self.settings);
+        show(self);
+        exchange(&mut self.settings);
+    }
+
+    /// What the left half shows.
+    fn left_row(&mut self, ui: &mut egui::Ui) {
+        let option = &options::SPLIT_LEFT;
+        let unset = option.unset.iter().map(|unset| (None, unset.label, unset.text));
+        let surfaces = Surface::ALL.iter().map(|surface| (Some(*surface), surface.label(), surface.text()));
+        let before = self.settings.left.map(|left| left.surface);
+        let mut surface = before;
+        chooser(ui, option.label, &option_hover(option, ""), &mut surface, &unset.chain(surfaces).collect::<Vec<_>>());
+        if surface != before {
+            self.settings.set_left_surface(surface);
+        }
     }
 
     /// A section of rows with a label and a control each.
@@ -43,8 +90,8 @@ impl App {
             option_row(ui, &options::SURFACE, &mut self.settings, "");
         }
         shown_option_row(ui, &options::ALPHA, &mut self.settings);
-        if self.settings.split.is_some() {
-            option_row(ui, &options::SPLIT_SURFACE, &mut self.settings, "");
+        if self.settings.split.is_some() && self.panels.edited == SplitSide::Right {
+            self.left_row(ui);
         }
         self.normals_rows(ui);
         let settings = &mut self.settings;

@@ -26,6 +26,7 @@ fn written(value: Value) -> Json {
         Value::Pair(pair) => json!(pair),
         Value::Switch(is_on) => json!(is_on),
         Value::Color(color) => json!(color),
+        value @ Value::Options(_) => json!(value.to_string()),
     }
 }
 
@@ -54,6 +55,7 @@ fn read(option: &Declaration, all: &Json) -> Option<Value> {
         (Kind::Number(_), [value]) => number(value).map(Value::Number),
         (Kind::Pair(_), [a, b]) => Some(Value::Pair([number(a)?, number(b)?])),
         (Kind::Switch, [value]) => value.as_bool().map(Value::Switch),
+        (Kind::Options(_), [text]) => option.kind.parse(text.as_str()?).ok(),
         (Kind::Color, [value]) => serde_json::from_value((*value).clone()).ok().map(Value::Color),
         _ => None,
     }

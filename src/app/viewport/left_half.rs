@@ -1,4 +1,4 @@
-//! The left half of a split view with another surface. Its scene is made on a thread of its own, and only while it is shown.
+//! The left half of a split view with another tessellation. Its scene is made on a thread of its own, and only while it is shown.
 
 use std::time::Duration;
 
@@ -8,10 +8,11 @@ use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{MeasureError, Results, Seen};
 use crate::app::jobs::scenes::arena_bytes;
 use crate::app::jobs::user_shader_job::OpenShader;
+use crate::app::text::counted;
 use gpu::GpuError;
 use inspect::measure::Measured;
 use inspect::render::Scene;
-use inspect::settings::{Choice, SplitSide};
+use inspect::settings::{Choice, Declaration, SplitSide, options};
 
 /// Making a scene for longer than this is shown in the window.
 const NOTICED: Duration = Duration::from_millis(300);
@@ -57,19 +58,21 @@ impl App {
     }
 
     fn leave_as_it_came(&mut self, why: &str) {
-        self.settings.split_surface = None;
-        self.dialogs.error = Some(format!("the left half can't show another surface: {why}"));
+        self.settings.left = None;
+        self.dialogs.error = Some(format!("the left half can't show another tessellation: {why}"));
     }
 
-    /// Measures the left half's cracks and the points of its edges while they are shown.
+    /// Measures the left half while it is shown.
     pub(in crate::app) fn measure_left(&mut self, seen: &Seen) -> Result<(), MeasureError> {
-        let is_selected = self.selected_edge().is_some() || self.selected_triangle().is_some();
-        let is_wanted = self.settings.half(SplitSide::Left).is_some() && (self.settings.overlays.cracks || is_selected);
+        let is_wanted = self.settings.half(SplitSide::Left).is_some();
         let Some(document) = self.document.as_mut() else { return Ok(()) };
         let left = document.scene.half_mut(SplitSide::Left).filter(|left| is_wanted && left.tessellator.is_counted());
         let measure = &mut document.halves[SplitSide::Left as usize].measure;
-        match left {
-            Some(scene) => measure.go_on(&self.engine.gpu, scene, seen),
+        match left.zip(self.settings.half(SplitSide::Left)) {
+            Some((scene, settings)) => {
+                let seen = Seen { inputs: settings.inputs(seen.inputs.view), ..*seen };
+                measure.go_on(&self.engine.gpu, scene, &seen)
+            }
             None => {
                 if measure.is_busy() {
                     measure.forget();
@@ -95,13 +98,24 @@ impl App {
         self.document.as_ref()?.halves[half as usize].measure.found()
     }
 
-    /// The title of a half if the split has two surfaces: the surface, and with the deviation overlay its largest deviation.
+    /// The title of a half if the split has two tessellations: the surface, with the deviation overlay its largest deviation, what else
+    /// differs between the halves, and what was counted.
     pub(in crate::app) fn half_title(&self, half: SplitSide) -> Option<String> {
         let name = self.surface_title(half)?;
-        Some(match self.largest_text(half) {
-            Some(largest) => format!("{name}: {largest}"),
-            None => name,
-        })
+        let own = self.settings.half(half)?;
+        let other = self.settings.half(if half == SplitSide::Left { SplitSide::Right } else { SplitSide::Left })?;
+        let first = self.largest_text(half).map_or_else(|| name.clone(), |largest| format!("{name}: {largest}"));
+        let differs = |option: &&Declaration| {
+            option.name != options::SURFACE.name
+                && option.get(&own) != option.get(&other)
+                && (option.no_effect)(&own).is_none()
+        };
+        let differing = options::TESSELLATION.into_iter().filter(differs).map(|option| option.shown(&own));
+        let scene = self.document.as_ref().and_then(|document| document.scene.half(half));
+        let triangles = scene.map(|scene| counted(scene.tessellator.totals().1, "triangle"));
+        let cracks = self.found(half).map(|found| counted(found.cracks.cracked().len() as u64, "cracked edge"));
+        let lines = [Some(first), joined(differing), joined(triangles.into_iter().chain(cracks))];
+        Some(lines.into_iter().flatten().collect::<Vec<_>>().join("\n"))
     }
 
     /// What the surface of a half is called: as the list of surfaces has it, or a shader's file.
@@ -110,4 +124,10 @@ impl App {
         let own = self.surface_shader.as_ref().filter(|open| open.is_used() && half == SplitSide::Right);
         Some(own.map_or(chosen, OpenShader::name))
     }
+}
+
+/// Joins texts by commas; none if there are none.
+fn joined(texts: impl Iterator<Item = String>) -> Option<String> {
+    let texts: Vec<_> = texts.collect();
+    (!texts.is_empty()).then(|| texts.join(", "))
 }

@@ -10,7 +10,7 @@ use crate::app::Document;
 use crate::app::jobs::given::FromFiles;
 use crate::app::painting::{Painting, ShownPicture};
 use geometry::mesh::Moment;
-use geometry::tessellate::{Inputs, Tessellation};
+use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use inspect::engine::Engine;
@@ -37,13 +37,7 @@ pub(crate) struct PictureRequest {
 impl PictureRequest {
     /// The inputs of a half's tessellation, if there is such a half.
     pub(super) fn inputs_of(&self, half: SplitSide) -> Option<Inputs> {
-        Some(Inputs {
-            tessellation: Tessellation {
-                surface: self.settings.half(half)?.tessellation.surface,
-                ..self.inputs.tessellation
-            },
-            ..self.inputs
-        })
+        Some(self.settings.half(half)?.inputs(self.inputs.view))
     }
 }
 

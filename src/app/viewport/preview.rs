@@ -265,7 +265,7 @@ fn settings_of(shape: Shape, settings: &Settings) -> Settings {
         Shape::Same => return cheap,
         Shape::Factor(factor) => factor,
         Shape::StandIn => {
-            cheap.split_surface = None;
+            cheap.left = None;
             1.0
         }
     };

@@ -120,11 +120,18 @@ impl Group for Settings {
 
     fn arg(declaration: &'static Declaration) -> Arg {
         let arg = with_default(arg(declaration), declaration);
-        if declaration.name == options::SPLIT_SURFACE.name { arg.requires(options::SPLIT.name) } else { arg }
+        if declaration.name == options::SPLIT_LEFT.name { arg.requires(options::SPLIT.name) } else { arg }
     }
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        take(Self::ALL, matches, self)?;
+        // The left half differs from the right one by what is said.
+        let mut right = GivenTessellation::default();
+        right.take(matches)?;
+        let has_heights = matches.try_contains_id("height").is_ok_and(|has_heights| has_heights);
+        right.tessellation.displacement = right.displacement.unwrap_or(Displacement::usual(has_heights));
+        let mut own = self.with(right.tessellation);
+        take(Self::ALL, matches, &mut own)?;
+        *self = own.with(self.tessellation);
         let is_given = matches.value_source(options::LIGHTING.name) == Some(ValueSource::CommandLine);
         if !is_given && matches.try_contains_id("environment").is_ok_and(|has_file| has_file) {
             self.lighting = Lighting::Environment;
@@ -358,12 +365,13 @@ mod tests {
                 Kind::Pair(range) => Value::Pair([range.least, range.most]),
                 Kind::Switch => Value::Switch(true),
                 Kind::Color => Value::Color([1, 2, 3]),
+                Kind::Options(all) => Value::Options(vec![(all()[0].name, Value::Name("flat"))]),
             };
             // A factor stands for uniform LOD.
             let mut expected =
                 if option.name == options::FACTOR.name { Settings::default() } else { Settings::usual() };
             let mut arguments = Vec::new();
-            if option.name == options::SPLIT_SURFACE.name {
+            if option.name == options::SPLIT_LEFT.name {
                 assert!(read(&[format!("--{}={value}", option.name)]).is_err(), "it needs a split");
                 arguments.push("--split=0.5".to_owned());
                 expected.split = Some(0.5);

@@ -64,8 +64,8 @@ pub struct Settings {
     pub matcap: Matcap,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
     pub split: Option<f32>,
-    /// The surface left of the split, with all other settings the same; none for the untessellated mesh.
-    pub split_surface: Option<Surface>,
+    /// The tessellation left of the split, with all other settings the same; none for the untessellated mesh.
+    pub left: Option<Tessellation>,
     /// sRGB colour behind the mesh; none for that of the window's theme, and in commands [`DARK_BACKGROUND`].
     pub background: Option<[u8; 3]>,
     /// How the geometry of the mesh's file is taken. The mesh is read again when it changes.
@@ -90,7 +90,7 @@ impl Default for Settings {
             curvature_scale: 4.0,
             matcap: Matcap::default(),
             split: None,
-            split_surface: None,
+            left: None,
             background: None,
             import: Import::default(),
         }
@@ -209,11 +209,18 @@ impl Settings {
     pub fn half(&self, half: SplitSide) -> Option<Self> {
         match half {
             SplitSide::Left => {
-                let surface = self.split_surface.filter(|_| self.split.is_some())?;
-                Some(self.with(Tessellation { surface, ..self.tessellation }))
+                let left = self.left.filter(|_| self.split.is_some())?;
+                Some(self.with(left))
             }
             SplitSide::Right => Some(*self),
         }
+    }
+
+    /// Shows this surface left of the split, with all else as it is there, or as it is on the right if the left half was untessellated; or
+    /// without a surface, shows the mesh without tessellation.
+    pub fn set_left_surface(&mut self, surface: Option<Surface>) {
+        let before = self.left.unwrap_or(self.tessellation);
+        self.left = surface.map(|surface| Tessellation { surface, ..before });
     }
 
     /// How far heights move any point of a mesh at most, in object units.

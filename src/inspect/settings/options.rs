@@ -82,6 +82,32 @@ const NEAR_AND_FAR: Access = Access {
     },
 };
 
+/// All options of the tessellation left of the split. Those that aren't set are as in the right half.
+const LEFT: Access = Access {
+    get: |settings| {
+        let Some(left) = settings.left.map(|left| settings.with(left)) else { return Value::Unset };
+        Value::Options(TESSELLATION.map(|option| (option.name, option.get(&left))).to_vec())
+    },
+    set: |settings, value| {
+        let Value::Options(values) = value else {
+            settings.left = None;
+            return value == Value::Unset;
+        };
+        let mut left = *settings;
+        let mut set = |(name, value)| {
+            TESSELLATION
+                .into_iter()
+                .find(|option| option.name == name)
+                .is_some_and(|option| option.set(&mut left, value))
+        };
+        if !values.into_iter().all(&mut set) {
+            return false;
+        }
+        settings.left = Some(left.tessellation);
+        true
+    },
+};
+
 /// Why LOD can't be chosen under subtriangulation.
 pub const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments everywhere. Another \
                                        partitioning brings back the LOD that was chosen.";
@@ -120,9 +146,7 @@ options! {
         placeholder: "A",
         text: "Strength of Phong tessellation: 0 is flat, and its authors use 0.75 (Boubekeur and Alexa 2008).",
         no_effect: |settings| {
-            let left = settings.split_surface.filter(|_| settings.split.is_some());
-            let is_phong = settings.tessellation.surface.is_phong() || left.is_some_and(Surface::is_phong);
-            (!is_phong).then_some("Only Phong tessellation has a strength.")
+            (!settings.tessellation.surface.is_phong()).then_some("Only Phong tessellation has a strength.")
         },
     }
 
@@ -373,15 +397,16 @@ options! {
         name: "split",
         label: "Divider",
         placeholder: "FRACTION",
-        text: "Splits the picture at this fraction of its width. The left half shows the untessellated mesh or another surface.",
+        text: "Splits the picture at this fraction of its width. The left half shows the untessellated mesh or another tessellation.",
         unset: Description::new("none", "None", "The picture isn't split."),
     }
 
-    SPLIT_SURFACE: field!(split_surface), Kind::Choice(descriptions::<Surface>) => {
-        name: "split-surface",
+    SPLIT_LEFT: LEFT, Kind::Options(|| &TESSELLATION) => {
+        name: "split-left",
         label: "Left",
-        placeholder: "SURFACE",
-        text: "The surface left of the split; all other settings are the same, and so is the scale of the deviation overlay.",
+        placeholder: "SURFACE[,NAME=VALUE]",
+        text: "The tessellation left of the split: a surface, and whatever else differs from the right half, such as \
+               pn,lod=uniform,factor=8. The names are those of these options, and the scale of the deviation overlay is the same.",
         unset: Description::new("none", "Untessellated", "The mesh itself, with no tessellation."),
         no_effect: |settings| settings.split.is_none().then_some("The view isn't split."),
     }

@@ -32,6 +32,13 @@ fn value(option: &'static Declaration) -> BoxedStrategy<Value> {
         }
         Kind::Switch => any::<bool>().prop_map(Value::Switch).boxed(),
         Kind::Color => any::<[u8; 3]>().prop_map(Value::Color).boxed(),
+        Kind::Options(all) => {
+            let all = *all;
+            let places: Vec<usize> = (0..all().len()).collect();
+            let value = move |place: usize| value(all()[place]).prop_map(move |value| (all()[place].name, value));
+            let values = move |places: Vec<usize>| places.into_iter().map(value).collect::<Vec<_>>();
+            subsequence(places, 0..4).prop_flat_map(values).prop_map(Value::Options).boxed()
+        }
     };
     if option.unset.is_none() { any } else { prop_oneof![Just(Value::Unset), any].boxed() }
 }

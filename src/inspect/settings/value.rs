@@ -60,6 +60,8 @@ pub enum Kind {
     Switch,
     /// sRGB.
     Color,
+    /// Values of some of these options.
+    Options(fn() -> &'static [&'static Declaration]),
 }
 
 /// The numbers that an option takes, and how a slider shows them.
@@ -85,6 +87,8 @@ pub enum Value {
     Pair([f32; 2]),
     Switch(bool),
     Color([u8; 3]),
+    /// Options by their names.
+    Options(Vec<(&'static str, Value)>),
 }
 
 impl Declaration {
@@ -96,6 +100,19 @@ impl Declaration {
     pub fn set(&self, settings: &mut Settings, value: Value) -> bool {
         let is_taken = if value == Value::Unset { self.unset.is_some() } else { self.kind.takes(&value) };
         is_taken && (self.access.set)(settings, value)
+    }
+
+    /// Its label and its value as the window shows them, such as "Tolerance 0.25 px".
+    pub fn shown(&self, settings: &Settings) -> String {
+        let value = match self.get(settings) {
+            Value::Name(name) => {
+                let all = self.kind.descriptions();
+                all.iter().find(|value| value.name == name).map_or(name, |value| value.label).to_owned()
+            }
+            value => value.to_string(),
+        };
+        let unit = self.range().map_or("", |range| range.unit);
+        format!("{} {value} {unit}", self.label).trim_end().to_owned()
     }
 
     /// The members of saved settings that hold it.
@@ -178,6 +195,9 @@ impl Kind {
             (Self::Number(range) | Self::NameOrNumber { range, .. }, Value::Number(number)) => range.contains(*number),
             (Self::Pair(range), Value::Pair([a, b])) => range.contains(*a) && range.contains(*b) && a < b,
             (Self::Switch, Value::Switch(_)) | (Self::Color, Value::Color(_)) => true,
+            (Self::Options(all), Value::Options(values)) => values.iter().all(|(name, value)| {
+                all().iter().find(|option| option.name == *name).is_some_and(|option| option.kind.takes(value))
+            }),
             _ => false,
         }
     }
@@ -198,6 +218,7 @@ impl Kind {
             Self::Pair(_) => text.split_once(',').and_then(|(a, b)| Some(Value::Pair([number(a)?, number(b)?]))),
             Self::Switch => text.parse().ok().map(Value::Switch),
             Self::Color => color(text).map(Value::Color),
+            Self::Options(all) => options(all(), text)?,
         };
         value.filter(|value| self.takes(value)).ok_or_else(|| self.expected())
     }
@@ -220,8 +241,36 @@ impl Kind {
             }
             Self::Switch => "expected true or false".into(),
             Self::Color => "expected six hexadecimal digits, such as 2b2e33".into(),
+            Self::Options(all) => {
+                let names: Vec<_> = all().iter().map(|option| option.name).collect();
+                let (first, others) = (names[0], names[1..].join(", "));
+                format!("expected a {first}, and others of {others} with their values, such as pn,lod=uniform,factor=8")
+            }
         }
     }
+}
+
+/// Reads values of options: `name=value` after a comma each. The first may be without the name of the first option. A value that has
+/// a comma goes on after it.
+///
+/// # Errors
+/// What was expected instead of a value. None if no option has such a name.
+fn options(all: &[&'static Declaration], text: &str) -> Result<Option<Value>, String> {
+    let mut given: Vec<(&str, String)> = Vec::new();
+    for item in text.split(',') {
+        match (item.split_once('='), given.last_mut()) {
+            (Some((name, value)), _) => given.push((name.trim(), value.to_owned())),
+            (None, None) => given.push((all[0].name, item.to_owned())),
+            (None, Some((_, value))) => *value = format!("{value},{item}"),
+        }
+    }
+    let mut values = Vec::new();
+    for (name, value) in given {
+        let Some(option) = all.iter().find(|option| option.name == name) else { return Ok(None) };
+        let value = option.kind.parse(&value).map_err(|expected| format!("{expected} as {name}"))?;
+        values.push((option.name, value));
+    }
+    Ok(Some(Value::Options(values)))
 }
 
 /// An sRGB colour as RRGGBB, with or without a number sign.
@@ -243,6 +292,10 @@ impl fmt::Display for Value {
             Self::Pair([a, b]) => write!(f, "{a},{b}"),
             Self::Switch(is_on) => write!(f, "{is_on}"),
             Self::Color([r, g, b]) => write!(f, "{r:02x}{g:02x}{b:02x}"),
+            Self::Options(values) => {
+                let all: Vec<_> = values.iter().map(|(name, value)| format!("{name}={value}")).collect();
+                f.write_str(&all.join(","))
+            }
         }
     }
 }

@@ -131,11 +131,26 @@ impl CopiedCommand<'_> {
                 || (self.matcap_image.is_some() && name == options::MATCAP.name)
         };
         let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
+        // The left half is said by what differs from the right one, as whoever reads the command gets that.
+        let mut said = usual;
+        options::TESSELLATION
+            .into_iter()
+            .filter(written)
+            .for_each(|option| _ = option.set(&mut said, option.get(&own)));
+        let differs = |(name, value): &(&str, Value)| {
+            let option = options::TESSELLATION.into_iter().find(|option| option.name == *name);
+            // What these are without being said depends on others.
+            let always = [options::SURFACE.name, options::LOD.name, options::PARTITIONING.name];
+            always.contains(name) || option.is_none_or(|option| option.get(&said) != *value)
+        };
         for option in options::all().filter(written) {
             let (name, value) = (format!("--{}", option.name), option.get(&own));
             match value {
                 _ if value == option.get(&usual) => {}
                 Value::Switch(is_on) => line.switch(&name, is_on),
+                Value::Options(values) => {
+                    line.option(&name, Value::Options(values.into_iter().filter(differs).collect()));
+                }
                 value => line.option(&name, value),
             }
         }

@@ -319,7 +319,7 @@ impl Shot {
         let Some(results) = &self.results[SplitSide::Right as usize] else { return Ok(None) };
         let Some(measured) = &results.survey else { return Ok(None) };
         // Only the right half is timed.
-        let alone = Settings { split_surface: None, ..*settings };
+        let alone = Settings { left: None, ..*settings };
         let passes = engine.time(scene, target, camera, lod_view, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;

@@ -37,6 +37,7 @@ impl Renderer {
             return Ok(());
         }
         let half = part.map_or(SplitSide::Right, |part| part.half);
+        let of_half = settings.half(half).unwrap_or(**settings);
         let Some(frame) = &frames[half as usize] else { return Ok(()) };
         // The mesh without tessellation is drawn with the right half's scene.
         let drawn = scene.half(half).unwrap_or(scene);
@@ -45,7 +46,7 @@ impl Renderer {
             _ => emitted_triangles(settings),
         };
         let surfaces = Surfaces {
-            materials: self.layer_pipelines(drawn.tessellator.mesh(), picture, pass, triangles)?,
+            materials: self.layer_pipelines(drawn.tessellator.mesh(), picture, &of_half, pass, triangles)?,
             pulled: triangles == Triangles::Pulled,
             fronts: false,
             sifted: false,
@@ -101,13 +102,14 @@ impl Renderer {
         &self,
         mesh: &Mesh,
         picture: &Picture,
+        settings: &Settings,
         pass: LayerPass,
         triangles: Triangles,
     ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
         let kind = self.kind(false);
         let groups = picture.materials.iter().zip(&picture.found_materials);
         let of_material = |(material, (lit, found)): (&Material, (&wgpu::BindGroup, &wgpu::BindGroup))| {
-            draws(mesh, material, pass, triangles, picture.settings, kind)
+            draws(mesh, material, pass, triangles, settings, kind)
                 .into_iter()
                 .map(|(step, draw)| {
                     let group = if step.finds() { found } else { lit };

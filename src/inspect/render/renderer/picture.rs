@@ -64,7 +64,8 @@ impl Renderer {
             let [left, _, width, _] = rects[half as usize];
             // The mesh without tessellation is drawn with the right half's scene.
             let drawn = scene.half(half).or((width > 0).then_some(scene))?;
-            Some(frame(&self.gpu, drawn, target, camera, settings, left))
+            let settings = settings.half(half).unwrap_or(*settings);
+            Some(frame(&self.gpu, drawn, target, camera, &settings, left))
         };
         let steps = steps(scene, settings);
         let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
@@ -117,7 +118,8 @@ impl Renderer {
         if let Step::Layer(layer) = step {
             return self.draw_layer(recorder, scene, picture, layer);
         }
-        let mut surfaces = self.surfaces(drawn, &picture.materials, target, camera, settings)?;
+        let of_half = settings.half(step.half()).unwrap_or(*settings);
+        let mut surfaces = self.surfaces(drawn, &picture.materials, target, camera, &of_half)?;
         if let Step::Surface(_, chunk) = step {
             surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
         }

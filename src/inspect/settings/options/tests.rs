@@ -24,7 +24,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         curvature_scale,
         matcap,
         split,
-        split_surface,
+        left,
         background,
         import,
     } = settings;
@@ -80,7 +80,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("curvature_scale", format!("{curvature_scale:?}")),
         ("matcap", format!("{matcap:?}")),
         ("split", format!("{split:?}")),
-        ("split_surface", format!("{split_surface:?}")),
+        ("split_left", format!("{left:?}")),
         ("background", format!("{background:?}")),
         ("mesh_normals", format!("{mesh_normals:?}")),
         ("crease_angle", format!("{crease_angle:?}")),
@@ -107,6 +107,9 @@ fn another(declaration: &Declaration) -> Value {
         Kind::Pair(range) => Value::Pair([range.least, range.most]),
         Kind::Switch => Value::Switch(declaration.default() == Value::Switch(false)),
         Kind::Color => Value::Color([1, 2, 3]),
+        Kind::Options(all) => {
+            Value::Options([0, 9].map(|place| all()[place]).map(|option| (option.name, another(option))).to_vec())
+        }
     }
 }
 
@@ -211,7 +214,7 @@ fn unused_options_have_no_effect() {
         "deviation-in",
         "curvature-scale",
         "matcap",
-        "split-surface",
+        "split-left",
     ];
     let with = |own: &[&'static str]| -> Vec<_> { own.iter().copied().chain(elsewhere).collect() };
     for value in Lod::ALL {
@@ -232,7 +235,7 @@ fn unused_options_have_no_effect() {
     phong_left.tessellation.displacement = Displacement::On;
     phong_left.tessellation.partitioning = Partitioning::Subtriangulation;
     phong_left.overlays.colors = Colors::Deviation;
-    phong_left.split_surface = Some(Surface::Phong);
+    phong_left.set_left_surface(Some(Surface::Phong));
     let of_light = [
         "lighting",
         "lights",
@@ -247,14 +250,14 @@ fn unused_options_have_no_effect() {
         idle(&phong_left),
         with_light(
             &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
-            &["curvature-scale", "matcap", "split-surface"]
+            &["curvature-scale", "matcap", "split-left"]
         )
     );
     phong_left.split = Some(0.5);
     assert_eq!(
         idle(&phong_left),
         with_light(
-            &["lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
+            &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
             &["curvature-scale", "matcap"]
         )
     );
