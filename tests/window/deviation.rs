@@ -211,8 +211,8 @@ fn either_half_of_a_split_is_a_whole_tessellation_that_is_edited_and_exchanged()
     let left = harness.state().settings().left.expect("a tessellation");
     assert_eq!((left.surface, left.partitioning, left.factor), (Surface::Pn, Partitioning::Integer, 3.0));
     assert_eq!(harness.state().settings().tessellation, right, "the right half stays as it was");
-    // Both are counted, beside each other: 12 patches of 9 and of 64 triangles.
-    harness.get_by_label("Left: PN\nFactor 3, Partitioning Integer\n108 triangles, 12 cracked edges");
+    // Both are counted, beside each other: 12 patches of 13 triangles on the left.
+    harness.get_by_label("Left: PN\nFactor 3, Partitioning Integer\n156 triangles, 12 cracked edges");
     harness.get_by_label_contains("0 cracked edges");
     click(&mut harness, "Swap");
     assert_eq!(*harness.state().settings(), Settings { left: Some(right), ..harness.state().settings().with(left) });
@@ -221,5 +221,5 @@ fn either_half_of_a_split_is_a_whole_tessellation_that_is_edited_and_exchanged()
     assert!(command.contains("--split-left surface=pn-aen,factor="), "{command}");
     assert_draws(&harness, &command, "cube-split-view");
     click(&mut harness, "Edit right (B)");
-    assert_eq!(harness.get_by_role_and_label(Role::Slider, "Factor").value().as_deref(), Some("3"));
+    assert_eq!(harness.get_by_role_and_label(Role::Slider, "Factor").accesskit_node().numeric_value(), Some(3.0));
 }

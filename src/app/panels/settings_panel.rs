@@ -32,13 +32,16 @@ impl App {
         });
     }
 
-    /// Which half of a split view is edited, if both are tessellated, and a button that exchanges them.
+    /// Which half of a split view is edited, and a button that exchanges both halves, if both are tessellated.
     fn halves_row(&mut self, ui: &mut egui::Ui) {
-        if self.settings.half(SplitSide::Left).is_none() {
+        let has_left = self.settings.half(SplitSide::Left).is_some();
+        if !has_left {
             self.panels.edited = SplitSide::Right;
+        }
+        if self.settings.split.is_none() {
             return;
         }
-        ui.horizontal(|ui| {
+        let row = |ui: &mut egui::Ui| {
             for (half, name) in [(SplitSide::Left, "Edit left (A)"), (SplitSide::Right, "Edit right (B)")] {
                 let hover =
                     "The settings of surface, level of detail, displacement and below Advanced are those of this half.";
@@ -47,7 +50,8 @@ impl App {
             if ui.button("Swap").on_hover_text("Exchanges the tessellations left and right.").clicked() {
                 Change::SwapHalves.apply(&mut self.settings);
             }
-        });
+        };
+        ui.add_enabled_ui(has_left, |ui| ui.horizontal(row));
     }
 
     /// Shows rows whose settings are those of the half that is edited.

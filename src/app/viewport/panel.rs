@@ -31,6 +31,9 @@ const VEIL: u8 = 190;
 /// The alignment of the halves' titles, which are at the top beside the divider.
 const ALIGN: [egui::Align2; 2] = [egui::Align2::RIGHT_TOP, egui::Align2::LEFT_TOP];
 
+/// From this width on, in points, a half has room for more than the first line of its title.
+const WIDE_HALF: f32 = 180.0;
+
 /// The line of help at a first start.
 const GREETING: &str =
     "Drag to turn, scroll to zoom, click a triangle to read its factors. Drop a mesh here to open it.";
@@ -445,13 +448,17 @@ fn progress(
     ui.scope_builder(egui::UiBuilder::new().max_rect(area), popup).inner
 }
 
-/// Shows the title of a half at its top beside the divider, if there is enough room.
+/// Shows the title of a half at its top beside the divider, if there is enough room for its first line. In a narrow half it has no
+/// other lines, since the axes are below it.
 fn half_note(ui: &egui::Ui, half: egui::Rect, align: egui::Align2, text: &str, name: &str) {
-    let galley = note_text(ui, text, egui::Color32::from_gray(235));
     let room = half.shrink(8.0);
-    if galley.size().x > room.width() {
+    let first = text.lines().next().unwrap_or_default();
+    if note_text(ui, first, egui::Color32::WHITE).size().x > room.width() {
         return;
     }
+    let shown = if room.width() < WIDE_HALF { first } else { text };
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let galley = ui.painter().layout(shown.to_owned(), font, egui::Color32::from_gray(235), room.width());
     let place = align.align_size_within_rect(galley.size(), room);
     let response = ui.interact(place, ui.scope_id().with(("half", align.x() as u8)), Sense::empty());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
