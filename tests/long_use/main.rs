@@ -108,6 +108,12 @@ fn loads(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part {
 /// How many settings are changed before all are reset.
 const CHANGES: usize = 3;
 
+/// The keys of overlays that are in a list, not among the controls.
+const OVERLAY_KEYS: [egui::Key; 7] = {
+    use egui::Key::{A, K, N, O, P, T, Y};
+    [P, A, O, T, K, N, Y]
+};
+
 /// All controls that can be used now.
 fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
     let kinds = [Role::CheckBox, Role::ComboBox, Role::Slider];
@@ -122,7 +128,11 @@ fn controls(harness: &Harness<App>) -> Vec<(Role, String)> {
 /// Changes a random control to a random value.
 fn change(harness: &mut Harness<App>, random: &mut Rng) {
     let all = controls(harness);
-    let (role, name) = &all[random.usize(..all.len())];
+    let chosen = random.usize(..all.len() + OVERLAY_KEYS.len());
+    let Some((role, name)) = all.get(chosen) else {
+        harness.key_press(OVERLAY_KEYS[chosen - all.len()]);
+        return settle(harness);
+    };
     // A list opens only where it is in sight, and not all rows fit the window.
     harness.get_by_role_and_label(*role, name).scroll_to_me();
     settle(harness);
@@ -165,7 +175,7 @@ fn settings(harness: &mut Harness<App>, folder: &Path, effort: &Effort) -> Part 
     let context = harness.ctx.clone();
     harness.state_mut().open(&context, Source::Shape(Shape::CubeSplit));
     settle(harness);
-    for section in ["Displacement", "Advanced"] {
+    for section in ["Displacement", "Look", "Advanced"] {
         harness.get_by_role_and_label(Role::DisclosureTriangle, section).click();
         settle(harness);
     }

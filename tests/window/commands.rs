@@ -66,7 +66,10 @@ fn every_key_of_the_table_gives_its_command() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let mut harness = full_window(&folder);
     let mut pressed = 0;
-    for command in commands(&harness).iter().filter(|command| !command.keys.is_empty()) {
+    // These open another mesh, without what belongs to this one.
+    let neighbours = [FileAction::NextMesh, FileAction::PreviousMesh].map(Action::File);
+    let is_tried = |command: &&Command| !command.keys.is_empty() && !neighbours.contains(&command.action);
+    for command in commands(&harness).iter().filter(is_tried) {
         for key in &command.keys {
             // Another command first, so that the last action changes.
             let other = if command.action == Action::Cancel { Key::W } else { Key::Escape };
