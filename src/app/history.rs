@@ -126,11 +126,11 @@ impl App {
         self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_companions()
     }
 
-    /// Takes over the hidden parts of a mesh that was opened: those of the command line, or none. This isn't a step of undo: all steps
+    /// Takes over which parts of a mesh that was opened are shown: what the command line says, or all. This isn't a step of undo: all steps
     /// have this mesh's preparation from now on, and no files that were about another one.
     pub(super) fn take_preparation(&mut self) {
         let Undoable { preparation, settings, .. } = self.undoable();
-        self.hidden = Arc::new(preparation.hidden.clone());
+        self.parts = Arc::new(preparation.parts.clone());
         self.takes_back = false;
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
@@ -205,7 +205,7 @@ impl App {
             }
         }
         self.put_settings(settings);
-        self.hidden = Arc::new(preparation.hidden.clone());
+        self.parts = Arc::new(preparation.parts.clone());
         let preparation = Preparation { import: settings.import, ..preparation };
         if self.preparation() != preparation {
             self.prepare(context, |own| *own = preparation);

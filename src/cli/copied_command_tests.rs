@@ -11,7 +11,7 @@ use inspect::render::Camera;
 use inspect::settings::{Colors, Lighting, Settings, options};
 use inspect::shot::{CopiedCommand, Turn, given};
 use load::files::Limits;
-use load::{HeightSource, Source};
+use load::{HeightSource, ShownParts, Source};
 use proptest::prelude::*;
 
 use crate::cli::options::Declared;
@@ -91,7 +91,7 @@ fn options_with_other_values_are_written() {
         heights,
         variant: Some("-matte".to_owned()),
         scene: Some("Night sky".to_owned()),
-        hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
+        parts: ShownParts { hidden: vec!["-left door".to_owned(), "b, c".to_owned()], only: vec!["d".to_owned()] },
         import: Import::default(),
         limits,
     };

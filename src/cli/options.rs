@@ -20,9 +20,9 @@ use inspect::engine::{Engine, Preparation};
 use inspect::render::Scene;
 use inspect::settings::options::TOLERANCE_RANGE;
 use inspect::settings::{ARENA_BYTES, Settings};
-use load::HeightSource;
 use load::files::Limits;
 use load::format::known_extensions;
+use load::{HeightSource, ShownParts};
 
 pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
 use declared::GivenTessellation;
@@ -211,10 +211,12 @@ pub struct WeldOption {
     /// Show this scene of a glTF file instead of its default scene, by name, or by number from 0; `info` lists the scenes
     #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
     pub scene: Option<String>,
-    /// Leave out this part of a glTF file, an OBJ file or a text file of STL, by the name of its node, object, group or solid; may be
-    /// given several times. `info` lists the parts
+    /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     pub hide_part: Vec<String>,
+    /// Show only the part of the file that has this name, and others that are given so
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    pub show_part: Vec<String>,
     #[command(flatten)]
     pub import: ImportOptions,
     #[command(flatten)]
@@ -229,7 +231,7 @@ impl WeldOption {
             heights: None,
             variant: self.variant.clone(),
             scene: self.scene.clone(),
-            hidden: self.hide_part.clone(),
+            parts: ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() },
             import: self.import.0,
             limits: self.limit.limits(),
         }

@@ -57,7 +57,8 @@ pub fn preview(
     surface.tessellation.0.tessellation = settings.tessellation;
     surface.weld.limit = limit;
     surface.weld.import.0 = opening.import(surface.weld.import.0);
-    surface.weld.hide_part = opening.hidden().to_vec();
+    let parts = opening.parts();
+    (surface.weld.hide_part, surface.weld.show_part) = (parts.hidden, parts.only);
     let args = Args {
         file: source.unwrap_or_default(),
         output: output.to_owned(),

@@ -109,7 +109,7 @@ impl<'a> FaceBuilder<'a> {
             memory,
             import,
             notes: Notes::default(),
-            parts: Parts::hiding(file.selected.hidden),
+            parts: Parts::new(&file.selected),
             builder: MeshBuilder::with_crease_angle(import.crease_angle),
             recent: RecentCorners::default(),
             block: TriangleBlock::default(),

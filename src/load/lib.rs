@@ -61,5 +61,6 @@ pub use heights::HeightSource;
 pub use import::is_of_lacking_normals;
 pub use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
 pub use memory_budget::Budget;
+pub use selection::ShownParts;
 pub use source::Source;
 pub use warnings::{crease_band_warnings, untextured_warning};

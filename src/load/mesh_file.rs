@@ -73,12 +73,12 @@ pub enum LoadError {
         choice(known, "it has no variants, so omit --variant")
     )]
     NoVariant { path: PathBuf, variant: String, known: Vec<String> },
-    /// The file doesn't have a part that should be left out.
+    /// The file doesn't have a part that should be left out, or be read alone.
     #[error(
         "{} has no part {}; {}",
         shown_path(path),
         shown(part),
-        choice(known, "it has no named parts, so omit --hide-part")
+        choice(known, "it has no named parts, so omit --hide-part and --show-part")
     )]
     NoPart { path: PathBuf, part: String, known: Vec<String> },
     /// The shape is made in code, where Y is up.
@@ -178,7 +178,7 @@ pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMe
         return Err(LoadError::NoScene { path: path.to_owned(), scene: scene.to_owned(), known });
     }
     let is_unknown = |name: &&String| loaded.parts.iter().all(|part| part.name != **name);
-    if let Some(part) = selected.hidden.iter().find(is_unknown) {
+    if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown) {
         let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
         return Err(LoadError::NoPart { path: path.to_owned(), part: part.clone(), known });
     }

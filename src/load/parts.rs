@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use super::memory_budget::Budget;
+use super::selection::Selection;
 use geometry::casts::to_u32;
 use geometry::mesh::MemoryRefused;
 
@@ -35,6 +36,8 @@ pub struct Part {
 pub(super) struct Parts {
     /// The names of parts that are left out.
     hidden: Vec<String>,
+    /// The names of parts that alone aren't left out, if there are any.
+    only: Vec<String>,
     found: Vec<Part>,
     numbers: HashMap<Vec<u8>, usize>,
     /// The part that the next faces belong to.
@@ -44,8 +47,8 @@ pub(super) struct Parts {
 }
 
 impl Parts {
-    pub(super) fn hiding(hidden: &[String]) -> Self {
-        Self { hidden: hidden.to_vec(), ..Self::default() }
+    pub(super) fn new(selected: &Selection) -> Self {
+        Self { hidden: selected.hidden.to_vec(), only: selected.only.to_vec(), ..Self::default() }
     }
 
     /// Says which part the next faces belong to, by its name.
@@ -65,7 +68,7 @@ impl Parts {
         budget.hold(PER_PART + 2 * name.len() as u64)?;
         let number = self.found.len();
         let shown = String::from_utf8_lossy(name).into_owned();
-        let is_hidden = self.hidden.contains(&shown);
+        let is_hidden = self.hidden.contains(&shown) || !(self.only.is_empty() || self.only.contains(&shown));
         self.found.push(Part { name: shown, triangles: 0, is_hidden });
         self.numbers.insert(name.to_vec(), number);
         self.current = Some(number);
@@ -116,11 +119,13 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::selection::ShownParts;
 
     #[test]
     fn a_part_may_be_entered_again_and_one_too_many_belongs_to_none() {
         let budget = Budget::unlimited();
-        let mut parts = Parts::hiding(&["b".to_owned()]);
+        let hidden = ["b".to_owned()];
+        let mut parts = Parts::new(&Selection { hidden: &hidden, ..Selection::default() });
         assert!(!parts.leave_out(1), "there is none yet");
         for (name, triangles) in [("a", 2), ("b", 3), ("empty", 0), ("a", 5)] {
             parts.enter(name.as_bytes(), &budget).expect("memory is unlimited");
@@ -136,5 +141,25 @@ mod tests {
         assert_eq!(&places[..4], [0, 1, 1, 1], "that without triangles has no place of its own");
         let part = |name: &str, triangles, is_hidden| Part { name: name.to_owned(), triangles, is_hidden };
         assert_eq!((found, beyond), (vec![part("a", u32::MAX, false), part("b", 3, true)], 3));
+    }
+    #[test]
+    fn parts_are_shown_alone_added_and_left_out() {
+        let [a, b] = ["a", "b"].map(str::to_owned);
+        let is_hidden = |shown: &ShownParts, name: &str| {
+            let selected = Selection { hidden: &shown.hidden, only: &shown.only, ..Selection::default() };
+            let mut parts = Parts::new(&selected);
+            parts.enter(name.as_bytes(), &Budget::unlimited()).expect("memory is unlimited");
+            parts.is_hidden()
+        };
+        let mut shown = ShownParts::alone("a");
+        assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [false, true, true]);
+        shown.set("b", true);
+        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![a.clone(), b.clone()] });
+        shown.set("a", false);
+        assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true, false, true]);
+        shown.set("b", false);
+        assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true; 3]);
+        shown.set("b", true);
+        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![b] });
     }
 }

@@ -11,6 +11,37 @@ pub struct Selection<'a> {
     pub scene: Option<&'a str>,
     /// The names of parts that are left out.
     pub hidden: &'a [String],
+    /// The names of parts that alone are read; all parts if there are none.
+    pub only: &'a [String],
     /// How the geometry is taken.
     pub import: Import,
+}
+
+/// Which parts of a file are read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ShownParts {
+    /// The names of parts that are left out.
+    pub hidden: Vec<String>,
+    /// The names of parts that alone are read; all parts if there are none.
+    pub only: Vec<String>,
+}
+
+impl ShownParts {
+    /// The part of this name alone.
+    pub fn alone(name: &str) -> Self {
+        Self { hidden: Vec::new(), only: vec![name.to_owned()] }
+    }
+
+    /// Shows a part, or leaves it out.
+    pub fn set(&mut self, name: &str, is_shown: bool) {
+        self.hidden.retain(|other| other != name);
+        let is_listed = self.only.iter().any(|other| other == name);
+        match is_shown {
+            true if !self.only.is_empty() && !is_listed => self.only.push(name.to_owned()),
+            true => {}
+            // Without the last name all parts would be shown.
+            false if self.only.len() > 1 => self.only.retain(|other| other != name),
+            false => self.hidden.push(name.to_owned()),
+        }
+    }
 }

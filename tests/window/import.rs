@@ -107,7 +107,7 @@ fn the_command_line_says_how_the_first_mesh_is_taken() {
         show_hidden: false,
     };
     assert_eq!((import(&harness), harness.state().settings().import), (made, made));
-    assert_eq!(harness.state().loaded().expect("a mesh").preparation.hidden, ["side"]);
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts.hidden, ["side"]);
     // Without the side, the square of 2 times 3 stands upright.
     assert_eq!(size(&harness), [0.02, 0.03, 0.0]);
     eframe::App::on_exit(harness.state_mut());

@@ -3,6 +3,7 @@
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use load::ShownParts;
 use pnaen::app::App;
 
 use crate::{click, scroll_to, settle, uniform_of};
@@ -32,6 +33,7 @@ fn parts_are_filtered_shown_alone_and_framed() {
     assert_eq!(triangles(&harness), Some(2));
     assert_eq!(harness.state().camera().distance, before, "the camera stays");
     harness.get_by_label("1 of 11 parts shown");
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts, ShownParts::alone("Part7"));
     harness.get_by_label("Part7").click_secondary();
     settle(&mut harness);
     click(&mut harness, "Frame this part");

@@ -18,7 +18,7 @@ use inspect::settings::Settings;
 use load::environment_file::is_environment;
 use load::files::FileError;
 use load::format::Format;
-use load::{Import, LoadError, Source};
+use load::{Import, LoadError, ShownParts, Source};
 
 /// Why a mesh could not be loaded.
 struct NotLoaded {
@@ -134,11 +134,11 @@ impl App {
         if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
             return;
         }
-        let (import, hidden) = (self.settings.import, self.hidden.clone());
-        let wanted = |preparation: &Preparation| preparation.import == import && preparation.hidden == *hidden;
+        let (import, parts) = (self.settings.import, self.parts.clone());
+        let wanted = |preparation: &Preparation| preparation.import == import && preparation.parts == *parts;
         if !wanted(&self.preparation()) {
             self.prepare(context, |preparation| {
-                (preparation.import, preparation.hidden) = (import, hidden.to_vec());
+                (preparation.import, preparation.parts) = (import, ShownParts::clone(&parts));
             });
         }
     }
@@ -147,7 +147,7 @@ impl App {
     pub(in crate::app) fn keep_file_choices(&mut self) {
         if let Some(document) = &self.document {
             self.settings.import = document.loaded.preparation.import;
-            self.hidden = Arc::new(document.loaded.preparation.hidden.clone());
+            self.parts = Arc::new(document.loaded.preparation.parts.clone());
         }
     }
 

@@ -8,6 +8,7 @@ use crate::app::text::counted;
 use crate::app::widgets::{list, switch_button};
 use crate::commands::{Action, CameraAction, all};
 use geometry::names::{shortened, shown};
+use load::ShownParts;
 use load::parts::Part;
 
 /// The greatest length of a name in the list, in characters.
@@ -97,16 +98,12 @@ impl App {
     }
 
     fn act_on_parts(&mut self, parts: &[Part], action: PartAction) {
-        let name = |part: usize| parts[part].name.clone();
         match action {
-            PartAction::Hide(part) => Arc::make_mut(&mut self.hidden).push(name(part)),
-            PartAction::Show(part) => Arc::make_mut(&mut self.hidden).retain(|other| *other != parts[part].name),
-            PartAction::Solo(part) => {
-                let others = (0..parts.len()).filter(|&other| other != part).map(name);
-                self.hidden = Arc::new(others.collect());
-            }
+            PartAction::Hide(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, false),
+            PartAction::Show(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, true),
+            PartAction::Solo(part) => self.parts = Arc::new(ShownParts::alone(&parts[part].name)),
             PartAction::Frame(part) => self.frame_part(part as u32),
-            PartAction::ShowAll => self.hidden = Arc::default(),
+            PartAction::ShowAll => self.parts = Arc::default(),
         }
     }
 
@@ -136,7 +133,7 @@ fn part_row(ui: &mut egui::Ui, parts: &[Part], number: usize, is_picked: bool) -
         let alone = ui.add(switch_button(is_alone, "Solo"));
         let name = format!("Show only {}", shown(&part.name));
         alone.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_alone, &name));
-        if alone.on_hover_text("Shows this part alone; a second click shows all.").clicked() {
+        if alone.on_hover_text("Shows this part alone; a second click shows all (--show-part).").clicked() {
             action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(number) });
         }
         let name = shortened(&shown(&part.name), LONGEST);

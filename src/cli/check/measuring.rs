@@ -105,7 +105,7 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
     let mut absent = Vec::new();
     let loaded = match inspect::engine::load(&job.source, &preparation, progress) {
         Err(LoadError::NoPart { known, .. }) => {
-            absent = preparation.hidden.extract_if(.., |part| !known.contains(part)).collect();
+            absent = preparation.parts.hidden.extract_if(.., |part| !known.contains(part)).collect();
             inspect::engine::load(&job.source, &preparation, progress)
         }
         other => other,

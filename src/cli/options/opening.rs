@@ -5,17 +5,19 @@ use clap::{Arg, ArgMatches, Args, Error};
 use super::declared::{Declared, Group, arg, given};
 use inspect::engine::Preparation;
 use inspect::settings::{Declaration, Settings, Value, options};
-use load::Import;
+use load::{Import, ShownParts};
 
 /// How the window takes the mesh that it opens first. What isn't given is as the window was left, or as it was chosen for the file.
 #[derive(Clone, Debug, Default, Args)]
 pub struct OpeningOptions {
     #[command(flatten)]
     import: Declared<GivenImport>,
-    /// Leave out this part of a glTF file, an OBJ file or a text file of STL, by the name of its node, object, group or solid; may be
-    /// given several times. `info` lists the parts
+    /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
     #[arg(long, value_name = "NAME", allow_hyphen_values = true, requires = "file")]
     hide_part: Vec<String>,
+    /// Show only the part of the file that has this name, and others that are given so
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true, requires = "file")]
+    show_part: Vec<String>,
 }
 
 /// The options of [`options::IMPORT`] that were given, with their values.
@@ -25,13 +27,13 @@ struct GivenImport(Vec<(&'static Declaration, Value)>);
 impl OpeningOptions {
     /// Whether none was given.
     pub fn is_empty(&self) -> bool {
-        self.import.0.0.is_empty() && self.hide_part.is_empty()
+        self.import.0.0.is_empty() && self.hide_part.is_empty() && self.show_part.is_empty()
     }
 
     /// Changes what the given options are about.
     pub fn change(&self, preparation: &mut Preparation) {
         preparation.import = self.import(preparation.import);
-        preparation.hidden.clone_from(&self.hide_part);
+        preparation.parts = self.parts();
     }
 
     /// How the geometry of a file is taken, which is `usual` without options.
@@ -43,9 +45,9 @@ impl OpeningOptions {
         settings.import
     }
 
-    /// The names of the parts that are left out.
-    pub fn hidden(&self) -> &[String] {
-        &self.hide_part
+    /// Which parts of the file are read.
+    pub fn parts(&self) -> ShownParts {
+        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() }
     }
 }
 
@@ -101,7 +103,10 @@ mod tests {
         let expected =
             Import { normals: NormalSource::File, unit: Some(FileUnit::Named(LengthUnit::Millimetre)), ..usual };
         assert_eq!(options(&["a.obj", "--unit=0.0254"]).import(usual).unit, Some(FileUnit::Metres(0.0254)));
-        assert_eq!((preparation.import, &preparation.hidden[..]), (expected, &["a".to_owned(), "b".to_owned()][..]));
+        assert_eq!(
+            (preparation.import, &preparation.parts.hidden[..]),
+            (expected, &["a".to_owned(), "b".to_owned()][..])
+        );
     }
 
     #[test]

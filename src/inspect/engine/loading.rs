@@ -10,7 +10,9 @@ use geometry::tessellate::PosedMesh;
 use load::files::Limits;
 use load::parts::Part;
 use load::selection::Selection;
-use load::{Budget, HeightSource, Import, LoadError, LoadedMesh, Source, crease_band_warnings, untextured_warning};
+use load::{
+    Budget, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings, untextured_warning,
+};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -82,8 +84,8 @@ pub struct Preparation {
     pub variant: Option<String>,
     /// The scene of the file, by name or by number from 0; none for its default scene.
     pub scene: Option<String>,
-    /// The names of parts of the file that are left out.
-    pub hidden: Vec<String>,
+    /// Which parts of the file are read.
+    pub parts: ShownParts,
     /// How the geometry of the file is taken.
     pub import: Import,
     pub limits: Limits,
@@ -100,7 +102,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let selected = Selection {
         variant: preparation.variant.as_deref(),
         scene: preparation.scene.as_deref(),
-        hidden: &preparation.hidden,
+        hidden: &preparation.parts.hidden,
+        only: &preparation.parts.only,
         import: preparation.import,
     };
     let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes } =

@@ -89,13 +89,14 @@ impl CopiedCommand<'_> {
     /// Writes the options for loading and preparing the mesh.
     fn mesh(&self, line: &mut Line) {
         // How the geometry is taken is among the settings.
-        let Preparation { weld, crease_band, heights, variant, scene, hidden, import: _, limits } = self.preparation;
+        let Preparation { weld, crease_band, heights, variant, scene, parts, import: _, limits } = self.preparation;
         let Limits { file, memory } = Limits::default();
         line.changed("--weld", weld, &0.0);
         line.changed("--crease-band", crease_band, &0.0);
         variant.iter().for_each(|name| line.option("--variant", name));
         scene.iter().for_each(|name| line.option("--scene", name));
-        hidden.iter().for_each(|name| line.option("--hide-part", name));
+        parts.hidden.iter().for_each(|name| line.option("--hide-part", name));
+        parts.only.iter().for_each(|name| line.option("--show-part", name));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         let Some(heights) = heights else { return };

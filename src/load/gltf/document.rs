@@ -86,7 +86,7 @@ pub(super) fn parse(
         extensions.leave_out_packed(&root);
     }
     let mut reach = Reach::new(&root, &faults, hiding);
-    let parts = node_parts::take(&mut root, &extensions.instances, &reach, selected.hidden, budget)?;
+    let parts = node_parts::take(&mut root, &extensions.instances, &reach, &selected, budget)?;
     if parts.is_cut {
         reach = Reach::new(&root, &faults, reach.hiding);
     }

@@ -13,6 +13,7 @@ use super::reach::{Reach, attribute};
 use super::{GltfError, primitive};
 use crate::memory_budget::Budget;
 use crate::parts::{Part, Parts};
+use crate::selection::Selection;
 use geometry::casts::to_usize;
 use geometry::mesh::MemoryRefused;
 
@@ -29,7 +30,7 @@ pub(super) struct NodeParts {
 }
 
 /// Lists the named nodes that the scene shows and that have a mesh; a node without a name has that of its mesh. Nodes of the same name
-/// are one part. Takes the meshes of the parts that are `hidden`, as if the file didn't have them: their data isn't looked at.
+/// are one part. Takes the meshes of the parts that aren't `selected`, as if the file didn't have them: their data isn't looked at.
 ///
 /// # Errors
 /// [`GltfError::TooLarge`].
@@ -37,10 +38,10 @@ pub(super) fn take(
     root: &mut Root,
     instances: &HashMap<usize, InstancingExtension>,
     reach: &Reach,
-    hidden: &[String],
+    selected: &Selection,
     budget: &Budget,
 ) -> Result<NodeParts, GltfError> {
-    let mut parts = Parts::hiding(hidden);
+    let mut parts = Parts::new(selected);
     let (mut cut, mut entered) = (Vec::new(), Vec::new());
     for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| reach.shown[*i]) {
         let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { continue };
