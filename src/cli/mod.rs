@@ -68,7 +68,7 @@ use inspect::user_shader::UserShaderError;
 use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
 use load::files::file_reason;
-use load::mesh_file::choice;
+use load::selection::choice;
 use load::{LoadError, MatcapError, Source};
 
 /// Shows what tessellation does to a mesh in a window; commands write pictures, meshes and numbers instead

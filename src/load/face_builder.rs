@@ -370,7 +370,8 @@ impl<'a> FaceBuilder<'a> {
         progress: &Progress,
     ) -> Result<Finished, ReadError> {
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
-        let holds = if hides_all { format!("{holds}, and its parts are hidden") } else { holds };
+        let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
+        let holds = named.unwrap_or(holds);
         // No more corners are stored.
         (self.recent, self.block) = Default::default();
         if self.builder.is_empty() {

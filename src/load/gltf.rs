@@ -59,7 +59,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::notes::Notes;
 use super::rig_builder::{RigBuilder, SkinJoints};
-use super::selection::Selection;
+use super::selection::{Selection, choice};
 use super::uri::Files;
 use super::warnings::repair_warnings;
 use super::{notes, rig_builder, tangents};
@@ -142,7 +142,10 @@ pub(super) fn read(
     let Scene { materials, builder, mut primitives, binder, details, .. } = scene;
     if builder.is_empty() {
         let mut holds = match reach.hidden {
-            0 if parsed.parts.is_cut => "its named parts are hidden".to_owned(),
+            0 if parsed.parts.is_cut => {
+                let names: Vec<_> = parsed.parts.list.iter().map(|part| part.name.clone()).collect();
+                format!("its named parts are hidden; {}", choice(&names, "it has no named parts"))
+            }
             0 => primitives.holds(document),
             hidden => {
                 let said = "nodes of its scene that have a mesh (--show-hidden shows them)";

@@ -10,7 +10,7 @@ use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::read_error::ReadError;
-use super::selection::Selection;
+use super::selection::{Selection, choice};
 use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
@@ -92,17 +92,6 @@ pub enum LoadError {
         choice(known, "it has no scenes, so omit --scene")
     )]
     NoScene { path: PathBuf, scene: String, known: Vec<String> },
-}
-
-/// Returns which of something there are, as the end of a message; `none` says that there are none.
-pub fn choice(known: &[String], none: &str) -> String {
-    const NAMED: usize = 20;
-    let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
-    match known.len().checked_sub(NAMED) {
-        _ if known.is_empty() => none.to_owned(),
-        None | Some(0) => format!("choose one of {}", names.join(", ")),
-        Some(more) => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
-    }
 }
 
 impl From<FileError> for LoadError {

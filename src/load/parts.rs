@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use super::memory_budget::Budget;
-use super::selection::Selection;
+use super::selection::{Selection, choice};
 use geometry::casts::to_u32;
 use geometry::mesh::MemoryRefused;
 
@@ -108,6 +108,12 @@ impl Parts {
         let places = places.collect();
         self.found.retain(|part| part.triangles > 0);
         (self.found, self.beyond, places)
+    }
+
+    /// Says which parts there are, as the end of a message.
+    pub(super) fn names(&self) -> String {
+        let with_triangles = self.found.iter().filter(|part| part.triangles > 0);
+        choice(&with_triangles.map(|part| part.name.clone()).collect::<Vec<_>>(), "it has no named parts")
     }
 
     /// Whether triangles are left out.

@@ -1,6 +1,7 @@
 //! What of a file is read, and how.
 
 use super::import::Import;
+use geometry::names::shown;
 
 /// Which of a file's alternatives is read, and how its geometry is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -43,5 +44,16 @@ impl ShownParts {
             false if self.only.len() > 1 => self.only.retain(|other| other != name),
             false => self.hidden.push(name.to_owned()),
         }
+    }
+}
+
+/// Returns which of something there are, as the end of a message; `none` says that there are none.
+pub fn choice(known: &[String], none: &str) -> String {
+    const NAMED: usize = 20;
+    let names: Vec<_> = known.iter().take(NAMED).map(|name| shown(name)).collect();
+    match known.len().checked_sub(NAMED) {
+        _ if known.is_empty() => none.to_owned(),
+        None | Some(0) => format!("choose one of {}", names.join(", ")),
+        Some(more) => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
     }
 }

@@ -37,7 +37,7 @@ fn parts_are_listed_and_left_out() {
     assert_eq!((number(&json, "/triangles"), &json["parts"][1]["hidden"]), (1.0, &Value::Bool(true)));
     let json = info(&[&parts, "--show-part", "-right"]);
     assert_eq!((number(&json, "/triangles"), &json["parts"][0]["hidden"]), (2.0, &Value::Bool(true)));
-    sentence(&["info", &parts, "--show-part", "bonnet"], &["bonnet", "left door", "-right"]);
+    sentence(&["info", &parts, "--show-part", "bonnet"], &["parts are hidden", "left door", "-right"]);
     sentence(&["info", &parts, "--hide-part", "bonnet"], &["bonnet", "left door", "-right"]);
     sentence(&["info", &parts, "--hide-part", "left door", "--hide-part=-right"], &["parts are hidden"]);
     let plain = folder.write("plain.off", "OFF\n3 1 0\n0 0 0\n2 0 0\n2 3 0\n3 0 1 2\n");
