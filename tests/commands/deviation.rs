@@ -49,7 +49,10 @@ fn both_halves_of_a_split_are_measured_and_share_a_scale() {
     let curved = 1.0 - (4.0 - 0.2_f64.sqrt()) / 3.0 * (1.0 - GAP);
     assert!(near(left, GAP, 2e-6) && near(right, curved, 3e-4), "{left} and {right}, not {GAP} and {curved}");
     assert!(near(number(&both, "/left/accuracy/to_reference/max/at_most"), GAP, 0.011 * GAP), "{both}");
-    assert_eq!((&both["left"]["surface"], &both["settings"]["surface"]), (&"flat".into(), &"pn-aen".into()));
+    assert_eq!(
+        (&both["left"]["settings"]["surface"], &both["settings"]["surface"]),
+        (&"flat".into(), &"pn-aen".into())
+    );
     for scale in [&both["deviation"]["scale"], &both["left"]["deviation"]["scale"]] {
         assert_eq!(*scale, serde_json::json!([0.0025, 0.25]), "the scale of the larger deviation");
     }
@@ -147,6 +150,8 @@ fn either_half_of_a_split_is_what_its_options_draw_alone() {
     let right = ["--surface", "phong", "--lod", "error", "--tolerance", "2"];
     let left = "nagata,lod=distance,factor=7,distances=1,6,partitioning=integer,displacement=off";
     let both = draw("both.png", &[&right[..], &["--split", "0.5", "--split-left", left]].concat());
+    let said = stats(&[&["shape:cube-smooth", "--split", "0.5", "--split-left", left], &right[..]].concat());
+    assert_eq!((&said["left"]["settings"]["lod"], &said["settings"]["lod"]), (&"distance".into(), &"error".into()));
     let alone = draw("right.png", &right);
     let options = ["--lod", "distance", "--factor", "7", "--distances", "1,6", "--partitioning", "integer"];
     let left = draw("left.png", &[&["--surface", "nagata"], &options[..]].concat());

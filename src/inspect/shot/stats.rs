@@ -292,10 +292,10 @@ impl LodComparison {
     }
 }
 
-/// The stats of another surface left of the split.
+/// The stats of another tessellation left of the split.
 #[derive(Debug, Serialize)]
 struct LeftStats {
-    surface: &'static str,
+    settings: SettingsStats,
     triangles_out: u64,
     vertices_out: u64,
     cracks: CrackStats,
@@ -379,14 +379,14 @@ impl Shot {
         }))
     }
 
-    /// The stats of another surface left of the split.
+    /// The stats of another tessellation left of the split.
     fn left_stats(&self) -> Option<LeftStats> {
         let (scene, settings) = self.scene.half(SplitSide::Left).zip(self.subject.settings.half(SplitSide::Left))?;
         let results = self.results(SplitSide::Left)?;
         let measured = results.survey.as_ref()?;
         let (vertices_out, triangles_out) = scene.tessellator.totals();
         Some(LeftStats {
-            surface: settings.tessellation.surface.name(),
+            settings: SettingsStats::new(&settings, false, &[]),
             triangles_out,
             vertices_out,
             cracks: CrackStats::new(measured, scene.tessellator.topology(), self.view()),
