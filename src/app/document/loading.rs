@@ -195,7 +195,11 @@ impl App {
         self.viewport.preview.forget();
         let place = |document: &Document| (document.loaded.scene, document.loaded.preparation.import.placement());
         let placed = place(&document);
-        let before = self.document.replace(document);
+        let mut before = self.document.replace(document);
+        if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {
+            // Until they are found again, so that nothing in the title moves.
+            document.neighbours = before.neighbours.take();
+        }
         self.say_title(context);
         self.check_mesh(context);
         self.watch_mesh(context);

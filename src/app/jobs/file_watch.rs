@@ -8,9 +8,8 @@ use super::background_job::spawn;
 use super::job_list::Work;
 use crate::app::App;
 use geometry::progress::Progress;
-use load::HeightSource;
-use load::Source;
 use load::files::Stamp;
+use load::{HeightSource, Source};
 
 /// How often files are looked at.
 const EVERY: Duration = Duration::from_millis(200);
@@ -83,8 +82,9 @@ impl App {
         let (wanted, context) = (progress.clone(), context.clone());
         spawn(move || {
             watch(files, &wanted, || {
+                let is_wanted = sender.send(()).is_ok();
                 context.request_repaint();
-                sender.send(()).is_ok()
+                is_wanted
             });
         });
         self.jobs.follow(Work::MeshFiles, progress, move || {
