@@ -5,7 +5,7 @@ use std::path::Path;
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::Shape;
 use geometry::tessellate::{Lod, Surface};
 use load::Source;
@@ -92,6 +92,7 @@ fn left_of_a_split_is_a_surface_of_ours() {
     press(&mut harness, Key::S);
     choose(&mut harness, "Left", "PN-AEN");
     open(&mut harness, &path);
+    assert!(harness.get_by_label("Edit left (A)").accesskit_node().is_disabled(), "the shader is of the right half");
     press(&mut harness, Key::C);
     assert_eq!(cracked(harness.state()), Some(12));
     let command = copied(&mut harness);

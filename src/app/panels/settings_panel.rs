@@ -32,9 +32,11 @@ impl App {
         });
     }
 
-    /// Which half of a split view is edited, and a button that exchanges both halves, if both are tessellated.
+    /// Which half of a split view is edited, and a button that exchanges both halves, if both are tessellated. While a file stands for
+    /// settings of the right half, these come back there when it is closed, so that half alone is edited.
     fn halves_row(&mut self, ui: &mut egui::Ui) {
-        let has_left = self.settings.half(SplitSide::Left).is_some();
+        let has_files = self.given.is_some() || self.lod_shader.is_some() || self.surface_shader.is_some();
+        let has_left = self.settings.half(SplitSide::Left).is_some() && !has_files;
         if !has_left {
             self.panels.edited = SplitSide::Right;
         }
