@@ -71,15 +71,10 @@ fn deviation_color(in: Varyings) -> vec4<f32> {
     return vec4<f32>(scale_color(max(number, frame.scale_least)), f32(distance >= 0.0));
 }
 
-// The surface that patches are drawn as.
-fn drawn_surface() -> u32 {
-    return select(params.surface, SURFACE_FLAT, DRAWS_SOURCE);
-}
-
 // The mean curvature of the patch itself, without displacement, in 1 / object unit.
 fn curvature_at(in: Varyings) -> f32 {
     let place = patch_place(in.domain.xy);
-    let surface = drawn_surface();
+    let surface = params.surface;
     let net = load_net(in.patch_index);
     let second = patch_second_derivatives(surface, net, place.x, place.y);
     return mean_curvature(patch_tangents(surface, net, place.x, place.y), second);
@@ -132,7 +127,7 @@ fn zebra_place(normal: vec3<f32>, px: vec2<f32>) -> f32 {
 // The unit normal of the patch itself, without displacement, or the shading normal where it has none.
 fn geometric_normal(in: Varyings, shading_normal: vec3<f32>) -> vec3<f32> {
     let place = patch_place(in.domain.xy);
-    return surface_normal(drawn_surface(), load_net(in.patch_index), place.x, place.y, shading_normal);
+    return surface_normal(params.surface, load_net(in.patch_index), place.x, place.y, shading_normal);
 }
 
 fn normal_color(normal: vec3<f32>) -> vec3<f32> {

@@ -16,8 +16,6 @@
 
 // One of LOOK_*, or 0. The code of other looks is left out when the pipeline is made.
 override LOOK: u32 = 0u;
-// Whether the input triangles are drawn, whose surface is flat.
-override DRAWS_SOURCE: bool = false;
 
 struct Varyings {
     // Invariant, since draws of one layer must agree on depths.

@@ -124,18 +124,3 @@ fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     }
     return with_factors(out, key_patch(key));
 }
-
-@vertex
-fn source_vertex(@builtin(vertex_index) index: u32) -> Varyings {
-    let k = index % 3u;
-    let corner = corners[patches[index / 3u].corners[k]];
-    let position = points[patches[index / 3u].points[k]].xyz;
-    let domain = vec2<u32>(select(0u, FIXED_ONE, k == 0u), select(0u, FIXED_ONE, k == 1u));
-    var out = varyings(position, corner.normal, corner.uv, index / 3u, domain, unit_corner(k));
-    out.triangle = index / 3u;
-    if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
-        let at = patches[index / 3u].points;
-        out.size = size_px(points[at[0]].xyz, points[at[1]].xyz, points[at[2]].xyz);
-    }
-    return out;
-}

@@ -135,8 +135,9 @@ impl App {
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
-            step.companions[CompanionFile::ReferenceShape as usize] = None;
-            step.companions[CompanionFile::Factors as usize] = None;
+            for companion in [CompanionFile::ReferenceShape, CompanionFile::LeftMesh, CompanionFile::Factors] {
+                step.companions[companion as usize] = None;
+            }
         });
     }
 
@@ -191,7 +192,9 @@ impl App {
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
         let Some(Undoable { settings, preparation, companions: files }) = step else { return };
-        [Work::ReferenceShape, Work::Matcap, Work::Light].into_iter().for_each(|work| self.jobs.stop(work));
+        [Work::ReferenceShape, Work::LeftMesh, Work::Matcap, Work::Light]
+            .into_iter()
+            .for_each(|work| self.jobs.stop(work));
         if self.given.is_none() {
             self.jobs.stop(Work::Factors);
         }

@@ -39,6 +39,7 @@ use jobs::companion_files::OpenFile;
 use jobs::environment_job::Light;
 use jobs::given_factors::GivenFactors;
 use jobs::job_list::{Jobs, Work};
+use jobs::left_mesh::LeftMesh;
 use jobs::reference_shape::ChosenReferenceShape;
 use jobs::user_shader_job::OpenShader;
 use painting::{Painting, panel_frame};
@@ -67,6 +68,8 @@ pub struct App {
     document: Option<Document>,
     /// The reference surface that was chosen for the mesh, if one was.
     reference_shape: Option<ChosenReferenceShape>,
+    /// What is left of the split in place of the mesh, if something is.
+    left_mesh: Option<LeftMesh>,
     /// Factors of a file in place of those of LOD, if there are any.
     given: Option<OpenFile<GivenFactors>>,
     /// The file with functions of the user's own in place of LOD, if one is open.
@@ -120,6 +123,7 @@ impl App {
             view_history: ViewHistory::default(),
             document: None,
             reference_shape: None,
+            left_mesh: None,
             given: None,
             lod_shader: None,
             surface_shader: None,

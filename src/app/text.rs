@@ -1,22 +1,12 @@
 //! Formats numbers and names for the window.
 
 pub(super) use geometry::names::shortened;
-pub(super) use geometry::numbers::{grouped, short};
+pub(super) use geometry::numbers::{counted, grouped, short};
 
 /// Formats a number and its share of all, in percent.
 pub(super) fn part(number: u64, all: u64) -> String {
     let percent = 100.0 * number as f64 / all.max(1) as f64;
     format!("{} ({percent:.1} %)", grouped(number))
-}
-
-/// Formats a number of things, as "1 fold" or "947 folds".
-pub(super) fn counted(number: u64, thing: &str) -> String {
-    let plural = match number {
-        1 => "",
-        _ if thing.ends_with("ch") => "es",
-        _ => "s",
-    };
-    format!("{} {thing}{plural}", grouped(number))
 }
 
 pub(super) fn mebibytes(bytes: u64) -> String {

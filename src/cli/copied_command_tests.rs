@@ -52,6 +52,7 @@ fn shown<'a>(
         size,
         animation: None,
         reference_shape: None,
+        left_mesh: None,
         factors: None,
         lod_shader: None,
         surface_shader: None,
@@ -231,7 +232,7 @@ proptest! {
         let (source, camera) = ("shape:torus@2".parse().expect("a shape"), camera());
         let args = parsed(&shown(&source, &preparation, &settings, &camera).line());
         let Declared(picture) = args.shot.picture;
-        prop_assert!(args.shot.surface.check(picture.left.map(|left| left.surface)).is_ok());
+        prop_assert!(args.shot.surface.check(picture.left_surface()).is_ok());
         prop_assert_eq!(args.shot.surface.preparation(), preparation);
         // Options without effect may have any value. Which they are, `unused_options_have_no_effect` holds.
         let used = |settings: Settings| {

@@ -31,7 +31,9 @@ pub(crate) use declared::{
 };
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
-pub(crate) use values::{CameraOption, Position, Size, model, picture, source, whole, whole_from, within};
+pub(crate) use values::{
+    CameraOption, Position, Size, model, picture, picture_or_page, source, whole, whole_from, within,
+};
 pub(crate) use view::ViewOptions;
 
 /// How a mesh is tessellated, and where it is seen from.
@@ -133,7 +135,7 @@ impl SurfaceOptions {
     pub(crate) fn settings_of(&self, picture: &Settings) -> Settings {
         // A pose may turn a part inside out in either half.
         let is_still = self.animation.animation.is_none();
-        let left = picture.left.map(|left| Tessellation { cull_back_faces: left.cull_back_faces && is_still, ..left });
+        let left = Tessellation { cull_back_faces: picture.left.cull_back_faces && is_still, ..picture.left };
         Settings { import: self.weld.import.0, left, ..picture.with(self.tessellation()) }
     }
 

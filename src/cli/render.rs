@@ -11,6 +11,7 @@ use super::{AdapterOption, CliError, LimitOption, OpeningOptions, SurfaceOptions
 use geometry::progress::Progress;
 use gpu::GpuError;
 use inspect::engine::Engine;
+use inspect::export::ending;
 use inspect::render::Camera;
 use inspect::settings::Settings;
 use inspect::shot::{Reference, Shot, ShotError, Stats, StatsWanted, given};
@@ -20,8 +21,8 @@ use load::Source;
 pub struct Args {
     #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
-    /// Picture to write, a PNG file. With --cameras, a folder, or a name with {} where each view's name goes
-    #[arg(short, long, value_name = "OUT.png", value_parser = options::picture())]
+    /// Picture to write, a PNG file; or with a name in .html a report on it: a page with the picture, findings and numbers. With --cameras, a folder, or a name with {} where each view's name goes
+    #[arg(short, long, value_name = "OUT.png", value_parser = options::picture_or_page())]
     pub output: PathBuf,
     #[command(flatten)]
     pub shot: ShotOptions,
@@ -42,7 +43,7 @@ pub struct Args {
 }
 
 /// The ending of pictures.
-const ENDINGS: &[&str] = &["png"];
+const ENDINGS: &[&str] = &["png", "html"];
 
 /// Writes the picture that the window would have shown, for machines without a display.
 pub fn preview(
@@ -181,7 +182,10 @@ fn draw(
 ) -> Result<Drawn, CliError> {
     let wanted = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
     let drawn = shot.picture(wanted, &Progress::new())?;
-    shot.write(&view.file, &drawn, line)?;
+    match ending(&view.file).as_str() {
+        "html" => shot.write_report(&view.file, line, &Progress::new())?,
+        _ => shot.write(&view.file, &drawn, line)?,
+    }
     let tolerance_px = args.shot.surface.tessellation().tolerance;
     let gates = shot.judge(&args.gates.gates.fail_on, tolerance_px, &Progress::new())?;
     let mut stats = wanted.is_some().then(|| shot.stats()).transpose()?.flatten();

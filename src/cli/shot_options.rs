@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::options::{LodCameraOption, PictureOptions, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, ReferenceSurfaceOption, SurfaceOptions, SurfaceShaderOption, file_of,
-    file_of_heights, keep_apart, load_apart, refuse, warn,
+    file_of_heights, keep_apart, load, load_apart, options, refuse, warn,
 };
 use geometry::progress::Progress;
 use gpu::Given;
-use inspect::engine::{Engine, Loaded};
+use inspect::engine::{Engine, Loaded, Preparation};
 use inspect::gates::{Gate, GateKind};
 use inspect::render::Camera;
 use inspect::render::environment::Environment;
@@ -40,6 +40,9 @@ pub struct ShotOptions {
     pub environment: Option<PathBuf>,
     #[command(flatten)]
     pub reference_shape: ReferenceSurfaceOption,
+    /// Mesh left of the split in place of the same one, such as an earlier export or the high-poly original: a mesh file, or a shape
+    #[arg(long, value_name = "FILE", value_parser = options::source())]
+    pub split_with: Option<Source>,
     /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
     /// and blue
     #[arg(long, value_name = "TRIANGLE", value_parser = whole_from(0_u32))]
@@ -50,7 +53,8 @@ pub struct ShotOptions {
     /// Transparent background
     #[arg(long, conflicts_with = "background")]
     pub transparent: bool,
-    /// Draw the legend of the surface's colours into the lower right corner, if the colours stand for something
+    /// Draw the legend of the surface's colours into the lower right corner, if the colours stand for something, and in a split picture
+    /// the divider and what both halves show
     #[arg(long)]
     pub legend: bool,
 }
@@ -64,7 +68,7 @@ impl ShotOptions {
         read: &[Option<&Path>],
         written: &[Option<&Path>],
     ) -> Result<(), CliError> {
-        self.surface.check(self.picture.0.left.map(|left| left.surface))?;
+        self.surface.check(self.picture.0.left_surface())?;
         self.user_lod.check_alone(&self.given)?;
         refuse(
             self.matcap_image.is_some() && self.picture.0.overlays.colors.source() != ColorSource::LitSphere,
@@ -73,11 +77,16 @@ impl ShotOptions {
         let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
         refuse(has_file && !needs_file, "--environment is the light of --lighting environment: choose one light")?;
         refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
+        refuse(
+            self.split_with.is_some() && self.picture.0.split.is_none(),
+            "--split-with needs --split, which shows it",
+        )?;
         let reference_shape = self.reference_shape.reference_shape.as_ref().and_then(file_of);
+        let left = self.split_with.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
         let shaders = [self.user_lod.lod_shader.as_deref(), self.user_surface.surface_shader.as_deref()];
-        let own = [file_of(file), reference_shape, heights, factors, matcap, self.environment.as_deref()];
+        let own = [file_of(file), reference_shape, left, heights, factors, matcap, self.environment.as_deref()];
         keep_apart(own.into_iter().chain(shaders).chain(read.iter().copied()), written.iter().copied())
     }
 
@@ -121,10 +130,13 @@ impl ShotOptions {
         if matches!(reference_surface, Some(ReferenceSurface::Limit)) {
             self.user_surface.check_deviation()?;
         }
+        let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
+        let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
         let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
         let subject = Subject {
+            left,
             moment: self.surface.animation.moment(&loaded)?,
             given: given.map(Given::from).or(user_lod),
             surface_shader,

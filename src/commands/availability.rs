@@ -21,6 +21,10 @@ pub enum Need {
     NoWriting,
     /// A reference surface that was chosen for the mesh.
     ReferenceShape,
+    /// Another mesh left of the split.
+    LeftMesh,
+    /// The mesh before its file changed.
+    Before,
     /// Factors of a file in place of LOD's.
     Factors,
     LodShader,
@@ -49,8 +53,6 @@ pub enum Need {
     /// Backs of the mesh that can't be seen.
     Culling,
     Split,
-    /// A tessellation left of the split.
-    TwoTessellations,
     Frozen,
     Deviation,
     /// The chart's panel, with something to measure.
@@ -61,10 +63,10 @@ pub enum Need {
 }
 
 impl Need {
-    pub const ALL: [Self; 32] = every![Need:
-        Document, File, Neighbours, Picture, NoWriting, ReferenceShape, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
+    pub const ALL: [Self; 33] = every![Need:
+        Document, File, Neighbours, Picture, NoWriting, ReferenceShape, LeftMesh, Before, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
         ViewAfter, Bookmarks, RoomForBookmarks, Selection, SelectedPatch, Heights, TextureCoordinates, NormalsAt, Factor, Lod, Culling,
-        Split, TwoTessellations, Frozen, Deviation, MeasurableChart, Chart, Clips,
+        Split, Frozen, Deviation, MeasurableChart, Chart, Clips,
     ];
 
     /// Why a command is not possible without it, in a sentence.
@@ -76,6 +78,8 @@ impl Need {
             Self::Picture => "Nothing is drawn yet.",
             Self::NoWriting => "Another file is being written.",
             Self::ReferenceShape => "No reference surface was chosen.",
+            Self::LeftMesh => "Both halves show the same mesh.",
+            Self::Before => "The file has not changed since it was opened.",
             Self::Factors => "No file of factors is open.",
             Self::LodShader => "No LOD shader is open.",
             Self::SurfaceShader => "No surface shader is open.",
@@ -96,7 +100,6 @@ impl Need {
             Self::Lod => LOD_IS_FIXED,
             Self::Culling => BACKS_ARE_SEEN,
             Self::Split => "Only a split view has a left half.",
-            Self::TwoTessellations => "The left half shows the mesh without tessellation.",
             Self::Frozen => "The LOD camera is not frozen.",
             Self::Deviation => "Only the deviation overlay colours distances.",
             Self::MeasurableChart => "The chart is not open, or has no surface and LOD to measure.",

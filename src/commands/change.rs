@@ -19,6 +19,8 @@ pub enum Change {
     LeftSurface(Option<Surface>),
     /// Exchanges what is left and right of the split.
     SwapHalves,
+    /// Shows one half in all of the picture, and then the other one.
+    BlinkHalves,
     /// The option with this name gets the value with this name, or none.
     Option(&'static str, Option<&'static str>),
 }
@@ -40,11 +42,10 @@ impl Change {
             Self::MaterialColors => settings.overlays.colors = Colors::default(),
             Self::Overlay(overlay) => settings.overlays.toggle(overlay),
             Self::LeftSurface(surface) => settings.set_left_surface(surface),
-            Self::SwapHalves => {
-                if let Some(left) = &mut settings.left {
-                    std::mem::swap(left, &mut settings.tessellation);
-                }
+            Self::BlinkHalves => {
+                settings.split = settings.split.map(|split| if split < 1.0 { 1.0 } else { 0.0 });
             }
+            Self::SwapHalves => std::mem::swap(&mut settings.left, &mut settings.tessellation),
             Self::Option(name, value) => {
                 if let Some(option) = options::all().find(|option| option.name == name) {
                     option.set(settings, value.map_or(Value::Unset, Value::Name));

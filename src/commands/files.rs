@@ -7,6 +7,8 @@ use geometry::names::every;
 pub enum CompanionFile {
     /// The reference surface.
     ReferenceShape,
+    /// The mesh left of the split.
+    LeftMesh,
     Factors,
     LodShader,
     SurfaceShader,
@@ -16,8 +18,8 @@ pub enum CompanionFile {
 }
 
 impl CompanionFile {
-    pub const ALL: [Self; 6] =
-        every![CompanionFile: ReferenceShape, Factors, LodShader, SurfaceShader, Matcap, Environment];
+    pub const ALL: [Self; 7] =
+        every![CompanionFile: ReferenceShape, LeftMesh, Factors, LodShader, SurfaceShader, Matcap, Environment];
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

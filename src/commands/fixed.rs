@@ -34,6 +34,7 @@ const SURFACE_SHADER: &str = "Opens a WGSL file with your own function for the c
 pub const ENVIRONMENT: &str =
     "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
 
+pub(crate) const LEFT_MESH: &str = "The mesh left of the split: the same one, or that of another file, such as an earlier export or the high-poly original.";
 const REFERENCE_SURFACE: &str =
     "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
 const PICTURE: &str = "Writes the picture as a PNG file, in any size, with or without background, overlays and legend.";
@@ -75,6 +76,18 @@ fn file() -> Vec<Command> {
             "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.",
         )
         .menu(File, 2),
+        beside(CompanionFile::LeftMesh, "Mesh left of the split…", LEFT_MESH).menu(File, 2).needs(document),
+        close(
+            CompanionFile::LeftMesh,
+            &[Need::LeftMesh],
+            "The same mesh left of the split",
+            "Shows the mesh that is open in both halves.",
+        )
+        .menu(File, 2),
+        Command::new(FileAction::CompareWithBefore, "Compare with before the change")
+            .text("Shows the mesh as it was before its file changed left of the split, tessellated as the new one is.")
+            .menu(File, 2)
+            .needs(&[Need::Before]),
         beside(CompanionFile::Factors, "Factors of a file…", FACTORS).menu(File, 2).needs(document),
         close(
             CompanionFile::Factors,

@@ -51,6 +51,7 @@ fn settings() -> Vec<Command> {
         values(&options::EDGES, &[]),
         values(&options::LOD, &[Need::Lod]),
         values(&options::CLIP, &[]),
+        values(&options::SECTION, &[]),
         values(&options::CONVENTION, &[]),
         values(&options::DISPLACEMENT, &[Need::Heights]),
         values(&options::DEVIATION_IN, &[Need::Deviation]),
@@ -72,8 +73,12 @@ fn left_surfaces() -> Vec<Command> {
     };
     let swap = Command::new(Change::SwapHalves, "Swap left and right")
         .text("Exchanges the tessellations left and right of the split.")
-        .needs(&[Need::TwoTessellations]);
-    unset.chain(surfaces).map(command).chain([swap]).collect()
+        .needs(&[Need::Split]);
+    let blink = Command::new(Change::BlinkHalves, "Blink left and right")
+        .text("Shows the left half in all of the picture, and then the right one. S brings the divider back.")
+        .keys([plain(Key::J)])
+        .needs(&[Need::Split]);
+    unset.chain(surfaces).map(command).chain([swap, blink]).collect()
 }
 
 /// The key that switches an overlay. Those that look at the surface by itself have Shift and a letter, the zebra that of its

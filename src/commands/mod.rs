@@ -23,7 +23,7 @@ pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_T
 pub use change::Change;
 pub use files::{CompanionFile, Purpose, Written};
 pub use fixed::ENVIRONMENT;
-pub(crate) use fixed::{HEIGHT_IMAGE, MATCAP_IMAGE};
+pub(crate) use fixed::{HEIGHT_IMAGE, LEFT_MESH, MATCAP_IMAGE};
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,6 +108,8 @@ pub enum FileAction {
     NextMesh,
     PreviousMesh,
     Close(CompanionFile),
+    /// Shows the mesh before its file changed beside the new one.
+    CompareWithBefore,
     /// Opens the window that chooses how a picture is saved.
     SavePicture,
     SaveTurntable,

@@ -84,17 +84,24 @@ impl Engine {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
-        let works: [&(dyn Fn() -> Result<(), GpuError> + Sync); 2] =
-            [&|| scene.tessellator.prepare(&settings.tessellation), &|| self.renderer.prepare(scene, settings)];
-        each(&works, |work| work())
+        for (scene, settings) in SplitSide::BOTH.iter().filter_map(|&half| scene.half(half).zip(settings.half(half))) {
+            let works: [&(dyn Fn() -> Result<(), GpuError> + Sync); 2] =
+                [&|| scene.tessellator.prepare(&settings.tessellation), &|| self.renderer.prepare(scene, &settings)];
+            each(&works, |work| work())?;
+        }
+        Ok(())
     }
 
-    /// Adds the left half of a split view to a scene: a second tessellation, with an arena of `arena_bytes`.
+    /// Adds the left half to the scene of a split view, if it has none: a second tessellation, of its mesh or another one.
     ///
     /// # Errors
     /// The mesh needs a larger buffer than the adapter can bind.
-    pub fn split(&self, scene: &mut Scene, arena_bytes: u64) -> Result<(), GpuError> {
-        let left = scene.sibling(arena_bytes)()?;
+    pub fn split(&self, scene: &mut Scene, settings: &Settings, other: Option<&Loaded>) -> Result<(), GpuError> {
+        if settings.split.is_none() || scene.half(SplitSide::Left).is_some() {
+            return Ok(());
+        }
+        let arena_bytes = scene.tessellator.arena_bytes();
+        let left = other.map_or_else(|| scene.sibling(arena_bytes)(), |other| self.scene(other, arena_bytes))?;
         scene.set_left(Some(left))
     }
 
@@ -145,6 +152,7 @@ impl Engine {
         settings: &Settings,
         timing: &mut Timing,
     ) -> Result<(), GpuError> {
+        self.split(scene, settings, None)?;
         for half in SplitSide::BOTH {
             if let Some((scene, settings)) = scene.half_mut(half).zip(settings.half(half)) {
                 self.count(scene, &settings.inputs(view), timing)?;

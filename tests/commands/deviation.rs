@@ -167,3 +167,44 @@ fn either_half_of_a_split_is_what_its_options_draw_alone() {
         assert!(failure(&[&refused[..], &[left]].concat(), 2).contains(said), "{left}");
     }
 }
+
+#[test]
+fn another_mesh_left_of_a_split_is_drawn_and_counted_as_it_is_alone() {
+    let folder = Folder::new();
+    // The same bounding box, so that one camera sees both alike.
+    let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+    let [old, new] = [("old.obj", "f 1 2 3\n"), ("new.obj", "f 1 2 3 4\n")].map(|(name, faces)| {
+        let path = folder.path(name);
+        std::fs::write(&path, [square, faces].concat()).expect("a writable folder");
+        path
+    });
+    let draw = |mesh: &str, options: &[&str]| {
+        let path = folder.path("picture.png");
+        let usual = ["render", mesh, "--overlay", "wireframe", "--partitioning", "integer", "--size", "160x120"];
+        output(&[&usual[..], &["-o", &path], options].concat());
+        image::open(&path).expect("a picture").to_rgba8()
+    };
+    let alone = [draw(&old, &["--factor", "1"]), draw(&old, &["--factor", "3"]), draw(&new, &["--factor", "5"])];
+    let with = ["--factor", "5", "--split", "0.5", "--split-with", &old];
+    let left = ["--split-left", "pn-aen,factor=3"];
+    let pictures = [draw(&new, &with), draw(&new, &[&with[..], &left].concat())];
+    for (both, left) in pictures.iter().zip(&alone) {
+        for (x, y, pixel) in both.enumerate_pixels() {
+            let expected = if x < 80 { left.get_pixel(x, y) } else { alone[2].get_pixel(x, y) };
+            assert_eq!(pixel, expected, "{x}, {y}");
+        }
+    }
+    let said = stats(&[&[&*new][..], &with].concat());
+    let counted = ["triangles_in", "triangles_out"].map(|name| number(&said["left"], &format!("/{name}")));
+    assert_eq!((said["left"]["mesh"].as_str(), counted), (Some(&*old), [1.0, 1.0]));
+    assert_eq!(number(&said, "/triangles_in"), 2.0);
+    // With the legend come a divider and the titles of both halves beside it.
+    let titled = draw(&new, &[&with[..], &["--legend"]].concat());
+    let plates = [10, 150]
+        .map(|y| [-12, 11].map(|aside| titled.get_pixel((80 + aside) as u32, y.min(119)).0 == [24, 24, 24, 255]));
+    assert_eq!((titled.get_pixel(80, 60).0, plates[0]), ([190, 190, 190, 255], [true, true]));
+    let refused = failure(&["render", &new, "-o", "a.png", "--split-with", &old], 2);
+    assert!(refused.contains("--split-with needs --split"), "{refused}");
+    let missing = folder.path("missing.obj");
+    sentence(&["render", &new, "-o", "a.png", "--split", "0.5", "--split-with", &missing], &["missing.obj"]);
+}

@@ -227,3 +227,56 @@ fn a_selected_triangle_is_outlined() {
     sentence(&["render", "shape:cube-split", "-o", &path, "--select", "12"], &["0 to 11", "no triangle 12"]);
     assert!(!Path::new(&path).exists());
 }
+
+#[test]
+fn a_section_cuts_the_picture_open_and_no_measurement() {
+    let folder = Folder::new();
+    let path = folder.path("cut.png");
+    let draw = |options: &[&str]| {
+        let usual = ["render", "shape:icosphere", "--camera", "0,0,4", "--size", "120x90", "--surface", "flat"];
+        output(&[&usual[..], &["--factor", "1", "-o", &path], options].concat());
+        image::open(&path).expect("a picture").to_rgba8()
+    };
+    let whole = draw(&[]);
+    let background = *whole.get_pixel(0, 0);
+    let covered = |picture: &image::RgbaImage| picture.pixels().filter(|pixel| **pixel != background).count();
+    // Half of the sphere's disc is left; cut across the view, all of it, whose backs are seen through the cut.
+    let [beyond, before, across] = ["x", "-x", "-z"].map(|axis| draw(&[&format!("--section={axis}")]));
+    let (all, parts) = (covered(&whole), [&beyond, &before, &across].map(covered));
+    assert!(parts[..2].iter().all(|part| part.abs_diff(all / 2) < all / 20) && parts[2] == all, "{all}, {parts:?}");
+    for (x, y, pixel) in whole.enumerate_pixels().filter(|(x, ..)| x.abs_diff(60) > 2) {
+        let kept = if x > 60 { &beyond } else { &before };
+        let cut = if x > 60 { &before } else { &beyond };
+        assert_eq!((kept.get_pixel(x, y), cut.get_pixel(x, y)), (pixel, &background), "{x}, {y}");
+    }
+    assert!(across != whole && draw(&["--section=-z", "--section-at", "1"]) == whole);
+    let [cut, whole] = [&["--section=x"][..], &[]].map(|options| {
+        let stats = stats(&[&["shape:cube-split", "--surface", "pn", "--factor", "4"], options].concat());
+        (stats["cracks"].clone(), stats["folds"].clone(), stats["triangles_in_view"].clone())
+    });
+    assert_eq!(cut, whole);
+}
+
+#[test]
+fn a_report_is_one_page_with_both_halves_what_was_found_and_the_command() {
+    let folder = Folder::new();
+    let path = folder.path("report.html");
+    let split = ["--split", "0.5", "--split-left", "pn", "--partitioning", "integer", "--size", "80x60"];
+    output(&[&["render", "shape:cube-split", "--factor", "4", "-o", &path], &split[..]].concat());
+    let page = std::fs::read_to_string(&path).expect("a page");
+    let pictures: Vec<_> = page.match_indices("src=\"data:image/png;base64,").collect();
+    assert_eq!(pictures.len(), 2, "{page}");
+    assert!(!page.contains("src=\"http") && page.ends_with("</html>\n"));
+    for words in ["PN\n288 triangles, 12 cracked edges", "PN-AEN\n288 triangles, 0 cracked edges"] {
+        assert!(page.contains(&format!("<figcaption>{words}</figcaption>")), "{words}: {page}");
+    }
+    for words in [
+        "<span class=\"passed\">cracks</span>",
+        "<span class=\"failed\">hard-edges failed</span>",
+        "pnaen render shape:cube-split",
+        "<tr><th>triangles out</th><td>288</td></tr>",
+        "<tr><th>left, cracks, edges</th><td>12</td></tr>",
+    ] {
+        assert!(page.contains(words), "{words}: {page}");
+    }
+}

@@ -261,16 +261,12 @@ fn a_mesh_that_cannot_move_takes_no_pose() {
 #[test]
 fn both_halves_of_a_split_are_in_one_pose() {
     let (loaded, mut scene) = scene();
-    engine().split(&mut scene, ARENA_BYTES).expect("a small mesh");
     scene.frame_clip(Some(0));
     let target = Target::new(&engine().gpu, [240, 160]).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let right = Settings::from(Tessellation { surface: Surface::Flat, ..Tessellation::default() });
-    let split = Settings {
-        split: Some(0.5),
-        left: Some(Tessellation { surface: Surface::Flat, ..right.tessellation }),
-        ..right
-    };
+    let split =
+        Settings { split: Some(0.5), left: Tessellation { surface: Surface::Flat, ..right.tessellation }, ..right };
     for moment in moments(&loaded.mesh, 3).into_iter().map(Some).chain([None]) {
         scene.set_moment(moment).expect("a small rig");
         let [both, alone] = [split, right].map(|settings| {

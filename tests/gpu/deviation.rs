@@ -161,15 +161,12 @@ fn the_limit_surface_is_what_a_fine_tessellation_comes_to() {
 #[test]
 fn two_surfaces_beside_each_other_look_as_they_do_alone() {
     let (_, mut scene) = crate::scene(Shape::Icosahedron);
-    engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let right = settings(Surface::PnAen, 4.0);
-    let split = Settings {
-        split: Some(0.5),
-        left: Some(Tessellation { surface: Surface::Flat, ..right.tessellation }),
-        ..right
-    };
+    let split =
+        Settings { split: Some(0.5), left: Tessellation { surface: Surface::Flat, ..right.tessellation }, ..right };
+    engine().split(&mut scene, &split, None).expect("shapes are small");
     let reference_shape = Arc::new(ReferenceShape::from_shape(Shape::Icosahedron).expect("a sphere"));
     let view = camera.lod_view(target.viewport(), &scene.bounds);
     let fields = SplitSide::BOTH.map(|half| {
@@ -198,8 +195,8 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
         pixels.into_iter().all(|(x, y, pixel)| pixel == other.get_pixel(x, y))
     };
     assert!(is_same(SIZE[0] / 2, &alone) && !is_same(0, &alone));
-    // With the mesh as it came on its left, which has no distances.
-    let source = draw(&Settings { left: None, ..split });
+    // With the mesh as it came on its left, whose distances aren't known.
+    let source = draw(&Settings { left: Tessellation::untessellated(), ..split });
     assert!(is_same(SIZE[0] / 2, &source) && !is_same(0, &source));
     // The software driver lets half of a px beside the split through on the wrong side, others none: it is nobody's here.
     let mut without = both.clone();
@@ -210,7 +207,6 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
 #[test]
 fn each_half_of_a_split_has_its_own_factors() {
     let (_, mut scene) = crate::scene(Shape::Icosahedron);
-    engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let overlays = Overlays { wireframe: true, ..Overlays::default() };
@@ -220,11 +216,8 @@ fn each_half_of_a_split_has_its_own_factors() {
         ..Settings::default()
     };
     let flat = right.with(Tessellation { surface: Surface::Flat, ..right.tessellation });
-    let split = Settings {
-        split: Some(0.5),
-        left: Some(Tessellation { surface: Surface::Flat, ..right.tessellation }),
-        ..right
-    };
+    let split =
+        Settings { split: Some(0.5), left: Tessellation { surface: Surface::Flat, ..right.tessellation }, ..right };
     let [both, alone, flat] = [split, right, flat].map(|settings| {
         engine().draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
         target.read(&engine().gpu).expect("a readback")

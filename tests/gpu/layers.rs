@@ -14,7 +14,7 @@ use inspect::engine::Engine;
 use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::{Camera, Pixel, Renderer, Target};
-use inspect::settings::{Overlays, Settings, SplitSide, ToneCurve};
+use inspect::settings::{Overlays, Settings, ToneCurve};
 
 use crate::displacement::waves;
 use crate::materials::{
@@ -410,9 +410,9 @@ fn layers_of_many_chunks_and_of_both_halves_give_the_same_picture() {
     assert!(whole.1 == pieces.1);
     // The same surface in both halves.
     let mut scene = engine().scene_of(mesh, topology, 256 << 20).expect("a small mesh");
-    engine().split(&mut scene, 1 << 20).expect("a small mesh");
-    let split = Settings { split: Some(0.5), left: Some(settings.tessellation), ..settings };
-    assert!(split.half(SplitSide::Left).is_some());
+    let split = Settings { split: Some(0.5), left: settings.tessellation, ..settings };
+    let left = scene.sibling(1 << 20)().expect("a small mesh");
+    scene.set_left(Some(left)).expect("no rig");
     assert!(ball_picture(&mut scene, &split) == whole.1);
 }
 
@@ -543,7 +543,7 @@ fn a_blended_surface_is_picked_in_front() {
     let (mut scene, camera) = camera_of(engine(), &mesh, &target);
     engine().draw(&mut scene, &target, &camera, &studio(), &mut Timing::Off).expect("a draw");
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
-    let pixel = Pixel { clip_from_object, size: [SIDE; 2], at: [SIDE / 3, SIDE / 2], split: None };
+    let pixel = Pixel { clip_from_object, size: [SIDE; 2], at: [SIDE / 3, SIDE / 2], has_input: false };
     let picking = engine().picker.start(&engine().gpu, &mut scene, &pixel);
     let picked = picking.and_then(|mut picking| picking.wait(&engine().gpu)).expect("a readback").expect("a surface");
     let [x, y, z] = picked.triangle.expect("an emitted triangle").vertices[0].position;

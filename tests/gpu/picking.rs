@@ -6,8 +6,8 @@ use geometry::view::project;
 use glam::{DMat4, DVec2, DVec4, Vec3, dvec2, vec3};
 use gpu::Timing;
 use inspect::engine::Loaded;
-use inspect::render::{Camera, Picked, Pixel, Scene};
-use inspect::settings::Settings;
+use inspect::render::{Camera, Picked, Pixel, Scene, half_at};
+use inspect::settings::{Settings, SplitSide};
 
 use crate::{engine, loaded, scene};
 
@@ -24,7 +24,7 @@ fn camera(loaded: &Loaded) -> Camera {
 
 fn pixel(loaded: &Loaded, at: [u32; 2]) -> Pixel {
     let clip_from_object = camera(loaded).clip_from_object(VIEWPORT, &loaded.mesh.bounds());
-    Pixel { clip_from_object, size: SIZE, at, split: None }
+    Pixel { clip_from_object, size: SIZE, at, has_input: false }
 }
 
 fn count(loaded: &Loaded, scene: &mut Scene, settings: &Settings) {
@@ -164,13 +164,13 @@ fn the_nearest_edge_is_the_one_whose_weight_is_least() {
             let clip = pixel(&loaded, [0, 0]).clip_from_object;
             let at = project(clip, VIEWPORT, place).expect("in front of the eye");
             let at = [at.x as u32, at.y as u32];
-            // Left of a split at the right border: the input triangle, and no emitted one.
-            for split in [None, Some(1.0)] {
-                let picked = pick(&mut scene, &Pixel { split, ..pixel(&loaded, at) }).expect("the cube is there");
-                assert_eq!(picked.triangle.is_some(), split.is_none());
+            // Of input triangles, none is an emitted one.
+            for has_input in [false, true] {
+                let picked = pick(&mut scene, &Pixel { has_input, ..pixel(&loaded, at) }).expect("the cube is there");
+                assert_eq!(picked.triangle.is_none(), has_input);
                 // Faces that face away are behind others.
                 if picked.patch == index {
-                    assert_eq!(picked.weight, weight, "patch {index}, {split:?}");
+                    assert_eq!(picked.weight, weight, "patch {index}, {has_input}");
                     picked_sides += 1;
                 }
             }
@@ -180,14 +180,10 @@ fn the_nearest_edge_is_the_one_whose_weight_is_least() {
 }
 
 #[test]
-fn either_side_of_a_split_gives_what_is_drawn_there() {
-    let (loaded, mut scene) = scene(Shape::Icosahedron);
-    count(&loaded, &mut scene, &Settings::default());
+fn a_pixel_of_a_split_picture_is_in_one_half() {
     let middle = [SIZE[0] / 2, SIZE[1] / 2];
-    for (split, emitted) in [(0.4, true), (0.6, false)] {
-        let picked = pick(&mut scene, &Pixel { split: Some(split), ..pixel(&loaded, middle) }).expect("in the middle");
-        assert_eq!(picked.triangle.is_some(), emitted, "{split}");
-    }
+    let halves = [None, Some(0.4), Some(0.6)].map(|split| half_at(middle, SIZE, split));
+    assert_eq!(halves, [SplitSide::Right, SplitSide::Right, SplitSide::Left]);
 }
 
 #[test]

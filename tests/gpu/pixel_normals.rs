@@ -134,16 +134,12 @@ fn normals_at_pixels_are_the_same_under_overlays() {
 #[test]
 fn each_half_of_a_split_has_normals_of_its_user_surface() {
     let (_, mut scene) = scene(Shape::Icosahedron);
-    engine().split(&mut scene, ARENA_BYTES).expect("shapes are small");
     let target = Target::new(&engine().gpu, SIZE).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let [left, right] =
         [Surface::Flat, Surface::PnAen].map(|surface| settings(surface, Normals::Surface, 3.0, NormalsAt::Pixels));
-    let split = Settings {
-        split: Some(0.5),
-        left: Some(Tessellation { surface: Surface::Flat, ..right.tessellation }),
-        ..right
-    };
+    let split =
+        Settings { split: Some(0.5), left: Tessellation { surface: Surface::Flat, ..right.tessellation }, ..right };
     let [both, left, right] = [split, left, right].map(|settings| {
         engine().draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
         target.read(&engine().gpu).expect("a readback")

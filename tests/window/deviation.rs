@@ -99,7 +99,7 @@ fn both_halves_of_a_split_show_their_surface_and_deviation() {
     };
     let alone = memory(&harness);
     choose(&mut harness, "Left", "Flat");
-    assert_eq!(harness.state().settings().left.map(|left| left.surface), Some(Surface::Flat));
+    assert_eq!(harness.state().settings().left_surface(), Some(Surface::Flat));
     assert!(
         harness.query_by_label_contains("Left: Flat").is_some()
             && harness.query_by_label_contains("Right: PN-AEN").is_some()
@@ -208,14 +208,14 @@ fn either_half_of_a_split_is_a_whole_tessellation_that_is_edited_and_exchanged()
     choose(&mut harness, "Partitioning", "Integer");
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(3.0);
     settle(&mut harness);
-    let left = harness.state().settings().left.expect("a tessellation");
+    let left = harness.state().settings().left;
     assert_eq!((left.surface, left.partitioning, left.factor), (Surface::Pn, Partitioning::Integer, 3.0));
     assert_eq!(harness.state().settings().tessellation, right, "the right half stays as it was");
     // Both are counted, beside each other: 12 patches of 13 triangles on the left.
     harness.get_by_label("Left: PN\nFactor 3, Partitioning Integer\n156 triangles, 12 cracked edges");
     harness.get_by_label_contains("0 cracked edges");
     click(&mut harness, "Swap");
-    assert_eq!(*harness.state().settings(), Settings { left: Some(right), ..harness.state().settings().with(left) });
+    assert_eq!(*harness.state().settings(), Settings { left: right, ..harness.state().settings().with(left) });
     harness.get_by_label_contains("Right: PN\nFactor 3");
     let command = copied(&mut harness);
     assert!(command.contains("--split-left surface=pn-aen,factor="), "{command}");

@@ -10,7 +10,8 @@ use geometry::mesh::Shape;
 use load::Source;
 use pnaen::app::App;
 
-use crate::{PATIENCE, STOP, click, copy_vase, press, settle, uniform, uniform_of, vase};
+use crate::editing::{assert_draws, copied};
+use crate::{PATIENCE, STOP, choose, click, copy_vase, press, settle, uniform, uniform_of, vase};
 
 #[derive(Debug)]
 struct Dropped(PathBuf);
@@ -192,6 +193,41 @@ fn a_mesh_that_changes_on_disk_is_loaded_anew_and_a_broken_one_leaves_the_last_g
         std::thread::sleep(Duration::from_millis(20));
         settle(&mut harness);
     }
+    says_nothing(&harness);
+}
+
+#[test]
+fn a_mesh_that_changed_is_compared_with_what_it_was_and_with_another_file() {
+    let (folder, mut harness) = uniform_of("quad.obj", QUAD);
+    let path = folder.path().join("quad.obj");
+    std::fs::write(&path, QUAD.replace("f 1 2 3 4", "f 1 2 3 # one")).expect("a writable folder");
+    wait_for_label(&mut harness, "changed on disk, loaded anew");
+    settle(&mut harness);
+    click(&mut harness, "changed on disk, loaded anew");
+    let tessellation = harness.state().settings().tessellation;
+    assert_eq!(harness.state().settings().left, tessellation);
+    harness.get_by_label("Left: before the change, PN-AEN\n242 triangles, 0 cracked edges");
+    harness.get_by_label("Right: quad.obj, PN-AEN\n121 triangles, 0 cracked edges");
+    // Another version of the mesh leaves the one that is compared.
+    std::fs::write(&path, QUAD).expect("a writable folder");
+    wait_for_label(&mut harness, "Right: quad.obj, PN-AEN\n242 triangles, 0 cracked edges");
+    harness.get_by_label_contains("Left: before the change");
+    choose(&mut harness, "Left mesh", "Another file…");
+    let start = Instant::now();
+    while harness.state().path_asked_for().is_none() {
+        assert!(start.elapsed() < PATIENCE, "no path is asked for");
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+    harness.event(egui::Event::Text("shape:cube-smooth".into()));
+    settle(&mut harness);
+    press(&mut harness, egui::Key::Enter);
+    harness.get_by_label_contains("Left: shape:cube-smooth, PN-AEN");
+    let command = copied(&mut harness);
+    assert!(command.contains("--split-with shape:cube-smooth"), "{command}");
+    assert_draws(&harness, &command, "quad-view");
+    choose(&mut harness, "Left mesh", "The same");
+    harness.get_by_label("Left: PN-AEN\n242 triangles, 0 cracked edges");
     says_nothing(&harness);
 }
 

@@ -83,7 +83,7 @@ const TASKS: [Task; 20] = [
     Task {
         what: "compare two surfaces side by side",
         steps: &[List("Left", "PN")],
-        done: |window, _| window.state().settings().left.is_some(),
+        done: |window, _| window.state().settings().has_left_tessellation(),
     },
     Task {
         what: "read the factors of an edge",

@@ -52,6 +52,7 @@ impl App {
         let source = absolute_source(&document.loaded.source);
         let reference_shape =
             self.reference_shape.as_ref().map(|reference_shape| absolute_source(&reference_shape.source));
+        let left_mesh = self.left_mesh.as_ref().and_then(|left| left.source.as_ref()).map(absolute_source);
         let mut preparation = document.loaded.preparation.clone();
         if let Some(HeightSource::File(path)) = &mut preparation.heights {
             *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
@@ -69,6 +70,7 @@ impl App {
             size: self.saved_size(choices),
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
             reference_shape: reference_shape.as_ref(),
+            left_mesh: left_mesh.as_ref(),
             factors: self.factors_file(),
             lod_shader: self.lod_shader_file().filter(|_| self.uses_lod_shader()),
             surface_shader: self.surface_shader_file(),

@@ -38,8 +38,11 @@ impl App {
         }
         ui.add(egui::Label::new(egui::RichText::new(title).strong()).truncate()).on_hover_text(whole);
         if has_changed {
-            let hover = "The file has changed on disk, and was loaded again. Settings and camera stay.";
-            ui.weak("changed on disk, loaded anew").on_hover_text(hover);
+            let hover =
+                "The file has changed on disk, and was loaded again. Click to compare it with what it was before.";
+            if ui.link("changed on disk, loaded anew").on_hover_text(hover).clicked() {
+                self.compare_with_before();
+            }
         }
     }
 

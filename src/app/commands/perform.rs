@@ -8,7 +8,7 @@ use crate::app::panels::destinations::Step;
 use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
-use inspect::settings::{ColorSource, Declaration, Settings, SplitSide, options};
+use inspect::settings::{ColorSource, Declaration, Settings, options};
 use load::{HeightSource, Import, Source};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
@@ -31,6 +31,8 @@ impl App {
             (Need::Picture, self.viewport.picture.drawn.is_some()),
             (Need::NoWriting, !self.is_writing()),
             (Need::ReferenceShape, self.reference_shape.is_some()),
+            (Need::LeftMesh, self.left_mesh.is_some()),
+            (Need::Before, document.is_some_and(|document| document.before.is_some())),
             (Need::Factors, self.given.is_some()),
             (Need::LodShader, self.lod_shader.is_some()),
             (Need::SurfaceShader, self.surface_shader.is_some()),
@@ -51,7 +53,6 @@ impl App {
             (Need::Lod, has_effect(&options::LOD) && lets_lod),
             (Need::Culling, self.can_cull_back_faces()),
             (Need::Split, self.settings.split.is_some()),
-            (Need::TwoTessellations, self.settings.half(SplitSide::Left).is_some()),
             (Need::Frozen, self.viewport.frozen.is_some()),
             (Need::Deviation, self.settings.overlays.colors.source() == ColorSource::ReferenceSurface),
             (Need::MeasurableChart, self.can_measure_chart()),
@@ -133,6 +134,7 @@ impl App {
             FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
             FileAction::OpenVase => self.open(context, Source::Vase),
             FileAction::Reload => self.reload(context),
+            FileAction::CompareWithBefore => self.compare_with_before(),
             FileAction::NextMesh => self.open_neighbour(context, |neighbours| neighbours.after),
             FileAction::PreviousMesh => self.open_neighbour(context, |neighbours| neighbours.before),
             FileAction::Close(beside) => self.close_companion(*beside),

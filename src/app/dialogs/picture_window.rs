@@ -32,7 +32,10 @@ impl App {
         let mut choices = self.dialogs.picture.choices;
         window.show(context, |ui| {
             self.picture_rows(ui, &mut choices);
-            [saves, copies] = self.save_buttons(ui, "Asks for the name of the PNG file, and writes it.");
+            [saves, copies] = self.save_buttons(
+                ui,
+                "Asks for the name of the file, and writes it: a PNG picture, or a report on it as an HTML page.",
+            );
         });
         self.dialogs.picture = PictureWindow { is_open: is_open && !saves, choices };
         if saves {
@@ -71,9 +74,12 @@ impl App {
         let hover = "Draws what is on over the surface: wireframe, cracks, colours and so on, and the selection. The frustum of \
                      a frozen LOD camera is always drawn.";
         ui.checkbox(&mut choices.overlays, "With overlays").on_hover_text(hover);
-        let is_possible = choices.overlays && legend_of(&self.settings, 1.0, &self.legend_distances()).is_some();
+        let is_split = self.settings.split.is_some();
+        let is_possible =
+            is_split || choices.overlays && legend_of(&self.settings, 1.0, &self.legend_distances()).is_some();
         let legend = ui.add_enabled(is_possible, egui::Checkbox::new(&mut choices.legend, "With legend"));
-        let hover = "Draws the legend of the surface's colours into the lower right corner (--legend).";
+        let hover = "Draws the legend of the surface's colours into the lower right corner, and in a split picture the divider and what \
+                     both halves show (--legend).";
         legend.on_hover_text(hover).on_disabled_hover_text("These colours stand for nothing, and have no legend.");
     }
 

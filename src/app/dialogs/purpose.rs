@@ -15,6 +15,7 @@ pub(super) fn title(purpose: Purpose) -> &'static str {
         Purpose::Open => "Open path",
         Purpose::Heights => "Height image path",
         Purpose::CompanionFile(CompanionFile::ReferenceShape) => "Reference surface path",
+        Purpose::CompanionFile(CompanionFile::LeftMesh) => "Left mesh path",
         Purpose::CompanionFile(CompanionFile::Factors) => "Factors path",
         Purpose::CompanionFile(CompanionFile::LodShader) => "LOD shader path",
         Purpose::CompanionFile(CompanionFile::SurfaceShader) => "Surface shader path",
@@ -51,7 +52,7 @@ pub(super) fn takes(purpose: Purpose) -> String {
                 "A {kinds} file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)"
             );
         }
-        Purpose::CompanionFile(CompanionFile::ReferenceShape) => {
+        Purpose::CompanionFile(CompanionFile::ReferenceShape | CompanionFile::LeftMesh) => {
             return format!("A {} file, or shape:NAME", known_extensions());
         }
         Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => "A .png, .jpg or .webp image",
@@ -60,7 +61,7 @@ pub(super) fn takes(purpose: Purpose) -> String {
         Purpose::CompanionFile(CompanionFile::SurfaceShader) => "A .wgsl file with the function edge_points",
         Purpose::CompanionFile(CompanionFile::Environment) => "A .hdr or .exr panorama",
         Purpose::Write(Written::Chart) => "A new .svg, .png or .csv file",
-        Purpose::Write(Written::Picture) => "A new .png file",
+        Purpose::Write(Written::Picture) => "A new .png file, or .html for a report on the picture",
         Purpose::Write(Written::Folder) => "A new folder",
         Purpose::Write(Written::Gif) => "A new .gif file",
         Purpose::Write(Written::Factors) => "A new .csv file",
@@ -75,7 +76,7 @@ pub(super) fn takes(purpose: Purpose) -> String {
 pub(super) fn kinds(purpose: Purpose) -> Vec<Kind> {
     match purpose {
         // A mesh is told by its content, so it may have any name.
-        Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape) => {
+        Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape | CompanionFile::LeftMesh) => {
             vec![("Meshes", extensions()), ("All files", vec!["*"])]
         }
         Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => {
@@ -88,7 +89,7 @@ pub(super) fn kinds(purpose: Purpose) -> Vec<Kind> {
         Purpose::Write(Written::Chart) => {
             vec![("SVG picture", vec!["svg"]), ("PNG picture", vec!["png"]), ("CSV table", vec!["csv"])]
         }
-        Purpose::Write(Written::Picture) => vec![("PNG picture", vec!["png"])],
+        Purpose::Write(Written::Picture) => vec![("PNG picture", vec!["png"]), ("Report as a page", vec!["html"])],
         Purpose::Write(Written::Folder) => Vec::new(),
         Purpose::Write(Written::Gif) => vec![("Animated GIF", vec!["gif"])],
         Purpose::CompanionFile(CompanionFile::Factors) | Purpose::Write(Written::Factors) => {
@@ -123,9 +124,10 @@ pub(super) fn proposed(purpose: Purpose, open: Option<&Source>, folder: Option<&
         return unused(folder.map_or_else(|| absolute(&name), |folder| folder.join(&name).display().to_string()));
     }
     match (purpose, open) {
-        (Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape), Some(Source::File(path))) => {
-            path.display().to_string()
-        }
+        (
+            Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape | CompanionFile::LeftMesh),
+            Some(Source::File(path)),
+        ) => path.display().to_string(),
         _ => String::new(),
     }
 }

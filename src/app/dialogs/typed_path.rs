@@ -213,7 +213,9 @@ impl App {
                 Err(format!("{} exists already: choose another name", shown_path(Path::new(path))))
             }
             Purpose::Write(_) => Ok(Source::File(path.into())),
-            Purpose::CompanionFile(beside) if beside != CompanionFile::ReferenceShape => {
+            Purpose::CompanionFile(beside)
+                if !matches!(beside, CompanionFile::ReferenceShape | CompanionFile::LeftMesh) =>
+            {
                 found(Source::File(path.into()))
             }
             _ => path.parse::<Source>().map_err(|error| error.to_string()).and_then(found),

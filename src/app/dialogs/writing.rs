@@ -25,12 +25,12 @@ impl App {
         self.jobs.has(Work::File)
     }
 
-    /// Starts to draw the picture as was last chosen, and to write it as a PNG file.
+    /// Starts to draw the picture as was last chosen, and to write it as a PNG file, or a report on it as a page.
     ///
     /// # Errors
-    /// The path doesn't end in .png; as a sentence.
+    /// The path doesn't end in .png or .html; as a sentence.
     pub fn save_picture(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        check_ending(&path, &["png"])?;
+        check_ending(&path, &["png", "html"])?;
         let (theme, choices) = (context.theme(), self.dialogs.picture.choices);
         let name = path.file_name().map(Path::new);
         let command = self.command_of(theme, &choices, &self.viewport.camera, name, None);

@@ -199,6 +199,7 @@ impl App {
         if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {
             // Until they are found again, so that nothing in the title moves.
             document.neighbours = before.neighbours.take();
+            document.before = if document.has_changed { Some(before.loaded.clone()) } else { before.before.take() };
         }
         self.say_title(context);
         self.check_mesh(context);
@@ -213,8 +214,10 @@ impl App {
         }
         if !keep_view {
             self.forget_reference_shape();
+            self.forget_left_mesh();
         } else if is_turned {
             self.follow_reference_shape(context);
+            self.follow_left_mesh(context);
         }
         let is_first = before.is_none();
         if !is_first {

@@ -33,6 +33,8 @@ pub(crate) struct Document {
     pub files: Stamped,
     /// Whether it was loaded because it had changed on disk.
     pub has_changed: bool,
+    /// The mesh before that.
+    pub before: Option<Loaded>,
     pub neighbours: Option<Neighbours>,
     pub edges: EdgeCounts,
     /// The moment whose pose the scene has; none at rest.
@@ -63,6 +65,8 @@ pub(crate) struct Document {
     pub highlight: Option<Highlight>,
     /// Counts the scenes that were made for the left half.
     pub left_made: u64,
+    /// The number of the mesh there; 0 for this one.
+    pub left_of: u64,
 }
 
 /// What is measured of a half of the view.
@@ -91,6 +95,7 @@ impl Document {
         Self {
             files,
             has_changed: false,
+            before: None,
             neighbours: None,
             edges: loaded.topology.edge_counts(),
             moment: None,
@@ -110,6 +115,7 @@ impl Document {
             showing: None,
             highlight: None,
             left_made: 0,
+            left_of: 0,
             loaded,
             scene,
         }

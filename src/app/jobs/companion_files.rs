@@ -75,6 +75,7 @@ impl App {
     pub(in crate::app) fn companion(&self, companion: CompanionFile) -> Option<Source> {
         let path = match companion {
             CompanionFile::ReferenceShape => return self.reference_shape().cloned(),
+            CompanionFile::LeftMesh => return self.left_mesh.as_ref().and_then(|left| left.source.clone()),
             CompanionFile::Factors => self.factors_file(),
             CompanionFile::LodShader => self.open_shader_file::<LodShader>(),
             CompanionFile::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
@@ -87,6 +88,7 @@ impl App {
     pub(in crate::app) fn close_companion(&mut self, companion: CompanionFile) {
         match companion {
             CompanionFile::ReferenceShape => self.forget_reference_shape(),
+            CompanionFile::LeftMesh => self.forget_left_mesh(),
             CompanionFile::Factors => self.forget_factors(),
             CompanionFile::LodShader => self.forget_shader::<LodShader>(),
             CompanionFile::SurfaceShader => self.forget_shader::<SurfaceShader>(),
@@ -95,10 +97,11 @@ impl App {
         }
     }
 
-    /// Starts to open a file beside the mesh, or a shape as the reference surface. Until it is read, what is open stays.
+    /// Starts to open a file beside the mesh, or a shape as the reference surface or in the left half. Until it is read, what is open stays.
     pub(in crate::app) fn open_companion(&mut self, context: &egui::Context, companion: CompanionFile, source: Source) {
         match (companion, source) {
             (CompanionFile::ReferenceShape, source) => self.open_reference_shape(context, source),
+            (CompanionFile::LeftMesh, source) => self.open_left_mesh(context, source),
             (CompanionFile::Factors, Source::File(path)) => self.open_factors(context, path),
             (CompanionFile::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
             (CompanionFile::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),

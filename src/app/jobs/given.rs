@@ -11,6 +11,8 @@ use inspect::settings::{Lighting, SplitSide};
 pub(crate) struct FromFiles {
     /// What takes the place of LOD: functions of the user's own, or the factors of a file.
     pub factors: u64,
+    /// The same of the left half.
+    pub left_factors: u64,
     /// The function that gives control points.
     pub surface: u64,
     /// The picture of a lit sphere.
@@ -25,8 +27,12 @@ impl App {
         let factors = self.given.as_ref().map_or(0, |given| given.generation);
         let surface = self.surface_shader.as_ref().and_then(OpenShader::shader);
         let light = self.environment.as_ref().filter(|_| self.settings.lighting == Lighting::Environment);
+        // They are for the triangles of this mesh.
+        let takes_left = self.settings.has_left_tessellation() && self.left_mesh.is_none();
+        let factors = lod.map_or(factors, |(_, generation)| generation);
         FromFiles {
-            factors: lod.map_or(factors, |(_, generation)| generation),
+            factors,
+            left_factors: if takes_left { factors } else { 0 },
             surface: surface.map_or(0, |(_, generation)| generation),
             matcap: self.matcap.as_ref().map_or(0, |chosen| chosen.generation),
             light: light.map_or(0, |open| open.generation),
@@ -42,17 +48,16 @@ impl App {
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };
         let (has, scene) = (&mut document.from_files, &mut document.scene);
         if !self.jobs.has(Work::LeftHalf) {
-            if has.factors != wanted.factors {
+            if (has.factors, has.left_factors) != (wanted.factors, wanted.left_factors) {
                 let file = self.given.as_ref().map(|given| Given::Factors(given.content.factors()));
                 let shader = self.lod_shader.as_ref().and_then(OpenShader::shader);
                 let shader = shader.filter(|(_, generation)| *generation == wanted.factors);
                 let given = shader.map(|(shader, _)| Given::Shader(shader)).or(file);
-                for half in SplitSide::BOTH {
-                    if let Some(scene) = scene.half_mut(half) {
-                        scene.tessellator.give(given.clone())?;
-                    }
+                scene.tessellator.give(given.clone())?;
+                if let Some(left) = scene.half_mut(SplitSide::Left) {
+                    left.tessellator.give(given.filter(|_| wanted.left_factors > 0))?;
                 }
-                has.factors = wanted.factors;
+                (has.factors, has.left_factors) = (wanted.factors, wanted.left_factors);
             }
             if has.surface != wanted.surface {
                 let shader = self.surface_shader.as_ref().and_then(OpenShader::shader);

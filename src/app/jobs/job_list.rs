@@ -17,6 +17,8 @@ pub(crate) enum Work {
     Mesh,
     /// The reference surface.
     ReferenceShape,
+    /// The mesh of another file for the left half.
+    LeftMesh,
     /// The file of light.
     Light,
     /// Reading a file of factors, or comparing its factors under another convention.
@@ -53,8 +55,8 @@ impl Work {
 
     /// Whether it reads a file beside the mesh.
     fn is_companion(self) -> bool {
-        use Work::{Factors, Light, LodShader, Matcap, ReferenceShape, SurfaceShader};
-        matches!(self, ReferenceShape | Light | Factors | Matcap | LodShader | SurfaceShader)
+        use Work::{Factors, LeftMesh, Light, LodShader, Matcap, ReferenceShape, SurfaceShader};
+        matches!(self, ReferenceShape | LeftMesh | Light | Factors | Matcap | LodShader | SurfaceShader)
     }
 
     /// Whether it ends with the document.

@@ -13,6 +13,7 @@ pub(super) mod given;
 pub(super) mod given_factors;
 pub(super) mod job_list;
 pub(super) mod leak_job;
+pub(super) mod left_mesh;
 pub(super) mod matcap;
 pub(super) mod measure_job;
 pub(super) mod mesh_checks;

@@ -7,6 +7,7 @@ use crate::app::App;
 use geometry::progress::Progress;
 use gpu::{Gpu, GpuError};
 use inspect::engine::Engine;
+use inspect::export::ending;
 use inspect::render::Scene;
 use inspect::settings::{ARENA_BYTES, ColorSource, Overlays, Settings, SplitSide};
 use inspect::shot::files::write_factors;
@@ -38,11 +39,15 @@ pub(crate) struct ShotParts {
 }
 
 impl ShotParts {
-    /// Draws the picture and writes it as a PNG file that holds this command. Writes nothing if it was cancelled.
+    /// Draws the picture and writes it as a PNG file that holds this command, or a report on it as a page. Writes nothing if it was
+    /// cancelled.
     ///
     /// # Errors
     /// The device fails, or the file can't be written; as a sentence.
     pub(crate) fn save(self, command: &str, path: &Path, progress: &Progress) -> Result<(), String> {
+        if ending(path) == "html" {
+            return self.with_shot(|shot| shot.write_report(path, command, progress));
+        }
         self.with_shot(|shot| {
             let picture = shot.picture(None, progress)?;
             progress.check()?;
@@ -143,6 +148,7 @@ impl App {
         };
         let subject = Subject {
             loaded: document.loaded.clone(),
+            left: self.left_mesh.as_ref().map(|left| left.loaded.clone()),
             moment: document.moment,
             given: document.scene.tessellator.given().cloned(),
             surface_shader: document.scene.tessellator.surface_shader().cloned(),

@@ -8,6 +8,7 @@ use inspect::gates::{EdgeSpot, GateKind, Place, Spot};
 use inspect::measure::FoldedPatch;
 use inspect::render::Leak;
 use inspect::settings::{Overlay, SplitSide};
+use load::NormalSource;
 
 /// Where a click on a finding leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,8 @@ pub(in crate::app) enum Destination {
     Factors,
     /// Another crease angle where the file has no normals: flat triangles, or smooth ones again.
     CreaseAngle(f32),
+    /// Normals that are made anew in place of those of the file.
+    MadeNormals,
     /// The section that counts what isn't drawn.
     Patches,
     Warnings,
@@ -132,6 +135,7 @@ impl App {
             Destination::Sizes
             | Destination::Factors
             | Destination::CreaseAngle(_)
+            | Destination::MadeNormals
             | Destination::Patches
             | Destination::Warnings => Vec::new(),
         }
@@ -163,6 +167,7 @@ impl App {
             Destination::Sizes => overlays.turn_on(Overlay::TriangleSize),
             Destination::Factors => overlays.turn_on(Overlay::Factors),
             Destination::CreaseAngle(angle) => self.settings.import.crease_angle = angle,
+            Destination::MadeNormals => self.settings.import.normals = NormalSource::Made,
             Destination::Patches => open.set(Section::Patches, true),
             Destination::Warnings => self.dialogs.shows_warnings = true,
         }

@@ -171,7 +171,7 @@ impl App {
             fact(ui, "Reference", &shortened(&name, 20), hover);
             option_row(ui, &options::DEVIATION_IN, &mut self.settings, "");
             for half in SplitSide::BOTH {
-                let Some(surface) = self.surface_title(half) else { continue };
+                let surface = self.surface_title(half);
                 let place = if half == SplitSide::Left { "Left" } else { "Right" };
                 if is_split {
                     let hover = "The surface in this half of the split view.";

@@ -1,12 +1,13 @@
 //! The settings in the left panel.
 
-use super::option_rows::{option_hover, option_row};
+use super::option_rows::{option_hover, option_row, with_note};
 use crate::app::App;
 use crate::app::jobs::job_list::Work;
+use crate::app::jobs::left_mesh::LeftMesh;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
-use crate::commands::{Action, BACKS_ARE_SEEN, Change, key_name, with_key};
+use crate::commands::{Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key};
 use geometry::tessellate::{Lod, Surface, Tessellation};
 use inspect::settings::{Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, SplitSide, options};
 
@@ -36,7 +37,7 @@ impl App {
     /// settings of the right half, these come back there when it is closed, so that half alone is edited.
     fn halves_row(&mut self, ui: &mut egui::Ui) {
         let has_files = self.given.is_some() || self.lod_shader.is_some() || self.surface_shader.is_some();
-        let has_left = self.settings.half(SplitSide::Left).is_some() && !has_files;
+        let has_left = self.settings.split.is_some() && !has_files;
         if !has_left {
             self.panels.edited = SplitSide::Right;
         }
@@ -69,12 +70,32 @@ impl App {
         exchange(&mut self.settings);
     }
 
+    /// Which mesh the left half shows.
+    fn left_mesh_row(&mut self, ui: &mut egui::Ui) {
+        let label = ui.label("Left mesh");
+        let shown = self.left_mesh.as_ref().map_or_else(|| "The same".to_owned(), LeftMesh::title);
+        let combo = egui::ComboBox::from_id_salt("Left mesh").selected_text(shown).truncate().show_ui(ui, |ui| {
+            if ui.selectable_label(self.left_mesh.is_none(), "The same").clicked() {
+                self.forget_left_mesh();
+            }
+            let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
+            if has_before && ui.selectable_label(false, "Before the change on disk").clicked() {
+                self.compare_with_before();
+            }
+            if ui.selectable_label(false, "Another file…").clicked() {
+                self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::LeftMesh));
+            }
+        });
+        combo.response.labelled_by(label.id).on_hover_text(with_note(LEFT_MESH, "--split-with"));
+        ui.end_row();
+    }
+
     /// What the left half shows.
     fn left_row(&mut self, ui: &mut egui::Ui) {
         let option = &options::SPLIT_LEFT;
         let unset = option.unset.iter().map(|unset| (None, unset.label, unset.text));
         let surfaces = Surface::ALL.iter().map(|surface| (Some(*surface), surface.label(), surface.text()));
-        let before = self.settings.left.map(|left| left.surface);
+        let before = self.settings.left_surface();
         let mut surface = before;
         chooser(ui, option.label, &option_hover(option, ""), &mut surface, &unset.chain(surfaces).collect::<Vec<_>>());
         if surface != before {
@@ -97,6 +118,7 @@ impl App {
         }
         shown_option_row(ui, &options::ALPHA, &mut self.settings);
         if self.settings.split.is_some() && self.panels.edited == SplitSide::Right {
+            self.left_mesh_row(ui);
             self.left_row(ui);
         }
         self.normals_rows(ui);
@@ -252,6 +274,8 @@ impl App {
         self.matcap_row(ui);
         self.light_rows(ui);
         self.background_row(ui);
+        option_row(ui, &options::SECTION, &mut self.settings, "");
+        shown_option_row(ui, &options::SECTION_AT, &mut self.settings);
     }
 
     fn background_row(&mut self, ui: &mut egui::Ui) {

@@ -78,7 +78,7 @@ impl App {
     pub(in crate::app) fn worst(&self, ui: &egui::Ui) -> Option<Color32> {
         let lines = self.verdict_lines(ui.visuals()).into_iter().chain(self.mesh_lines(ui.visuals()));
         let is_wrong = |line: &Line| match line.leads {
-            Destination::Sizes | Destination::CreaseAngle(_) | Destination::Patches => false,
+            Destination::Sizes | Destination::CreaseAngle(_) | Destination::MadeNormals | Destination::Patches => false,
             _ => !line.is_often_meant(),
         };
         lines.filter(is_wrong).find_map(|line| line.color)
@@ -102,6 +102,7 @@ impl App {
             Some(self.sizes_line(visuals.text_color())),
             Some(self.limit_line(visuals.warn_fg_color)),
             self.normals_line(visuals),
+            self.split_edges_line(visuals.warn_fg_color),
             Some(self.warnings_line(visuals.warn_fg_color)),
         ];
         lines.into_iter().flatten().collect()
@@ -242,7 +243,8 @@ impl App {
             return self.unknown("Triangles below 3 px", hover, Destination::Sizes);
         };
         let percent = 100.0 * sizes.small as f64 / sizes.in_view.max(1) as f64;
-        let text = format!("{percent:.0} % of triangles below 3 px");
+        let wires = if self.settings.overlays.wireframe && percent >= 50.0 { "Wires too dense: " } else { "" };
+        let text = format!("{wires}{percent:.0} % of triangles below 3 px");
         match percent >= 0.5 {
             true => Line::bad(text, color, hover, Destination::Sizes),
             false => Line::dim(text, hover, Destination::Sizes),
@@ -260,6 +262,18 @@ impl App {
                 Line::bad(text, color, hover, Destination::Factors)
             }
         }
+    }
+
+    /// There only where normals differ along all inner edges, so that no surface can be smooth.
+    fn split_edges_line(&self, color: Color32) -> Option<Line> {
+        let document = self.document.as_ref().filter(|document| {
+            let is_of_file = document.loaded.preparation.import.normals == NormalSource::File;
+            is_of_file && document.edges.split > 0 && document.edges.smooth + document.edges.seam == 0
+        })?;
+        let hover = "Every edge between triangles has different normals on its two sides, so that each triangle is flat and nothing can \
+                     curve. A click makes normals anew, smooth below the crease angle: the mesh is loaded again.";
+        let text = format!("All {} are split", counted(document.edges.split.into(), "edge"));
+        Some(Line::bad(text, color, hover, Destination::MadeNormals))
     }
 
     /// There only where the file lacks normals.

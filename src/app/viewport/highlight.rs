@@ -71,13 +71,15 @@ impl App {
 
     /// The lines over a half, in its pose if that is known on the CPU.
     fn marks(&self, half: SplitSide, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
+        let posed = posed.filter(|_| document.scene.shares_mesh(half));
         let overlays = self.settings.overlays;
         let mut lines = if overlays.grid { axis_lines(&document.scene.bounds) } else { Vec::new() };
         if let Some((topology, junctions)) = posed.zip(document.checks.t_junctions()).filter(|_| overlays.t_junctions) {
             lines.extend(t_junction_lines(topology, junctions));
         }
         if let Some(found) = self.found(half).filter(|_| overlays.cracks) {
-            lines.extend(crack_lines(found, &document.loaded.topology));
+            let own = document.scene.half(half).map(|own| own.tessellator.topology());
+            lines.extend(crack_lines(found, own.unwrap_or(&document.loaded.topology)));
         }
         lines.extend(self.worst_mark(half));
         lines.extend(self.frozen_lines());

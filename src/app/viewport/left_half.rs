@@ -6,13 +6,13 @@ use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{MeasureError, Results, Seen};
-use crate::app::jobs::scenes::arena_bytes;
+use crate::app::jobs::scenes::{arena_bytes, scene_of};
 use crate::app::jobs::user_shader_job::OpenShader;
-use crate::app::text::counted;
 use gpu::GpuError;
 use inspect::measure::Measured;
 use inspect::render::Scene;
-use inspect::settings::{Choice, Declaration, SplitSide, options};
+use inspect::settings::SplitSide;
+use inspect::shot::{HalfFacts, half_title, surface_title};
 
 /// Making a scene for longer than this is shown in the window.
 const NOTICED: Duration = Duration::from_millis(300);
@@ -26,30 +26,35 @@ impl App {
     /// Makes the left half's scene or drops it, as the settings want it. Waits until no picture is under way.
     pub(in crate::app) fn keep_left(&mut self, context: &egui::Context) -> Result<(), GpuError> {
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };
-        let is_wanted = self.settings.half(SplitSide::Left).is_some();
-        if !is_wanted {
+        let wanted = self.settings.split.map(|_| self.left_mesh.as_ref().map_or(0, |left| left.generation));
+        if wanted.is_none() {
             self.jobs.stop(Work::LeftHalf);
         }
-        if is_wanted == document.scene.half(SplitSide::Left).is_some() || self.jobs.has(Work::LeftHalf) {
+        let shown = document.scene.half(SplitSide::Left).map(|_| document.left_of);
+        if wanted == shown || self.jobs.has(Work::LeftHalf) {
             return Ok(());
         }
         document.halves[SplitSide::Left as usize].forget();
-        if !is_wanted {
-            return document.scene.set_left(None);
-        }
-        let (gpu, make) = (self.engine.gpu.clone(), document.scene.sibling(arena_bytes(&self.engine)));
-        let make = move |_: &_| gpu.attempt(make)?;
-        self.jobs.start(context, Work::LeftHalf, String::new(), make, |app, _, made| app.take_left(made));
+        let Some(wanted) = wanted else { return document.scene.set_left(None) };
+        let (engine, sibling) = (self.engine.clone(), document.scene.sibling(arena_bytes(&self.engine)));
+        let other = self.left_mesh.as_ref().map(|left| left.loaded.clone());
+        let make = move |_: &_| match other {
+            Some(other) => scene_of(&engine, &other),
+            None => engine.gpu.attempt(sibling)?,
+        };
+        self.jobs.start(context, Work::LeftHalf, String::new(), make, move |app, _, made| app.take_left(made, wanted));
         Ok(())
     }
 
-    fn take_left(&mut self, made: Result<Result<Scene, GpuError>, Stopped>) {
+    fn take_left(&mut self, made: Result<Result<Scene, GpuError>, Stopped>, of: u64) {
         let Some(document) = &mut self.document else { return };
         let taken = match made {
             Ok(made) => made.and_then(|mut left| {
                 // It shows a surface of ours.
                 left.tessellator.set_surface_shader(None)?;
                 document.left_made += 1;
+                document.left_of = of;
+                document.from_files.left_factors = if of == 0 { document.from_files.factors } else { 0 };
                 document.scene.set_left(Some(left))
             }),
             Err(stopped) => return self.leave_as_it_came(&format!("tessellating it {stopped}")),
@@ -58,7 +63,7 @@ impl App {
     }
 
     fn leave_as_it_came(&mut self, why: &str) {
-        self.settings.left = None;
+        self.settings.split = None;
         self.dialogs.error = Some(format!("the left half can't show another tessellation: {why}"));
     }
 
@@ -98,36 +103,30 @@ impl App {
         self.document.as_ref()?.halves[half as usize].measure.found()
     }
 
-    /// The title of a half if the split has two tessellations: the surface, with the deviation overlay its largest deviation, what else
-    /// differs between the halves, and what was counted.
-    pub(in crate::app) fn half_title(&self, half: SplitSide) -> Option<String> {
-        let name = self.surface_title(half)?;
-        let own = self.settings.half(half)?;
-        let other = self.settings.half(if half == SplitSide::Left { SplitSide::Right } else { SplitSide::Left })?;
-        let first = self.largest_text(half).map_or_else(|| name.clone(), |largest| format!("{name}: {largest}"));
-        let differs = |option: &&Declaration| {
-            option.name != options::SURFACE.name
-                && option.get(&own) != option.get(&other)
-                && (option.no_effect)(&own).is_none()
+    /// The title of a half of a split view: its surface, with the deviation overlay its largest deviation, what else differs between
+    /// the halves, and what was counted.
+    pub(in crate::app) fn half_title(&self, half: SplitSide) -> String {
+        let open = self.document.as_ref();
+        let titles = self.left_mesh.as_ref().zip(open).map(|(left, open)| [left.title(), open.loaded.source.title()]);
+        let scene = open.and_then(|document| document.scene.half(half));
+        let facts = HalfFacts {
+            mesh: titles.map(|titles| titles[half as usize].clone()),
+            shader: self.shader_title(half),
+            largest: self.largest_text(half),
+            triangles: scene.map(|scene| scene.tessellator.totals().1),
+            cracked_edges: self.found(half).map(|found| found.cracks.cracked().len() as u64),
         };
-        let differing = options::TESSELLATION.into_iter().filter(differs).map(|option| option.shown(&own));
-        let scene = self.document.as_ref().and_then(|document| document.scene.half(half));
-        let triangles = scene.map(|scene| counted(scene.tessellator.totals().1, "triangle"));
-        let cracks = self.found(half).map(|found| counted(found.cracks.cracked().len() as u64, "cracked edge"));
-        let lines = [Some(first), joined(differing), joined(triangles.into_iter().chain(cracks))];
-        Some(lines.into_iter().flatten().collect::<Vec<_>>().join("\n"))
+        half_title(&self.settings, half, facts)
     }
 
     /// What the surface of a half is called: as the list of surfaces has it, or a shader's file.
-    pub(in crate::app) fn surface_title(&self, half: SplitSide) -> Option<String> {
-        let chosen = self.settings.half(half)?.tessellation.surface.label().to_owned();
-        let own = self.surface_shader.as_ref().filter(|open| open.is_used() && half == SplitSide::Right);
-        Some(own.map_or(chosen, OpenShader::name))
+    pub(in crate::app) fn surface_title(&self, half: SplitSide) -> String {
+        self.shader_title(half).unwrap_or_else(|| surface_title(&self.settings, half).to_owned())
     }
-}
 
-/// Joins texts by commas; none if there are none.
-fn joined(texts: impl Iterator<Item = String>) -> Option<String> {
-    let texts: Vec<_> = texts.collect();
-    (!texts.is_empty()).then(|| texts.join(", "))
+    /// The file of the shader in place of a half's surface.
+    fn shader_title(&self, half: SplitSide) -> Option<String> {
+        let own = self.surface_shader.as_ref().filter(|open| open.is_used() && half == SplitSide::Right);
+        own.map(OpenShader::name)
+    }
 }

@@ -261,7 +261,7 @@ impl App {
 
     /// The split's divider, which can be dragged.
     fn divider(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
-        let [left, right] = SplitSide::BOTH.map(|half| self.half_title(half));
+        let titles = SplitSide::BOTH.map(|half| self.half_title(half));
         let Some(split) = &mut self.settings.split else { return };
         let at = rect.left() + rect.width() * *split;
         let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
@@ -286,10 +286,6 @@ impl App {
         let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
         ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width + 2.0, egui::Color32::from_black_alpha(130)));
         ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
-        let titles = match (left, right) {
-            (Some(left), Some(right)) => [left, right],
-            _ => ["untessellated", "tessellated"].map(str::to_owned),
-        };
         // The axes are in the right half's corner, or under the titles.
         let beside = axes_place(rect, Some(*split)).filter(|axes| Some(*axes) == axes_place(rect, None));
         let end = beside.map_or(rect.right(), |axes| axes.left());

@@ -1,15 +1,15 @@
 //! Labels over the picture: the selected patch's corners with their weights, and its edges with their factors.
 
-use egui::{Color32, Pos2, Rect, Stroke, Vec2};
+use egui::{Color32, Pos2, Rect, Vec2};
 
 use super::panel::{note_text, paint_note};
 use crate::app::App;
 use crate::app::patch_names::letter;
 use crate::app::text::factor;
 use crate::app::widgets::rgb;
-use geometry::tessellate::{domain_side, factor_side, segments};
+use geometry::tessellate::{factor_side, segments};
 use geometry::view::{ScreenView, project};
-use inspect::render::layout::{FACTOR_COLORS, OUTLINE_COLOR};
+use inspect::render::layout::FACTOR_COLORS;
 use inspect::settings::SplitSide;
 
 /// The smallest extent of a patch on screen, in points, that is labelled.
@@ -29,10 +29,6 @@ impl App {
             Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
         };
         let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };
-        if let Some(split) = self.settings.split.filter(|_| self.settings.half(SplitSide::Left).is_none()) {
-            let source = rect.with_max_x(rect.left() + rect.width() * split);
-            self.source_outline(&ui.painter_at(source), [a, b, c]);
-        }
         let extent = Rect::from_points(&[a, b, c]).size().max_elem();
         if extent < LEAST_EXTENT {
             return;
@@ -60,19 +56,6 @@ impl App {
             }
         }
         show(ui, rect, middle, free, &corners);
-    }
-
-    /// Outlines the untessellated triangle left of the split, where the picture has no lines over the mesh.
-    fn source_outline(&self, painter: &egui::Painter, corners: [Pos2; 3]) {
-        let [casing, inner] = [8.0, 5.5].map(|px| px / painter.pixels_per_point());
-        let side = |i: u32| domain_side(self.convention(), i) as usize;
-        let ends = [0, 1, 2].map(|i| [corners[side(i)], corners[(side(i) + 1) % 3]]);
-        for line in ends {
-            painter.line_segment(line, Stroke::new(casing, rgb(OUTLINE_COLOR)));
-        }
-        for (line, color) in ends.into_iter().zip(FACTOR_COLORS) {
-            painter.line_segment(line, Stroke::new(inner, rgb(color)));
-        }
     }
 
     /// Factor `i` of a patch as LOD gave it, and the number of segments.

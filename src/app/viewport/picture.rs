@@ -9,12 +9,12 @@ use super::pace::next_steps;
 use crate::app::Document;
 use crate::app::jobs::given::FromFiles;
 use crate::app::painting::{Painting, ShownPicture};
-use geometry::mesh::Moment;
+use geometry::mesh::{Bounds, Moment};
 use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use inspect::engine::Engine;
-use inspect::render::{Camera, Pixel, Renderer, Scene, Target};
+use inspect::render::{Camera, Pixel, Renderer, Scene, Target, half_at, section};
 use inspect::settings::{ColorSource, Settings, SplitSide};
 
 /// Everything that the picture depends on.
@@ -159,17 +159,12 @@ impl Picture {
         self.drawn.as_ref().map(|drawn| (drawn.camera, drawn.viewport))
     }
 
-    /// A pixel of the last picture, counted from the left and the top, and the half whose scene is there. Where the left
-    /// half shows the untessellated mesh, that is the right half's scene.
-    pub(crate) fn pixel(&self, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
-        let PictureRequest { clip_from_object, settings, .. } = self.drawn?;
+    /// A pixel of the last picture, counted from the left and the top, and the half that is there.
+    pub(crate) fn pixel(&self, bounds: &Bounds, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
+        let PictureRequest { camera, viewport, settings, .. } = self.drawn?;
+        let clip_from_object = section::clip_from_object(&camera, viewport, bounds, &settings);
         let size = self.target.as_ref()?.0.size;
-        let pixel = Pixel { clip_from_object, size, at, split: settings.split };
-        if settings.half(SplitSide::Left).is_none() {
-            return Some((SplitSide::Right, pixel));
-        }
-        let half = if pixel.is_left() { SplitSide::Left } else { SplitSide::Right };
-        Some((half, Pixel { split: None, ..pixel }))
+        Some((half_at(at, size, settings.split), Pixel { clip_from_object, size, at, has_input: false }))
     }
 
     pub(crate) fn seen_from(&self) -> Option<ScreenView> {

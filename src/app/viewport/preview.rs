@@ -265,7 +265,7 @@ fn settings_of(shape: Shape, settings: &Settings) -> Settings {
         Shape::Same => return cheap,
         Shape::Factor(factor) => factor,
         Shape::StandIn => {
-            cheap.left = None;
+            cheap.split = None;
             1.0
         }
     };

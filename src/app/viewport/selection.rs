@@ -115,7 +115,8 @@ impl App {
         let Some(pointer) = response.interact_pointer_pos().filter(|_| is_clicked) else { return };
         let Some(document) = self.document.as_mut().filter(|_| !self.viewport.closes_list) else { return };
         let place = (pointer - response.rect.min) * pixels_per_point;
-        document.selection.clicked = self.viewport.picture.pixel([place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
+        document.selection.clicked =
+            self.viewport.picture.pixel(&document.scene.bounds, [place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
     }
 
     /// Searches for what was clicked on, on the device. Returns true once the result is taken.
@@ -130,8 +131,7 @@ impl App {
         {
             // Picking in a tessellation of many chunks would take as long as drawing it, so its emitted triangles are left out.
             let is_short = scene.tessellator.chunk_count() <= self.viewport.picture.short;
-            let split = if is_short { pixel.split } else { Some(1.0) };
-            let pixel = Pixel { split, ..pixel };
+            let pixel = Pixel { has_input: !is_short, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
             let emitted = (half == SplitSide::Right).then(|| scene.tessellator.generation());
             document.selection.picking = Some((emitted, pixel, picking));
@@ -141,7 +141,7 @@ impl App {
             document.selection.picking = Some((emitted, pixel, picking));
             return Ok(false);
         };
-        if !self.measure_to(&pixel, found.as_ref()) {
+        if !self.measure_to(&pixel, found.as_ref()) && (emitted.is_some() || self.left_mesh.is_none()) {
             self.take_picked(emitted, found);
         }
         Ok(true)

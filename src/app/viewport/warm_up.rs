@@ -14,7 +14,7 @@ use crate::app::jobs::scenes::arena_bytes;
 use gpu::{GpuError, Recorder, Timing};
 use inspect::engine::Engine;
 use inspect::render::{DraftPipelines, Scene, Target};
-use inspect::settings::{Settings, SplitSide};
+use inspect::settings::Settings;
 
 /// The window must have had nothing to do for so long.
 const IDLE: Duration = Duration::from_millis(300);
@@ -108,12 +108,9 @@ fn draw(engine: &Engine, scene: &mut Scene, wanted: &PictureRequest) -> Result<A
     Ok(done)
 }
 
-/// The same for a scene without a left half. With two surfaces, both halves have the same pipelines.
-fn of_one_scene(mut settings: Settings) -> Settings {
-    if settings.half(SplitSide::Left).is_some() {
-        settings.split = None;
-    }
-    settings
+/// The same for a scene without a left half, whose pipelines are those of the right one.
+fn of_one_scene(settings: Settings) -> Settings {
+    Settings { split: None, ..settings }
 }
 
 impl App {

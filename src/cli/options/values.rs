@@ -31,6 +31,15 @@ fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
     Ok(path)
 }
 
+/// The same, or that of a report on a picture.
+pub(crate) fn picture_or_page() -> impl TypedValueParser<Value = PathBuf> {
+    let is_page = |path: &PathBuf| inspect::export::ending(path) == "html";
+    OsStringValueParser::new().try_map(move |path| {
+        let path = PathBuf::from(path);
+        if is_page(&path) { Ok(path) } else { picture_path(path) }
+    })
+}
+
 /// Parses the path of a mesh to write, whose ending gives its format.
 pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {

@@ -109,6 +109,12 @@ impl Tessellation {
     pub fn undisplaced(self) -> Self {
         Self { displacement: Displacement::Off, ..self }
     }
+
+    /// The mesh as it is: each of its triangles becomes one triangle.
+    pub fn untessellated() -> Self {
+        let partitioning = Partitioning::Integer;
+        Self { surface: Surface::Flat, factor: 1.0, lod: Lod::Uniform, partitioning, ..Self::default() }
+    }
 }
 
 /// What a tessellation depends on, besides the mesh.

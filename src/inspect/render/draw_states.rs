@@ -17,7 +17,6 @@ impl SurfaceDraw {
             (Triangles::Bare, _) => "textured_vertex",
             (Triangles::Indexed, _) => "indexed_vertex",
             (Triangles::Pulled, _) => "pulled_vertex",
-            (Triangles::Source, _) => "source_vertex",
         }
     }
 
@@ -42,10 +41,7 @@ impl SurfaceDraw {
             Shading::Plain | Shading::Textured => Vec::new(),
             Shading::Lit(needs) => needs.constants().to_vec(),
             Shading::Cut(cut) => vec![("HAS_DETAILS", f64::from(u8::from(cut.details))), ("LIGHT_COUNT", 0.0)],
-            Shading::Look(look) => {
-                let is_source = f64::from(u8::from(self.triangles == Triangles::Source));
-                vec![("LOOK", f64::from(look as u32)), ("DRAWS_SOURCE", is_source)]
-            }
+            Shading::Look(look) => vec![("LOOK", f64::from(look as u32))],
         };
         if let Some(layer) = self.layer {
             let toward_eye = f64::from(u8::from(layer == LayerDraw::Toward));

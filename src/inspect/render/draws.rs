@@ -66,8 +66,6 @@ pub(super) enum Triangles {
     /// Emitted ones, with any overlays. The shader pulls each corner from the vertex buffer, so that it knows the barycentric
     /// coordinates in the triangle.
     Pulled,
-    /// The input triangles, with any overlays.
-    Source,
 }
 
 impl Triangles {
@@ -127,7 +125,7 @@ impl Draw {
             all.push(Self::LayerClear { at_infinity, has_colors });
         }
         let all_faces = [Faces::Both, Faces::Fronts];
-        for triangles in [Triangles::Bare, Triangles::Indexed, Triangles::Pulled, Triangles::Source] {
+        for triangles in [Triangles::Bare, Triangles::Indexed, Triangles::Pulled] {
             for (&normals, faces) in NormalsAt::ALL.iter().flat_map(|at| all_faces.map(|faces| (at, faces))) {
                 for &shading in &shadings {
                     let draws = [None].into_iter().chain(layers.map(Some)).map(|layer| SurfaceDraw {
@@ -159,8 +157,7 @@ impl SurfaceDraw {
             None => true,
         };
         let is_masked = matches!(self.shading, Shading::Cut(_) | Shading::Lit(Needs { masked_samples: true, .. }));
-        let is_source = self.triangles == Triangles::Source;
-        let has_fronts = !is_masked && !is_source && self.layer.is_none();
-        is_shaded && is_layer && (at_vertices || !is_source) && (has_fronts || self.faces == Faces::Both)
+        let has_fronts = !is_masked && self.layer.is_none();
+        is_shaded && is_layer && (has_fronts || self.faces == Faces::Both)
     }
 }

@@ -3,6 +3,7 @@
 use super::deviation::scale_of;
 use super::ground::Ground;
 use super::layout::{Frame, overlay_bits};
+use super::section::clip_from_object;
 use super::{Camera, Scene, Target};
 use crate::settings::{DeviationUnit, Settings};
 use gpu::{Gpu, uniform_buffer};
@@ -25,7 +26,7 @@ pub(super) fn frame(
         (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
     let in_px = settings.deviation_in == DeviationUnit::Px;
     let frame = Frame {
-        clip_from_object: camera.clip_from_object(viewport, &scene.bounds).to_cols_array_2d(),
+        clip_from_object: clip_from_object(camera, viewport, &scene.bounds, settings).to_cols_array_2d(),
         key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
         fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
         eye: eye.to_array(),

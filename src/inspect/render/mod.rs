@@ -41,6 +41,7 @@ mod render_pipeline;
 pub mod renderer;
 mod scale;
 pub mod scene;
+pub mod section;
 #[cfg(test)]
 mod shader_tests;
 pub mod sheen;
@@ -69,5 +70,6 @@ pub(crate) use scale::SIZE_SCALE;
 pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale, curvature_scale};
 pub use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
+pub use steps::half_at;
 pub use target::{Target, samples};
 pub use window::WindowPipelines;

@@ -7,7 +7,6 @@ use glam::{DMat4, DVec4, Mat4, dvec2};
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
 use super::render_pipeline::{PipelineParts, depth_state};
-use super::steps::halves;
 use super::target::DEPTH_FORMAT;
 use gpu::layout::Vertex;
 use gpu::{
@@ -26,16 +25,8 @@ pub struct Pixel {
     pub size: [u32; 2],
     /// The pixel's position in px from the left and from the top.
     pub at: [u32; 2],
-    /// Where the picture is split, as in [`crate::settings::Settings`]. With 1, input triangles are picked everywhere.
-    pub split: Option<f32>,
-}
-
-impl Pixel {
-    /// Whether the pixel is left of the split.
-    pub fn is_left(&self) -> bool {
-        let [[.., width, _], _] = halves(self.size, self.split);
-        self.at[0] < width
-    }
+    /// Whether the mesh's own triangles are looked at in place of those that are emitted, which takes less time.
+    pub has_input: bool,
 }
 
 /// What is in front at a pixel's centre.
@@ -45,7 +36,7 @@ pub struct Picked {
     pub patch: u32,
     /// The weight (0 u, 1 v, 2 w) of the nearest edge on screen.
     pub weight: u32,
-    /// `None` left of the split, where input triangles are drawn.
+    /// `None` if input triangles were looked at.
     pub triangle: Option<PickedTriangle>,
 }
 
@@ -107,7 +98,7 @@ impl Picker {
         let run = Run::new(gpu, pixel)?;
         let mut timing = Timing::Off;
         let mut recorder = Recorder::new(gpu, &mut timing);
-        if pixel.is_left() {
+        if pixel.has_input {
             run.record(&mut recorder, scene, &self.source, 3 * scene.tessellator.buffers().patch_count, true)?;
         } else {
             for index in 0..scene.tessellator.chunk_count() {

@@ -127,6 +127,7 @@ impl Renderer {
         settings: &Settings,
         range: Range<usize>,
     ) -> Result<(), GpuError> {
+        let settings = &settings.drawn();
         let picture = self.picture(scene, target, camera, settings)?;
         for index in runs(scene, &picture.steps).into_iter().take(range.end).skip(range.start).flatten() {
             self.draw_step(recorder, scene, &picture, index)?;

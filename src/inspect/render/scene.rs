@@ -41,7 +41,9 @@ pub struct Scene {
     deviation: Option<Deviations>,
     /// The lit sphere of the matcap overlay, in place of that of the settings.
     pub matcap: Option<MatcapPicture>,
-    /// The same mesh, tessellated with another surface for the left half of a split view.
+    /// The moment that the pose is of; none at rest.
+    moment: Option<Moment>,
+    /// What is left of the split: another tessellation, of the same mesh or another one.
     left: Option<Box<Scene>>,
 }
 
@@ -108,12 +110,13 @@ impl Scene {
             coverage: None,
             deviation: None,
             matcap: None,
+            moment: None,
             left: None,
         }
     }
 
-    /// Sets what is drawn left of the split: another scene of the mesh, which takes the current pose, or `None` for the mesh
-    /// without tessellation.
+    /// Sets what is drawn left of the split: another scene of the mesh, which takes the current pose, or that of another mesh, which is
+    /// at the same moment of its clip with the same number.
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
@@ -122,9 +125,21 @@ impl Scene {
         self.follow()
     }
 
+    /// Whether a half shows this scene's mesh.
+    pub fn shares_mesh(&self, half: SplitSide) -> bool {
+        self.half(half).is_some_and(|own| Arc::ptr_eq(own.tessellator.mesh(), self.tessellator.mesh()))
+    }
+
     /// Gives the left half the bounds and pose of the right one.
     fn follow(&mut self) -> Result<(), GpuError> {
+        let (is_same, moment) = (self.shares_mesh(SplitSide::Left), self.moment);
         let Some(left) = &mut self.left else { return Ok(()) };
+        if !is_same {
+            let clips = left.tessellator.mesh().rig.as_ref().map_or(0, |rig| rig.clips.len());
+            let moment = moment.filter(|moment| moment.clip < clips);
+            left.frame_clip(moment.map(|moment| moment.clip));
+            return left.set_moment(moment);
+        }
         (left.bounds, left.ulp) = (self.bounds, self.ulp);
         left.lights = self.lights.clone();
         left.tessellator.pose_as(self.tessellator.posed())
@@ -143,7 +158,7 @@ impl Scene {
         self.coverage.as_ref().map(|coverage| coverage.kept(self.tessellator.gpu())).transpose()
     }
 
-    /// The scene in a half of the picture; `None` on the left if that shows the mesh without tessellation.
+    /// The scene in a half of the picture; `None` on the left of a picture that isn't split.
     pub fn half(&self, half: SplitSide) -> Option<&Self> {
         match half {
             SplitSide::Left => self.left.as_deref(),
@@ -165,7 +180,9 @@ impl Scene {
         self.bounds = bounds_through(self.tessellator.mesh(), clip);
         let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
         self.ulp = if clip.is_some() { ulp_at(largest) } else { ulp(self.tessellator.topology()) } as f32;
-        if let Some(left) = &mut self.left {
+        if let Some(left) =
+            self.left.as_mut().filter(|left| Arc::ptr_eq(left.tessellator.mesh(), self.tessellator.mesh()))
+        {
             (left.bounds, left.ulp) = (self.bounds, self.ulp);
         }
     }
@@ -188,6 +205,7 @@ impl Scene {
             self.lights = Some(upload_lights(self.tessellator.gpu(), &lights));
         }
         self.tessellator.set_pose(pose)?;
+        self.moment = moment;
         self.follow()
     }
 

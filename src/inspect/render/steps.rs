@@ -30,18 +30,18 @@ pub(super) struct LayerStep {
     pub is_first: bool,
 }
 
-/// Triangles that are drawn in layers: those of a half's chunk, or without one those of the mesh.
+/// Triangles that are drawn in layers: those of a half's chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LayerPart {
     pub half: SplitSide,
-    pub chunk: Option<usize>,
+    pub chunk: usize,
 }
 
 impl Step {
     pub(super) fn half(&self) -> SplitSide {
         match self {
             Self::Surface(half, _) | Self::Normals(half, _) => *half,
-            Self::Layer(LayerStep { part: Some(LayerPart { half, chunk: Some(_) }), .. }) => *half,
+            Self::Layer(LayerStep { part: Some(LayerPart { half, .. }), .. }) => *half,
             Self::Over | Self::Layer(_) => SplitSide::Right,
         }
     }
@@ -49,7 +49,7 @@ impl Step {
     pub(super) fn chunk(&self) -> Option<usize> {
         match self {
             Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
-            Self::Layer(LayerStep { part, .. }) => part.and_then(|part| part.chunk),
+            Self::Layer(LayerStep { part, .. }) => part.map(|part| part.chunk),
             Self::Over => None,
         }
     }
@@ -62,11 +62,11 @@ pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
         |half| (0..drawn(half).map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk));
     let all: Vec<_> = SplitSide::BOTH.into_iter().flat_map(chunks).collect();
     let mut steps: Vec<_> = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk)).collect();
-    if settings.shows_materials() && has_layers(scene.tessellator.mesh()) {
-        let has_source = settings.split.is_some() && drawn(SplitSide::Left).is_none();
-        let source = has_source.then_some(LayerPart { half: SplitSide::Left, chunk: None });
-        let chunks = all.iter().map(|&(half, chunk)| LayerPart { half, chunk: Some(chunk) });
-        steps.extend(layer_steps(&source.into_iter().chain(chunks).collect::<Vec<_>>()));
+    if settings.shows_materials() {
+        let is_seen_through = |half| drawn(half).is_some_and(|own| has_layers(own.tessellator.mesh()));
+        let parts = all.iter().filter(|(half, _)| is_seen_through(*half));
+        let parts = parts.map(|&(half, chunk)| LayerPart { half, chunk });
+        steps.extend(layer_steps(&parts.collect::<Vec<_>>()));
     }
     if settings.overlays.normals {
         steps.extend(all.iter().map(|&(half, chunk)| Step::Normals(half, chunk)));
@@ -102,6 +102,12 @@ pub(super) fn runs(scene: &Scene, steps: &[Step]) -> Vec<Range<usize>> {
     let starts: Vec<_> = (0..steps.len()).filter(begins).collect();
     let ends = starts.iter().skip(1).copied().chain([steps.len()]);
     starts.iter().zip(ends).map(|(&start, end)| start..end).collect()
+}
+
+/// The half of a picture of `size` px in which a pixel lies.
+pub fn half_at(at: [u32; 2], size: [u32; 2], split: Option<f32>) -> SplitSide {
+    let [[.., width, _], _] = halves(size, split);
+    if at[0] < width { SplitSide::Left } else { SplitSide::Right }
 }
 
 /// The rectangles left and right of the split: x, y, width and height in px.

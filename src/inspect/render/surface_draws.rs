@@ -48,11 +48,6 @@ pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Face
     has_fronts_only.then_some(Faces::Fronts)
 }
 
-/// The settings of the mesh without tessellation.
-pub(super) fn undisplaced(settings: &Settings) -> Settings {
-    settings.with(settings.tessellation.undisplaced())
-}
-
 /// How pipelines get emitted triangles.
 pub(super) fn emitted_triangles(settings: &Settings) -> Triangles {
     // These overlays need data of whole triangles.
@@ -64,11 +59,4 @@ pub(super) fn emitted_triangles(settings: &Settings) -> Triangles {
     } else {
         Triangles::Bare
     }
-}
-
-/// The pipeline for input triangles of a material, in such pictures.
-pub(super) fn source_draw(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Draw {
-    let (shading, faces) = shading(&undisplaced(settings), mesh, material, Faces::Both, kind);
-    let (triangles, normals) = (Triangles::Source, NormalsAt::Vertices);
-    Draw::Surface(SurfaceDraw { triangles, faces, normals, shading, layer: None })
 }

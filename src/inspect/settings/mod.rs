@@ -12,7 +12,7 @@ mod overlays;
 pub mod random;
 mod value;
 
-use glam::{Mat4, Vec2};
+use glam::{Mat4, Vec2, Vec3};
 
 use geometry::mesh::{Heights, Material, Mesh};
 use geometry::tessellate::{Clip, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
@@ -64,8 +64,12 @@ pub struct Settings {
     pub matcap: Matcap,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
     pub split: Option<f32>,
-    /// The tessellation left of the split, with all other settings the same; none for the untessellated mesh.
-    pub left: Option<Tessellation>,
+    /// The tessellation left of the split, with all other settings the same.
+    pub left: Tessellation,
+    /// The side of a section that is drawn; none for all of the mesh.
+    pub section: Option<SectionAxis>,
+    /// Where the section is between the least (0) and the largest (1) coordinate of the bounding box.
+    pub section_at: f32,
     /// sRGB colour behind the mesh; none for that of the window's theme, and in commands [`DARK_BACKGROUND`].
     pub background: Option<[u8; 3]>,
     /// How the geometry of the mesh's file is taken. The mesh is read again when it changes.
@@ -90,7 +94,9 @@ impl Default for Settings {
             curvature_scale: 4.0,
             matcap: Matcap::default(),
             split: None,
-            left: None,
+            left: Tessellation::untessellated(),
+            section: None,
+            section_at: 0.5,
             background: None,
             import: Import::default(),
         }
@@ -127,6 +133,32 @@ choices! {
         Pixels => "pixels", "Pixels",
             "The pixel shader evaluates the patch's normal at every pixel, so that shading stays the same however \
              few triangles a patch has.";
+    }
+}
+
+choices! {
+    /// The axis along which pictures are cut, and the side that stays.
+    pub enum SectionAxis {
+        X => "x", "X", "What is beyond the plane along X is drawn.";
+        NegX => "-x", "-X", "What is before the plane along X is drawn.";
+        Y => "y", "Y", "What is beyond the plane along Y is drawn.";
+        NegY => "-y", "-Y", "What is before the plane along Y is drawn.";
+        Z => "z", "Z", "What is beyond the plane along Z is drawn.";
+        NegZ => "-z", "-Z", "What is before the plane along Z is drawn.";
+    }
+}
+
+impl SectionAxis {
+    /// The unit vector into what is drawn.
+    pub fn direction(self) -> Vec3 {
+        match self {
+            Self::X => Vec3::X,
+            Self::NegX => Vec3::NEG_X,
+            Self::Y => Vec3::Y,
+            Self::NegY => Vec3::NEG_Y,
+            Self::Z => Vec3::Z,
+            Self::NegZ => Vec3::NEG_Z,
+        }
     }
 }
 
@@ -205,22 +237,37 @@ impl Settings {
         self.environment_background && self.shows_materials()
     }
 
-    /// The settings of one half of the picture; none where that half doesn't exist or shows the untessellated mesh.
+    /// The settings of one half of the picture; none where that half doesn't exist.
     pub fn half(&self, half: SplitSide) -> Option<Self> {
         match half {
-            SplitSide::Left => {
-                let left = self.left.filter(|_| self.split.is_some())?;
-                Some(self.with(left))
-            }
+            SplitSide::Left => self.split.map(|_| self.with(self.left)),
             SplitSide::Right => Some(*self),
         }
+    }
+
+    /// Whether the left half of a split view is another tessellation than the mesh as it is.
+    pub fn has_left_tessellation(&self) -> bool {
+        self.left != Tessellation::untessellated()
+    }
+
+    /// The surface left of the split; none for the mesh without tessellation.
+    pub fn left_surface(&self) -> Option<Surface> {
+        self.has_left_tessellation().then_some(self.left.surface)
     }
 
     /// Shows this surface left of the split, with all else as it is there, or as it is on the right if the left half was untessellated; or
     /// without a surface, shows the mesh without tessellation.
     pub fn set_left_surface(&mut self, surface: Option<Surface>) {
-        let before = self.left.unwrap_or(self.tessellation);
-        self.left = surface.map(|surface| Tessellation { surface, ..before });
+        let before = if self.has_left_tessellation() { self.left } else { self.tessellation };
+        self.left = surface.map_or_else(Tessellation::untessellated, |surface| Tessellation { surface, ..before });
+    }
+
+    /// The settings of what is drawn: a section shows the backs of faces in one colour, which fills a closed mesh.
+    #[must_use]
+    pub(crate) fn drawn(&self) -> Self {
+        let mut drawn = *self;
+        drawn.overlays.back_faces |= self.section.is_some();
+        drawn
     }
 
     /// How far heights move any point of a mesh at most, in object units.

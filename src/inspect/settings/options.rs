@@ -6,7 +6,7 @@
 use super::value::Field;
 use super::{
     Access, ColorSource, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps,
-    NormalsAt, Overlay, Range, Settings, ToneCurve, Value, descriptions,
+    NormalsAt, Overlay, Range, SectionAxis, Settings, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
 use geometry::tessellate::{
@@ -85,12 +85,15 @@ const NEAR_AND_FAR: Access = Access {
 /// All options of the tessellation left of the split. Those that aren't set are as in the right half.
 const LEFT: Access = Access {
     get: |settings| {
-        let Some(left) = settings.left.map(|left| settings.with(left)) else { return Value::Unset };
+        if !settings.has_left_tessellation() {
+            return Value::Unset;
+        }
+        let left = settings.with(settings.left);
         Value::Options(TESSELLATION.map(|option| (option.name, option.get(&left))).to_vec())
     },
     set: |settings, value| {
         let Value::Options(values) = value else {
-            settings.left = None;
+            settings.left = Tessellation::untessellated();
             return value == Value::Unset;
         };
         let mut left = *settings;
@@ -103,7 +106,7 @@ const LEFT: Access = Access {
         if !values.into_iter().all(&mut set) {
             return false;
         }
-        settings.left = Some(left.tessellation);
+        settings.left = left.tessellation;
         true
     },
 };
@@ -409,6 +412,23 @@ options! {
                pn,lod=uniform,factor=8. The names are those of these options, and the scale of the deviation overlay is the same.",
         unset: Description::new("none", "Untessellated", "The mesh itself, with no tessellation."),
         no_effect: |settings| settings.split.is_none().then_some("The view isn't split."),
+    }
+
+    SECTION: field!(section), Kind::Choice(descriptions::<SectionAxis>) => {
+        name: "section",
+        label: "Section",
+        placeholder: "AXIS",
+        text: "Cuts the picture open with a plane across this axis, and draws what is beyond it; with a minus, what is before it. \
+               The backs of faces are then in one colour. What is measured stays the same.",
+        unset: Description::new("none", "None", "All of the mesh is drawn."),
+    }
+
+    SECTION_AT: field!(section_at), Kind::Number(Range::new(0.0, 1.0, "")) => {
+        name: "section-at",
+        label: "Section at",
+        placeholder: "FRACTION",
+        text: "Where the section is: 0 is the least coordinate of the mesh along its axis, and 1 the largest.",
+        no_effect: |settings| settings.section.is_none().then_some("There is no section."),
     }
 
     BACKGROUND: field!(background), Kind::Color => {

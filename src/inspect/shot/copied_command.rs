@@ -28,6 +28,8 @@ pub struct CopiedCommand<'a> {
     /// A clip's name, and the time in it in s.
     pub animation: Option<(&'a str, f64)>,
     pub reference_shape: Option<&'a Source>,
+    /// The mesh left of the split, if it is another one.
+    pub left_mesh: Option<&'a Source>,
     /// The file whose factors take the place of those of LOD.
     pub factors: Option<&'a Path>,
     /// The file whose functions take the place of LOD.
@@ -170,6 +172,9 @@ impl CopiedCommand<'_> {
         ];
         for (name, path) in files.into_iter().filter_map(|(name, path)| Some((name, path?))) {
             line.option(name, named(&Source::File(path.to_owned())));
+        }
+        if let Some(left) = self.left_mesh.filter(|_| self.settings.split.is_some()) {
+            line.option("--split-with", named(left));
         }
         if let (Some(reference_shape), None) = (self.reference_shape, self.animation) {
             line.option("--reference-surface", named(reference_shape));

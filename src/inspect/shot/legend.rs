@@ -18,6 +18,8 @@ const MARGIN: f64 = 10.0;
 const TEXT: f64 = 12.5;
 /// Of a row of named colours, and of a legend that is one line of text.
 const ROW: f64 = 17.0;
+/// The width of a letter, about.
+const LETTER: f64 = 6.6;
 const TITLE: [f64; 2] = [214.0, 14.0];
 /// A point is this part of a picture's shorter side, so that legends are as legible in large pictures as in small ones.
 const POINTS_A_SIDE: f64 = 600.0;
@@ -113,6 +115,21 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
     let plate = plate(inner, point, |pen| named_rows(pen, title, rows.iter().copied()))?;
     lay_in_corner(picture, &plate, Side::Left, point);
     Ok(())
+}
+
+/// A plate with lines of text for half of a picture of this size in px, and the margin around it in px.
+///
+/// # Errors
+/// The font can't be used.
+pub(super) fn plate_of_lines((width, height): (u32, u32), lines: &[&str]) -> Result<(RgbaImage, u32), ChartError> {
+    let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
+    let inner = [LETTER * longest as f64, ROW * lines.len() as f64];
+    let point = point_in((width / 2, height), inner, None);
+    let plate = plate(inner, point, |pen| {
+        let middles = (0..).map(|row| ROW * (f64::from(row) + 0.5));
+        lines.iter().zip(middles).try_for_each(|(line, middle)| pen.text(line, [0.0, middle], LEFT))
+    })?;
+    Ok((plate, (MARGIN * point).round() as u32))
 }
 
 /// Which of the lower corners a plate is in.

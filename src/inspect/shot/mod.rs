@@ -12,6 +12,8 @@ mod picture_comparison;
 mod picture_file;
 mod reference;
 mod reference_surface;
+mod report_page;
+mod split_titles;
 mod stats;
 mod turn;
 mod user_shader_report;
@@ -30,6 +32,7 @@ pub use picture_comparison::{CompareError, Comparison, compare};
 pub use picture_file::{png_bytes, write_drawn, write_picture};
 pub use reference::{BETWEEN_DRIVERS, Judged, Reference};
 pub use reference_surface::ReferenceSurface;
+pub use split_titles::{HalfFacts, half_title, surface_title};
 pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
 pub use user_shader_report::{not_numbers_said, report_user_lod, report_user_surface, straight_sides_said};
@@ -38,6 +41,7 @@ use files::{to_json, write_text};
 use legend::draw_legend;
 use picture_file::write_stamped;
 use reference_surface::{AccuracyStats, DeviationStats};
+use split_titles::draw_titles;
 
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, SilhouetteView};
 use crate::gates::Judgement;
@@ -58,6 +62,8 @@ use load::panorama::Panorama;
 pub struct Subject {
     /// The mesh at rest.
     pub loaded: Loaded,
+    /// The mesh left of a split, if it is another one.
+    pub left: Option<Loaded>,
     pub moment: Option<Moment>,
     /// What takes the place of LOD: factors of a file, or a shader.
     pub given: Option<Given>,
@@ -132,6 +138,7 @@ impl Subject {
     pub fn new(loaded: Loaded, settings: Settings) -> Self {
         Self {
             loaded,
+            left: None,
             moment: None,
             given: None,
             surface_shader: None,
@@ -175,12 +182,11 @@ impl Shot {
     pub fn new(engine: Engine, mut scene: Scene, subject: Subject, view: ShotView) -> Result<Self, GpuError> {
         let make = if view.transparent { Target::transparent } else { Target::new };
         let target = make(&engine.gpu, view.size)?;
-        if subject.settings.half(SplitSide::Left).is_some() {
-            engine.split(&mut scene, subject.arena_bytes)?;
-            if let Some(left) = scene.half_mut(SplitSide::Left) {
-                left.tessellator.give(subject.given.clone())?;
-                left.tessellator.set_surface_shader(None)?;
-            }
+        engine.split(&mut scene, &subject.settings, subject.left.as_ref())?;
+        if let Some(left) = scene.half_mut(SplitSide::Left) {
+            let takes_given = subject.settings.has_left_tessellation() && subject.left.is_none();
+            left.tessellator.give(subject.given.clone().filter(|_| takes_given))?;
+            left.tessellator.set_surface_shader(None)?;
         }
         let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
         let (lod_view, results) = (view.lod_view(&scene), Default::default());
@@ -283,9 +289,29 @@ impl Shot {
             image::imageops::flip_horizontal_in_place(&mut picture);
         }
         if self.view.legend {
+            self.draw_split(&mut picture)?;
             draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
         }
         Ok(picture)
+    }
+
+    /// Draws the divider of a split picture, and what its halves show.
+    fn draw_split(&self, picture: &mut RgbaImage) -> Result<(), ShotError> {
+        let Some(split) = self.subject.settings.split else { return Ok(()) };
+        Ok(draw_titles(picture, split, &SplitSide::BOTH.map(|half| self.half_title(half)))?)
+    }
+
+    /// What a half shows.
+    fn half_title(&self, half: SplitSide) -> String {
+        let meshes = self.subject.left.as_ref().map(|left| [left, &self.subject.loaded]);
+        let measured = self.results(half).and_then(|results| results.survey.as_ref());
+        let facts = HalfFacts {
+            mesh: meshes.map(|meshes| meshes[half as usize].source.title()),
+            triangles: self.scene.half(half).map(|own| own.tessellator.totals().1),
+            cracked_edges: measured.map(|measured| measured.cracks.cracked().len() as u64),
+            ..HalfFacts::default()
+        };
+        half_title(&self.subject.settings, half, facts)
     }
 
     /// Draws step by step, so that a long drawing can be cancelled, and a device that is shared has time for others.
@@ -403,14 +429,16 @@ impl Shot {
     }
 
     fn lines(&self, half: SplitSide, progress: &Progress) -> Result<Vec<LineSegment>, ShotError> {
-        let (topology, settings) = (&self.posed.topology, &self.subject.settings);
+        let (settings, is_same) = (&self.subject.settings, self.scene.shares_mesh(half));
+        let other = self.scene.half(half).filter(|_| !is_same).map(|own| own.tessellator.topology());
+        let topology = other.unwrap_or(&self.posed.topology);
         let results = self.results(half);
         let measured = results.and_then(|results| results.survey.as_ref());
         let mut lines = match measured {
             Some(measured) if settings.overlays.cracks => crack_lines(measured, topology),
             _ => Vec::new(),
         };
-        if settings.overlays.t_junctions {
+        if settings.overlays.t_junctions && is_same {
             let junctions = t_junctions(&self.subject.loaded.topology, progress)?;
             lines.extend(t_junction_lines(topology, &junctions));
         }
@@ -425,7 +453,7 @@ impl Shot {
             lines.extend(lod_camera_lines(&camera, viewport, &self.scene.bounds));
         }
         lines.extend(&self.subject.more_lines[half as usize]);
-        if let Some(patch) = self.subject.selected {
+        if let Some(patch) = self.subject.selected.filter(|_| is_same) {
             let outlines = measured.map(|measured| &measured.outlines);
             let edges = patch_edges(topology, patch, outlines, settings.tessellation.convention);
             lines.extend(patch_lines(&edges, patch_width(topology, patch, outlines)));

@@ -295,7 +295,10 @@ impl LodComparison {
 /// The stats of another tessellation left of the split.
 #[derive(Debug, Serialize)]
 struct LeftStats {
+    /// The mesh, if it is another one.
+    mesh: Option<String>,
     settings: SettingsStats,
+    triangles_in: u64,
     triangles_out: u64,
     vertices_out: u64,
     cracks: CrackStats,
@@ -319,7 +322,7 @@ impl Shot {
         let Some(results) = &self.results[SplitSide::Right as usize] else { return Ok(None) };
         let Some(measured) = &results.survey else { return Ok(None) };
         // Only the right half is timed.
-        let alone = Settings { left: None, ..*settings };
+        let alone = Settings { split: None, ..*settings };
         let passes = engine.time(scene, target, camera, lod_view, &alone, Runs::default())?;
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
@@ -386,6 +389,8 @@ impl Shot {
         let measured = results.survey.as_ref()?;
         let (vertices_out, triangles_out) = scene.tessellator.totals();
         Some(LeftStats {
+            mesh: self.subject.left.as_ref().map(|left| left.source.to_string()),
+            triangles_in: scene.tessellator.mesh().triangles.len() as u64,
             settings: SettingsStats::new(&settings, false, &[]),
             triangles_out,
             vertices_out,

@@ -6,7 +6,7 @@ use super::Renderer;
 use crate::render::Scene;
 use crate::render::draws::Draw;
 use crate::render::environment::{Environment, LightView};
-use crate::settings::{ColorSource, Lighting, Settings};
+use crate::settings::{ColorSource, Lighting, Settings, SplitSide};
 use gpu::{ChunkBuffers, GpuError, bind_group};
 
 /// The light from all around in a picture.
@@ -35,23 +35,25 @@ impl Renderer {
         Ok(Some(PictureLight { environment, surroundings }))
     }
 
-    /// The bind groups of a scene's materials for a picture with these settings, in this light.
+    /// The bind groups of a half's materials for a picture of a scene with these settings, in this light.
     pub(super) fn material_groups(
         &self,
         scene: &Scene,
+        half: SplitSide,
         settings: &Settings,
         light: Option<&PictureLight>,
     ) -> Result<Vec<wgpu::BindGroup>, GpuError> {
+        let Some(drawn) = scene.half(half) else { return Ok(Vec::new()) };
         if settings.overlays.colors.source() == ColorSource::LitSphere {
             let own = scene.matcap.as_ref().map(|picture| &picture.0);
             let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, settings.matcap), Ok)?;
-            return Ok(vec![group.clone(); scene.materials.len()]);
+            return Ok(vec![group.clone(); drawn.materials.len()]);
         }
         let Some(PictureLight { environment, surroundings }) = light else {
-            return Ok(scene.materials.iter().map(|own| own.group.clone()).collect());
+            return Ok(drawn.materials.iter().map(|own| own.group.clone()).collect());
         };
-        let lights = scene.lights.as_ref();
-        Ok(self.materials.lit_groups(&self.gpu, &scene.materials, environment, surroundings, lights))
+        let lights = drawn.lights.as_ref();
+        Ok(self.materials.lit_groups(&self.gpu, &drawn.materials, environment, surroundings, lights))
     }
 
     /// The pipeline and the bind group that draw this light behind everything.
@@ -72,8 +74,8 @@ impl Renderer {
         bind_group(&self.gpu, "scene", &self.pipelines.scene_layout, bound)
     }
 
-    pub(super) fn measured_group(&self, scene: &Scene, chunk: Option<usize>) -> wgpu::BindGroup {
-        let known = scene.known_deviation().zip(chunk).and_then(|(deviation, chunk)| deviation.chunks.get(chunk));
+    pub(super) fn measured_group(&self, scene: &Scene, chunk: usize) -> wgpu::BindGroup {
+        let known = scene.known_deviation().and_then(|deviation| deviation.chunks.get(chunk));
         let least = scene.tessellator.minimum();
         let bound = [known, least].map(|known| known.unwrap_or(&self.unknown).as_entire_binding());
         bind_group(&self.gpu, "measured", &self.pipelines.measured_layout, (0..).zip(bound))

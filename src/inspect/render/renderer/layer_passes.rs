@@ -8,12 +8,11 @@ use crate::render::draws::{Draw, Faces, LayerDraw, Shading, SurfaceDraw, Triangl
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, PictureKind, has_layers};
 use crate::render::steps::{LayerPart, LayerStep};
-use crate::render::surface_draws::{emitted_triangles, own_faces, undisplaced};
+use crate::render::surface_draws::{emitted_triangles, own_faces};
 use crate::render::target::depth_attachment;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{NormalsAt, Settings, SplitSide};
 use geometry::mesh::{Material, Mesh};
-use geometry::tessellate::{Surface, Tessellation};
 use gpu::{GpuError, Recorder, bind_group};
 
 /// How far rounding moves a vertex at most, in units in the last place of the mesh's largest coordinate.
@@ -39,15 +38,10 @@ impl Renderer {
         let half = part.map_or(SplitSide::Right, |part| part.half);
         let of_half = settings.half(half).unwrap_or(**settings);
         let Some(frame) = &frames[half as usize] else { return Ok(()) };
-        // The mesh without tessellation is drawn with the right half's scene.
         let drawn = scene.half(half).unwrap_or(scene);
-        let triangles = match part {
-            Some(LayerPart { chunk: None, .. }) => Triangles::Source,
-            _ => emitted_triangles(settings),
-        };
         let surfaces = Surfaces {
-            materials: self.layer_pipelines(drawn.tessellator.mesh(), picture, &of_half, pass, triangles)?,
-            pulled: triangles == Triangles::Pulled,
+            materials: self.layer_pipelines(drawn.tessellator.mesh(), picture, half, &of_half, pass)?,
+            pulled: emitted_triangles(settings) == Triangles::Pulled,
             fronts: false,
             sifted: false,
         };
@@ -66,15 +60,9 @@ impl Renderer {
             }
             render_pass.set_bind_group(0, &scene_group, &[]);
             render_pass.set_bind_group(3, &layer_group, &[]);
-            match part {
-                None => {}
-                Some(LayerPart { chunk: None, .. }) => {
-                    self.draw_source(render_pass, &surfaces.materials, drawn, layer_areas[half as usize]);
-                }
-                Some(LayerPart { chunk: Some(chunk), .. }) => {
-                    let chunk = drawn.tessellator.chunk(chunk);
-                    self.draw_chunk(render_pass, drawn, layer_areas[half as usize], &surfaces, &chunk);
-                }
+            if let Some(LayerPart { chunk, .. }) = part {
+                let chunk = drawn.tessellator.chunk(chunk);
+                self.draw_chunk(render_pass, drawn, layer_areas[half as usize], &surfaces, &chunk);
             }
         });
         Ok(())
@@ -102,14 +90,14 @@ impl Renderer {
         &self,
         mesh: &Mesh,
         picture: &Picture,
+        half: SplitSide,
         settings: &Settings,
         pass: LayerPass,
-        triangles: Triangles,
     ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
         let kind = self.kind(false);
-        let groups = picture.materials.iter().zip(&picture.found_materials);
+        let groups = picture.materials[half as usize].iter().zip(&picture.found_materials[half as usize]);
         let of_material = |(material, (lit, found)): (&Material, (&wgpu::BindGroup, &wgpu::BindGroup))| {
-            draws(mesh, material, pass, triangles, settings, kind)
+            draws(mesh, material, pass, settings, kind)
                 .into_iter()
                 .map(|(step, draw)| {
                     let group = if step.finds() { found } else { lit };
@@ -129,18 +117,14 @@ impl Renderer {
         settings: &Settings,
         rects: [Area; 2],
     ) -> [Area; 2] {
-        if target.is_draft() || !settings.shows_materials() || !has_layers(scene.tessellator.mesh()) {
+        if target.is_draft() || !settings.shows_materials() {
             return [[0; 4]; 2];
         }
-        if self.peels_everywhere {
-            return rects;
-        }
-        SplitSide::BOTH.map(|half| {
-            let drawn = settings.half(half).zip(scene.half(half));
-            // Without a scene of its own, the left half shows the mesh without tessellation.
-            let flat = || settings.with(Tessellation { surface: Surface::Flat, ..settings.tessellation });
-            let (settings, scene) = drawn.unwrap_or_else(|| (flat(), scene));
-            intersection(layer_area(scene, target, camera, &settings), rects[half as usize])
+        SplitSide::BOTH.map(|half| match settings.half(half).zip(scene.half(half)) {
+            Some((_, own)) if !has_layers(own.tessellator.mesh()) => [0; 4],
+            Some(_) if self.peels_everywhere => rects[half as usize],
+            Some((settings, own)) => intersection(layer_area(own, target, camera, &settings), rects[half as usize]),
+            None => [0; 4],
         })
     }
 
@@ -180,7 +164,6 @@ fn draws(
     mesh: &Mesh,
     material: &Material,
     pass: LayerPass,
-    triangles: Triangles,
     settings: &Settings,
     kind: PictureKind,
 ) -> Vec<(LayerDraw, Draw)> {
@@ -200,11 +183,10 @@ fn draws(
     };
     let normals = |layer: LayerDraw| match layer {
         _ if layer.finds() => NormalsAt::Vertices,
-        _ if triangles == Triangles::Source => NormalsAt::Vertices,
         _ => settings.used_normals_at(mesh),
     };
-    let shown = if triangles == Triangles::Source { undisplaced(settings) } else { *settings };
-    let shading = Shading::Lit(Needs::new(mesh, material, &shown, kind));
+    let shading = Shading::Lit(Needs::new(mesh, material, settings, kind));
+    let triangles = emitted_triangles(settings);
     let faces = own_faces(settings, material).unwrap_or(Faces::Both);
     let draw = |&layer: &LayerDraw| {
         let own = SurfaceDraw { triangles, faces, normals: normals(layer), shading, layer: Some(layer) };
@@ -218,13 +200,8 @@ pub(super) fn layer_draws(settings: &Settings, mesh: &Mesh, kind: PictureKind) -
     if !settings.shows_materials() || !has_layers(mesh) {
         return Vec::new();
     }
-    let source = settings.split.is_some() && settings.half(SplitSide::Left).is_none();
-    let triangles = std::iter::once(emitted_triangles(settings)).chain(source.then_some(Triangles::Source));
-    let of = |triangles| {
-        let passes = mesh.materials.iter().flat_map(|material| LayerPass::all().map(move |pass| (material, pass)));
-        let draws = move |(material, pass)| draws(mesh, material, pass, triangles, settings, kind);
-        passes.flat_map(draws).map(|(_, draw)| draw)
-    };
+    let passes = mesh.materials.iter().flat_map(|material| LayerPass::all().map(move |pass| (material, pass)));
+    let draws = passes.flat_map(|(material, pass)| draws(mesh, material, pass, settings, kind));
     let clears = LayerPass::all().filter_map(|pass| pass.nothing().map(|depth| clear(pass, depth)));
-    triangles.flat_map(of).chain(clears).collect()
+    draws.map(|(_, draw)| draw).chain(clears).collect()
 }

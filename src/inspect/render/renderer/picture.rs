@@ -1,7 +1,7 @@
 //! Draws a picture, step by step: see [`steps`](crate::render::steps).
 
 use super::Renderer;
-use super::surfaces::{MaterialDraw, Surfaces, confine};
+use super::surfaces::{Surfaces, confine};
 use crate::render::covered_area::{Area, is_empty};
 use crate::render::draws::{Draw, Occluded};
 use crate::render::frame::frame;
@@ -22,24 +22,20 @@ pub(super) struct Picture<'a> {
     pub layer_areas: [Area; 2],
     /// The constants of both halves.
     pub frames: [Option<wgpu::Buffer>; 2],
-    /// The bind groups of the scene's materials.
-    pub materials: Vec<wgpu::BindGroup>,
+    /// The bind groups of both halves' materials.
+    pub materials: [Vec<wgpu::BindGroup>; 2],
     /// The same for passes that find layers; none in a picture without layers.
-    pub found_materials: Vec<wgpu::BindGroup>,
+    pub found_materials: [Vec<wgpu::BindGroup>; 2],
     pub steps: Vec<Step>,
     camera: &'a Camera,
     /// What draws the light behind everything, if it is shown.
     background: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
     /// The index of the step with the ground.
     ground_step: usize,
-    /// Whether the left half is tessellated.
-    has_left: bool,
 }
 
 /// What is drawn in a step beside the surfaces of its chunk, before or after them.
 struct Beside {
-    /// The input triangles in the left half, for each of the mesh's materials.
-    source: Option<Vec<Vec<MaterialDraw>>>,
     /// Normals at the vertices of the step's chunk.
     normals: Option<[wgpu::RenderPipeline; 2]>,
     ground: Option<wgpu::RenderPipeline>,
@@ -61,30 +57,26 @@ impl Renderer {
         let light = self.light(scene, settings)?;
         let rects = halves(target.size, settings.split);
         let half_frame = |half| {
-            let [left, _, width, _] = rects[half as usize];
-            // The mesh without tessellation is drawn with the right half's scene.
-            let drawn = scene.half(half).or((width > 0).then_some(scene))?;
-            let settings = settings.half(half).unwrap_or(*settings);
-            Some(frame(&self.gpu, drawn, target, camera, &settings, left))
+            let (drawn, settings) = scene.half(half).zip(settings.half(half))?;
+            Some(frame(&self.gpu, drawn, target, camera, &settings, rects[half as usize][0]))
         };
         let steps = steps(scene, settings);
         let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
         let layer_areas = self.layer_areas(scene, target, camera, settings, rects);
         let has_layers = !layer_areas.into_iter().all(is_empty);
-        let found_materials = if has_layers {
-            self.materials.found_groups(&self.gpu, &scene.materials, target.depths())
-        } else {
-            Vec::new()
+        let found_materials = |half| match scene.half(half) {
+            Some(own) if has_layers => self.materials.found_groups(&self.gpu, &own.materials, target.depths()),
+            _ => Vec::new(),
         };
+        let materials = |half| self.material_groups(scene, half, settings, light.as_ref());
         Ok(Picture {
             rects,
             layer_areas,
-            found_materials,
+            found_materials: SplitSide::BOTH.map(found_materials),
             frames: SplitSide::BOTH.map(half_frame),
-            materials: self.material_groups(scene, settings, light.as_ref())?,
+            materials: [materials(SplitSide::Left)?, materials(SplitSide::Right)?],
             background: shown_light.map(|light| self.background(light)).transpose()?,
             ground_step: ground_step(&steps, scene, camera),
-            has_left: settings.half(SplitSide::Left).and(scene.half(SplitSide::Left)).is_some(),
             steps,
             target,
             camera,
@@ -119,7 +111,7 @@ impl Renderer {
             return self.draw_layer(recorder, scene, picture, layer);
         }
         let of_half = settings.half(step.half()).unwrap_or(*settings);
-        let mut surfaces = self.surfaces(drawn, &picture.materials, target, camera, &of_half)?;
+        let mut surfaces = self.surfaces(drawn, &picture.materials[step.half() as usize], target, camera, &of_half)?;
         if let Step::Surface(_, chunk) = step {
             surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
         }
@@ -151,13 +143,9 @@ impl Renderer {
                 pass.set_bind_group(1, group, &[]);
                 pass.draw(0..3, 0..1);
             }
-            if let Some(source) = &beside.source {
-                pass.set_bind_group(3, &self.measured_group(scene, None), &[]);
-                self.draw_source(pass, source, scene, rects[SplitSide::Left as usize]);
-            }
             match step {
                 Step::Surface(_, chunk) => {
-                    pass.set_bind_group(3, &self.measured_group(drawn, Some(chunk)), &[]);
+                    pass.set_bind_group(3, &self.measured_group(drawn, chunk), &[]);
                     self.draw_chunk(pass, drawn, rect, surfaces, &drawn.tessellator.chunk(chunk));
                 }
                 Step::Normals(_, chunk) => {
@@ -173,9 +161,8 @@ impl Renderer {
                 pass.draw(0..6, 0..1);
             }
             if let Some(lines) = &beside.lines {
-                draw_lines(pass, lines, scene, rects[SplitSide::Right as usize]);
-                if let Some(left) = scene.half(SplitSide::Left).filter(|_| picture.has_left) {
-                    draw_lines(pass, lines, left, rects[SplitSide::Left as usize]);
+                for half in SplitSide::BOTH {
+                    scene.half(half).into_iter().for_each(|own| draw_lines(pass, lines, own, rects[half as usize]));
                 }
             }
         });
@@ -186,15 +173,12 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     fn beside(&self, scene: &Scene, picture: &Picture, index: usize) -> Result<Beside, GpuError> {
-        let &Picture { target, settings, rects, ref steps, ref materials, .. } = picture;
-        let has_source = index == 0 && !picture.has_left && rects[SplitSide::Left as usize][2] > 0;
-        let source = || self.source_pipelines(scene.tessellator.mesh(), materials, target, settings);
+        let &Picture { settings, ref steps, .. } = picture;
         let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
         let has_lines = has_lines && index + 1 == steps.len();
         let has_ground = index == picture.ground_step && settings.overlays.grid;
         let has_normals = matches!(steps[index], Step::Normals(..));
         Ok(Beside {
-            source: has_source.then(source).transpose()?,
             normals: has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?,
             ground: has_ground.then(|| self.get(Draw::Ground)).transpose()?,
             lines: has_lines.then(|| self.line_pipelines(Draw::Lines)).transpose()?,

@@ -6,8 +6,8 @@ use super::Renderer;
 use super::layer_passes::layer_draws;
 use crate::render::Scene;
 use crate::render::draws::{Draw, Faces, Occluded};
-use crate::render::surface_draws::{source_draw, surface_draw};
-use crate::settings::{ColorSource, Lighting, Settings, SplitSide};
+use crate::render::surface_draws::surface_draw;
+use crate::settings::{ColorSource, Lighting, Settings};
 use geometry::cores::each;
 use gpu::GpuError;
 
@@ -22,6 +22,7 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, scene: &Scene, settings: &Settings) -> Result<(), GpuError> {
+        let settings = &settings.drawn();
         if settings.shows_materials() && settings.lighting == Lighting::Studio {
             self.studio()?;
         }
@@ -44,7 +45,7 @@ impl Renderer {
     /// The pipelines for surfaces that a [draft](crate::render::Target::draft) of the scene needs, as far as that is known before the scene is
     /// counted.
     pub fn draft_pipelines(&self, scene: &Scene, settings: &Settings) -> DraftPipelines {
-        let mut draws = self.surface_draws(scene, settings, true);
+        let mut draws = self.surface_draws(scene, &settings.drawn(), true);
         draws.dedup();
         DraftPipelines(draws)
     }
@@ -62,10 +63,7 @@ impl Renderer {
         let culls = settings.tessellation.cull_back_faces && scene.tessellator.is_solid();
         let faces = if culls { Faces::Fronts } else { Faces::Both };
         let (mesh, kind) = (scene.tessellator.mesh(), self.kind(is_draft));
-        let emitted = mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, kind));
-        let has_source = settings.split.is_some() && settings.half(SplitSide::Left).is_none();
-        let source = mesh.materials.iter().filter(|_| has_source).map(|own| source_draw(settings, mesh, own, kind));
-        emitted.chain(source).collect()
+        mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, kind)).collect()
     }
 
     /// Makes the pipelines of all draws, also of those that no picture has needed yet. Measurements of memory use it.

@@ -4,7 +4,7 @@ use super::Renderer;
 use crate::render::coverage::Coverage;
 use crate::render::covered_area::{Area, is_empty};
 use crate::render::draws::{Draw, Faces, Triangles};
-use crate::render::surface_draws::{emitted_triangles, source_draw, surface_draw};
+use crate::render::surface_draws::{emitted_triangles, surface_draw};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{Overlays, Settings};
 use geometry::mesh::{Material, Mesh};
@@ -51,18 +51,6 @@ impl Renderer {
         Ok(Surfaces { materials, pulled, fronts, sifted: false })
     }
 
-    /// What draws input triangles, for each of the mesh's materials.
-    pub(super) fn source_pipelines(
-        &self,
-        mesh: &Mesh,
-        materials: &[wgpu::BindGroup],
-        target: &Target,
-        settings: &Settings,
-    ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
-        let kind = self.kind(target.is_draft());
-        self.material_draws(mesh, materials, |own| source_draw(settings, mesh, own, kind))
-    }
-
     fn material_draws(
         &self,
         mesh: &Mesh,
@@ -99,26 +87,6 @@ impl Renderer {
             CoverageView::new(clip_from_object, target.viewport(), self.samples, surfaces.fronts, gpu.subpixel_bits);
         coverage.keep(recorder, &self.coverage, gpu, &chunk, view)?;
         Ok(true)
-    }
-
-    pub(super) fn draw_source(
-        &self,
-        pass: &mut wgpu::RenderPass,
-        materials: &[Vec<MaterialDraw>],
-        scene: &Scene,
-        area: Area,
-    ) {
-        if !confine(pass, area) {
-            return;
-        }
-        let patches = &scene.tessellator.topology().material_patches;
-        for (draws, patches) in materials.iter().zip(patches) {
-            for (pipeline, group) in draws {
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, group, &[]);
-                pass.draw(3 * patches.start..3 * patches.end, 0..1);
-            }
-        }
     }
 
     pub(super) fn draw_chunk(

@@ -25,6 +25,8 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         matcap,
         split,
         left,
+        section,
+        section_at,
         background,
         import,
     } = settings;
@@ -81,6 +83,8 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("matcap", format!("{matcap:?}")),
         ("split", format!("{split:?}")),
         ("split_left", format!("{left:?}")),
+        ("section", format!("{section:?}")),
+        ("section_at", format!("{section_at:?}")),
         ("background", format!("{background:?}")),
         ("mesh_normals", format!("{mesh_normals:?}")),
         ("crease_angle", format!("{crease_angle:?}")),

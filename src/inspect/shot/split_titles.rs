@@ -1,0 +1,81 @@
+//! What the halves of a split picture show, in words, and these words in a picture.
+
+use image::RgbaImage;
+
+use super::legend::plate_of_lines;
+use crate::plot::ChartError;
+use crate::settings::{Choice, Declaration, Settings, SplitSide, options};
+
+/// The colour of the divider.
+const DIVIDER: image::Rgba<u8> = image::Rgba([190, 190, 190, 255]);
+
+/// What is known of a half beside its settings.
+#[derive(Clone, Debug, Default)]
+pub struct HalfFacts {
+    /// The mesh's name, if the halves show different ones.
+    pub mesh: Option<String>,
+    /// The name of a shader in place of the surface.
+    pub shader: Option<String>,
+    /// The largest distance from the reference surface.
+    pub largest: Option<String>,
+    /// How many are emitted.
+    pub triangles: Option<u64>,
+    pub cracked_edges: Option<u64>,
+}
+
+/// The surface that a half shows, by name.
+pub fn surface_title(settings: &Settings, half: SplitSide) -> &'static str {
+    match half {
+        SplitSide::Left => settings.left_surface().map_or("untessellated", |surface| surface.label()),
+        SplitSide::Right => settings.tessellation.surface.label(),
+    }
+}
+
+/// The title of a half: the mesh and the surface, what else differs between the halves, and what was counted.
+pub fn half_title(settings: &Settings, half: SplitSide, facts: HalfFacts) -> String {
+    let HalfFacts { mesh, shader, largest, triangles, cracked_edges } = facts;
+    let name = shader.unwrap_or_else(|| surface_title(settings, half).to_owned());
+    let name = mesh.into_iter().chain([name]).collect::<Vec<_>>().join(", ");
+    let first = largest.map_or_else(|| name.clone(), |largest| format!("{name}: {largest}"));
+    let counts = [counted(triangles, "triangle"), counted(cracked_edges, "cracked edge")];
+    let lines = [vec![first], differing(settings, half), counts.into_iter().flatten().collect()];
+    lines.into_iter().filter(|line| !line.is_empty()).map(|line| line.join(", ")).collect::<Vec<_>>().join("\n")
+}
+
+/// What a half's tessellation has otherwise than the other half's, beside the surface.
+fn differing(settings: &Settings, half: SplitSide) -> Vec<String> {
+    let [left, right] = SplitSide::BOTH.map(|half| settings.half(half).unwrap_or(*settings));
+    let own = if half == SplitSide::Left { &left } else { &right };
+    let differs = |option: &&Declaration| {
+        option.name != options::SURFACE.name
+            && option.get(&left) != option.get(&right)
+            && (option.no_effect)(own).is_none()
+    };
+    let compared = options::TESSELLATION.into_iter().filter(|_| settings.has_left_tessellation());
+    compared.filter(differs).map(|option| option.shown(own)).collect()
+}
+
+fn counted(count: Option<u64>, one: &str) -> Option<String> {
+    count.map(|count| geometry::numbers::counted(count, one))
+}
+
+/// Draws the divider, and the titles of both halves beside it.
+///
+/// # Errors
+/// The font can't be used.
+pub(super) fn draw_titles(picture: &mut RgbaImage, split: f32, titles: &[String; 2]) -> Result<(), ChartError> {
+    let (width, height) = picture.dimensions();
+    let at = (split.clamp(0.0, 1.0) * width as f32).round() as u32;
+    for x in at.saturating_sub(1)..(at + 1).min(width) {
+        (0..height).for_each(|y| picture.put_pixel(x, y, DIVIDER));
+    }
+    for (half, title) in SplitSide::BOTH.into_iter().zip(titles) {
+        let (plate, margin) = plate_of_lines(picture.dimensions(), &title.lines().collect::<Vec<_>>())?;
+        let left = match half {
+            SplitSide::Left => i64::from(at) - i64::from(plate.width() + margin),
+            SplitSide::Right => i64::from(at + margin),
+        };
+        image::imageops::replace(picture, &plate, left, margin.into());
+    }
+    Ok(())
+}
