@@ -3,6 +3,7 @@
 // Colours that legends show too, in linear light. src/inspect/render/layout.rs has them in sRGB.
 const FOLD_COLOR: vec3<f32> = vec3<f32>(0.515, 0.061, 1.0);
 const BACK_FACE_COLOR: vec3<f32> = vec3<f32>(0.753, 0.013, 0.156);
+const SECTION_COLOR: vec3<f32> = vec3<f32>(0.434, 0.305, 0.188);
 const SMOOTH_EDGE_COLOR: vec3<f32> = vec3<f32>(0.40, 0.43, 0.47);
 const SPLIT_EDGE_COLOR: vec3<f32> = vec3<f32>(0.791, 0.347, 0.0);
 const SEAM_EDGE_COLOR: vec3<f32> = vec3<f32>(0.0, 0.342, 0.171);
@@ -78,6 +79,10 @@ fn bare_color(
     let meant = meaning(in, change, to_edges, edge_heights);
     let lights = Lights(frame.key_light.xyz, frame.fill_light.xyz, to_eye);
     var color = shade(lights, base, normal);
+    if !front && (frame.overlays & OVERLAY_SECTION) != 0u {
+        // Unlit, so that the inside of a closed mesh looks like a plane in the cut.
+        return vec4<f32>(SECTION_COLOR, 1.0);
+    }
     if marked_back {
         return vec4<f32>(select(color, FOLD_COLOR, in.folded != 0u), 1.0);
     }

@@ -110,6 +110,7 @@ const OVERLAY_ZEBRA: u32 = 4096u;
 const OVERLAY_SHADING_NORMALS: u32 = 8192u;
 const OVERLAY_UV_CHECKER: u32 = 16384u;
 const OVERLAY_SILHOUETTE: u32 = 32768u;
+const OVERLAY_SECTION: u32 = 65536u;
 
 // An emitted vertex as draws get it: its two halves (see Vertex in types.wgsl).
 struct EmittedVertex {

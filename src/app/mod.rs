@@ -45,6 +45,7 @@ use jobs::user_shader_job::OpenShader;
 use painting::{Painting, panel_frame};
 use panels::Panels;
 use viewport::Viewport;
+use viewport::pointer_value::PointerValue;
 use window::WindowState;
 
 pub use persistence::Persistence;
@@ -234,7 +235,9 @@ impl App {
 
     /// Whether something is still being loaded, drawn or measured.
     pub fn is_busy(&self) -> bool {
-        self.jobs.is_busy() || self.document.as_ref().is_some_and(Document::is_busy) || self.viewport.picture.is_busy()
+        let looks = self.viewport.pointer.as_ref().is_some_and(PointerValue::is_busy);
+        let measures = self.document.as_ref().is_some_and(Document::is_busy);
+        self.jobs.is_busy() || measures || looks || self.viewport.picture.is_busy()
     }
 
     /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.

@@ -19,7 +19,7 @@ fn page() -> String {
     }
     let listed = by_menu.into_iter().map(|(menu, names)| {
         let place = if menu.is_empty() { "found by name alone" } else { menu };
-        format!("- **{place}**: {}\n", names.join("; "))
+        format!("- **{place}**: {}\n", joined(&names))
     });
     format!(
         "# Keys and commands\n\n\
@@ -33,6 +33,22 @@ fn page() -> String {
         table(&["key", "command", "menu"], &[0, 1, 2], &with_keys.iter().map(keyed).collect::<Vec<_>>()),
         listed.collect::<String>(),
     )
+}
+
+/// All names in their order. Those that begin alike up to a colon share that beginning.
+fn joined(names: &[String]) -> String {
+    let mut text = String::new();
+    let mut before = None;
+    for name in names {
+        let beginning = name.split_once(": ").map(|(beginning, _)| beginning);
+        match (beginning, before) {
+            (Some(own), Some(before)) if own == before => text += &format!(", {}", &name[own.len() + 2..]),
+            (_, None) if text.is_empty() => text += name,
+            _ => text += &format!("; {name}"),
+        }
+        before = beginning;
+    }
+    text
 }
 
 /// The menu that a command is in; empty if it is in none.

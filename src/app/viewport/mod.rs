@@ -12,6 +12,7 @@ mod patch_labels;
 pub(super) mod picture;
 pub(super) mod place;
 pub(super) mod playback;
+pub(super) mod pointer_value;
 pub(super) mod preview;
 mod preview_pace;
 mod ruler;
@@ -27,6 +28,7 @@ use legend::PaintedLegend;
 use pace::Pace;
 use picture::Picture;
 use playback::Playback;
+use pointer_value::PointerValue;
 use preview::Preview;
 use ruler::Ruler;
 use warm_up::WarmUp;
@@ -59,6 +61,8 @@ pub(super) struct Viewport {
     pub closes_list: bool,
     /// Measures distances between places that are clicked on, while it is in use.
     pub ruler: Option<Ruler>,
+    /// Where the pointer rests, and what the colours stand for there.
+    pub pointer: Option<PointerValue>,
 }
 
 impl Viewport {
@@ -81,6 +85,7 @@ impl Viewport {
             playback: Playback::default(),
             closes_list: false,
             ruler: None,
+            pointer: None,
         }
     }
 }

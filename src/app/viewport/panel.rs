@@ -53,7 +53,8 @@ impl App {
         // A camera that frames the whole mesh goes on doing so in a window of another size.
         let resized = self.viewport.picture.target.as_ref().is_some_and(|(target, _)| target.size != size);
         let framed = resized && self.is_framed();
-        if let Err(error) = self.advance(ui.ctx(), size) {
+        let shown = self.advance(ui.ctx(), size).and_then(|()| Ok(self.show_pointer_value(&response)?));
+        if let Err(error) = shown {
             self.dialogs.error = Some(error.to_string());
         }
         if framed {

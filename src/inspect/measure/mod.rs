@@ -44,7 +44,7 @@ pub use sight::Sight;
 pub(crate) use silhouette::OutlineOf;
 pub use silhouette::{OutlineDistance, OutlineDistances, SampleGrid, Silhouette};
 pub(crate) use sizes::SMALL_PX;
-pub use sizes::Sizes;
+pub use sizes::{Sizes, size_px};
 pub use survey::{Culled, Measured, Survey};
 pub use sweep::{SWEEP_STEP, Sweep, SweepStep, sweep};
 pub use visitor::{EmittedChunk, Visitor};

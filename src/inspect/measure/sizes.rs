@@ -82,7 +82,7 @@ impl Sizes {
 
 /// The side of the square with twice the area of a triangle, in px; `None` if the near plane cuts it. Corners are in clip
 /// space. `size_px` in `shaders/draw_surface_vertices.wgsl` is the same.
-fn size_px(corners: [Vec4; 3], viewport: Vec2) -> Option<f64> {
+pub fn size_px(corners: [Vec4; 3], viewport: Vec2) -> Option<f64> {
     if !corners.into_iter().all(|corner| corner.w > 0.0 && beyond_near(corner)) {
         return None;
     }

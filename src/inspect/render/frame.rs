@@ -2,7 +2,7 @@
 
 use super::deviation::scale_of;
 use super::ground::Ground;
-use super::layout::{Frame, overlay_bits};
+use super::layout::{Frame, SECTION_BIT, overlay_bits};
 use super::section::clip_from_object;
 use super::{Camera, Scene, Target};
 use crate::settings::{DeviationUnit, Settings};
@@ -31,7 +31,7 @@ pub(super) fn frame(
         fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
         eye: eye.to_array(),
         viewport: viewport.to_array(),
-        overlays: overlay_bits(&settings.overlays),
+        overlays: overlay_bits(&settings.overlays) | if settings.section.is_some() { SECTION_BIT } else { 0 },
         ulp: scene.ulp,
         convention: settings.tessellation.convention as u32,
         scale_least: scale.least,

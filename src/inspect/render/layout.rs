@@ -148,6 +148,13 @@ pub const FOLD_COLOR: [u8; 3] = [190, 70, 255];
 /// in linear light.
 pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 
+/// sRGB colour of the backs of faces that a section shows; `SECTION_COLOR` there is the same in linear light.
+#[cfg(test)]
+pub(crate) const SECTION_COLOR: [u8; 3] = [176, 150, 120];
+
+/// The bit of a picture with a section among those of [`overlay_bits`].
+pub(crate) const SECTION_BIT: u32 = 1 << 16;
+
 /// sRGB colour of waste: triangles that are too small, and patches whose factors are too low. `WASTE_COLOR` in
 /// `shaders/draw_overlays.wgsl` has the same in linear light. It is vermilion (Okabe and Ito 2008).
 pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];

@@ -12,7 +12,8 @@ use crate::render::dfg::DFG_SIZE;
 use crate::render::draws::LayerDraw;
 use crate::render::layout::{
     AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
-    LEAST_SEEN, NORMAL_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear, overlay_bits,
+    LEAST_SEEN, NORMAL_COLOR, SECTION_BIT, SECTION_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear,
+    overlay_bits,
 };
 use crate::render::matcap::MATCAP_REACH;
 use crate::render::mipmap_pass::ALPHAS;
@@ -177,6 +178,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_ADJACENCY", overlay(Overlays { adjacency: true, ..none })),
         ("OVERLAY_FOLDS", overlay(Overlays { folds: true, ..none })),
         ("OVERLAY_BACK_FACES", overlay(Overlays { back_faces: true, ..none })),
+        ("OVERLAY_SECTION", number(SECTION_BIT)),
         ("OVERLAY_BARYCENTRIC", colors(Colors::Barycentric)),
         ("OVERLAY_FACTORS", colors(Colors::Factors)),
         ("OVERLAY_TRIANGLE_SIZE", colors(Colors::TriangleSize)),
@@ -196,6 +198,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("MATCAP_REACH", number(MATCAP_REACH)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
         ("BACK_FACE_COLOR", color(BACK_FACE_COLOR)),
+        ("SECTION_COLOR", color(SECTION_COLOR)),
         ("WASTE_COLOR", color(WASTE_COLOR)),
         ("NORMAL_COLOR", color(NORMAL_COLOR)),
         ("CHECKER_LIGHT", number(CHECKER_LIGHT)),

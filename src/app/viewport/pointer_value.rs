@@ -1,0 +1,131 @@
+//! What the surface's colours stand for under the pointer, in numbers, while it rests.
+
+use std::time::{Duration, Instant};
+
+use egui::{PopupAnchor, Response};
+use glam::{Vec3, vec2};
+
+use crate::app::App;
+use crate::app::text::{factor, short};
+use geometry::tessellate::factor_side;
+use geometry::view::{ScreenView, seen_on_plane};
+use gpu::GpuError;
+use inspect::measure::size_px;
+use inspect::render::{Picked, Picking, Pixel};
+use inspect::settings::{Colors, SplitSide};
+
+/// How long the pointer rests before the place under it is looked up.
+const REST: Duration = Duration::from_millis(120);
+
+/// A place where the pointer rests, and what is known of it.
+pub(crate) struct PointerValue {
+    half: SplitSide,
+    pixel: Pixel,
+    /// The number of the picture.
+    picture: u64,
+    since: Instant,
+    search: Search,
+}
+
+enum Search {
+    Waiting,
+    UnderWay(Picking),
+    Done(Option<String>),
+}
+
+impl App {
+    /// Looks up what the colours stand for under the pointer, and shows it there.
+    ///
+    /// # Errors
+    /// The device was lost.
+    pub(super) fn show_pointer_value(&mut self, response: &Response) -> Result<(), GpuError> {
+        let place = self.place_under(response);
+        let kept = self.viewport.pointer.take_if(|kept| Some(kept.key()) == place.as_ref().map(PointerValue::key));
+        let Some(mut place) = kept.or(place) else { return Ok(()) };
+        place.search = match std::mem::replace(&mut place.search, Search::Done(None)) {
+            Search::Waiting => self.start_search(&place, response)?,
+            Search::UnderWay(mut picking) => match picking.poll()? {
+                Some(found) => Search::Done(found.and_then(|found| self.value_at(&place, &found))),
+                None => Search::UnderWay(picking),
+            },
+            done => done,
+        };
+        match &place.search {
+            Search::Waiting => response.ctx.request_repaint_after(REST),
+            Search::UnderWay(_) => response.ctx.request_repaint(),
+            Search::Done(None) => {}
+            Search::Done(Some(value)) => {
+                let (layer, id) = (response.layer_id, response.id.with("value"));
+                egui::Tooltip::always_open(response.ctx.clone(), layer, id, PopupAnchor::Pointer)
+                    .show(|ui| ui.label(value));
+            }
+        }
+        self.viewport.pointer = Some(place);
+        Ok(())
+    }
+
+    /// The place under the pointer of a picture whose colours have numbers; none while anything moves.
+    fn place_under(&self, response: &Response) -> Option<PointerValue> {
+        let has_numbers = matches!(
+            self.settings.overlays.colors,
+            Colors::Factors | Colors::LowFactors | Colors::TriangleSize | Colors::Deviation
+        );
+        let pointer = response
+            .hover_pos()
+            .filter(|_| has_numbers && !self.is_playing() && !response.is_pointer_button_down_on())?;
+        let document = self.document.as_ref().filter(|_| !self.viewport.picture.is_busy())?;
+        let at = (pointer - response.rect.min) * response.ctx.pixels_per_point();
+        let (half, pixel) =
+            self.viewport.picture.pixel(&document.scene.bounds, [at.x.max(0.0) as u32, at.y.max(0.0) as u32])?;
+        let picture = self.viewport.picture.pictures();
+        Some(PointerValue { half, pixel, picture, since: Instant::now(), search: Search::Waiting })
+    }
+
+    fn start_search(&mut self, place: &PointerValue, response: &Response) -> Result<Search, GpuError> {
+        let scene = self.document.as_mut().and_then(|document| document.scene.half_mut(place.half));
+        let Some(scene) = scene.filter(|_| place.since.elapsed() >= REST) else { return Ok(Search::Waiting) };
+        // Looking through many chunks would take as long as drawing them.
+        if scene.tessellator.chunk_count() > self.viewport.picture.short {
+            return Ok(Search::Done(None));
+        }
+        response.ctx.request_repaint();
+        Ok(Search::UnderWay(self.engine.picker.start(&self.engine.gpu, scene, &place.pixel)?))
+    }
+
+    /// What the colours stand for at a place where this was found.
+    fn value_at(&self, place: &PointerValue, found: &Picked) -> Option<String> {
+        let Pixel { clip_from_object, size, at, .. } = place.pixel;
+        let view = ScreenView { clip_from_object, viewport: vec2(size[0] as f32, size[1] as f32) };
+        let corners = found.triangle?.vertices.map(|vertex| Vec3::from(vertex.position));
+        match self.settings.overlays.colors {
+            Colors::TriangleSize => {
+                let size = size_px(corners.map(|corner| view.clip_from_object * corner.extend(1.0)), view.viewport)?;
+                Some(format!("{} px", short(size)))
+            }
+            Colors::Deviation => {
+                let reference = self.yardstick().1?;
+                let point = seen_on_plane(&view, vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5), corners)?;
+                Some(format!("{} units", short(reference.closest(point.as_dvec3()).distance)))
+            }
+            _ => {
+                let scene = self.document.as_ref()?.scene.half(place.half)?;
+                let sides = self.found(place.half)?.outlines.patch(scene.tessellator.topology(), found.patch)?;
+                let of_edge = |i| sides[factor_side(scene.tessellator.convention(), i) as usize].factor;
+                let factors = [0, 1, 2].map(|i| factor(f64::from(of_edge(i)), 2));
+                Some(format!("Factors {}", factors.join(", ")))
+            }
+        }
+    }
+}
+
+impl PointerValue {
+    /// What it is about.
+    fn key(&self) -> (Pixel, u64) {
+        (self.pixel, self.picture)
+    }
+
+    /// Whether it isn't known yet.
+    pub(crate) fn is_busy(&self) -> bool {
+        !matches!(self.search, Search::Done(_))
+    }
+}
