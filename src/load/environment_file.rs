@@ -2,17 +2,19 @@
 //!
 //! Sources: Ward, "Real Pixels", Graphics Gems II, 1991; "Technical Introduction to OpenEXR", <https://openexr.com>.
 
-use std::io::{BufReader, Cursor, ErrorKind, Read, Seek, SeekFrom};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use image::codecs::hdr::HdrDecoder;
 use image::codecs::openexr::OpenExrDecoder;
-use image::{ImageDecoder, ImageError, ImageResult};
+use image::{ImageDecoder, ImageError};
 
+use super::format::extension_of;
 use super::memory_budget::Budget;
 use super::panorama::{Panorama, Repaired};
+use super::watched_bytes::watched;
 use crate::files::{FileError, Limits, read_file};
 use geometry::mesh::MemoryRefused;
 use geometry::names::{shown, shown_path};
@@ -95,8 +97,7 @@ impl From<FileError> for EnvironmentError {
 
 /// Whether a path has the ending of a file of light.
 pub fn is_environment(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    extension.is_some_and(|extension| ENVIRONMENT_EXTENSIONS.contains(&&*extension))
+    extension_of(path).is_some_and(|extension| ENVIRONMENT_EXTENSIONS.contains(&&*extension))
 }
 
 impl EnvironmentFile {
@@ -173,7 +174,7 @@ fn pixels(
     budget: &Budget,
     progress: &Progress,
 ) -> Result<([u32; 2], Vec<[f32; 3]>), EnvironmentFault> {
-    let reader = BufReader::new(WatchedBytes { bytes: Cursor::new(bytes), progress });
+    let reader = watched(bytes, progress.clone());
     match kind {
         Kind::Radiance { is_old } => {
             let decoder = HdrDecoder::with_strictness(reader, !is_old).map_err(undecoded)?;
@@ -183,15 +184,11 @@ fn pixels(
             let headers =
                 MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
             let block = headers.iter().map(block_bytes).max().unwrap_or(0);
-            let decoder = exr_decoder(reader).map_err(undecoded)?;
+            let decoder = OpenExrDecoder::with_alpha_preference(reader, Some(false)).map_err(undecoded)?;
             // The decoder has a copy of the pixels, and of a block about three while it is unpacked.
             decode(decoder, budget, |whole| whole.saturating_add(block.saturating_mul(3)))
         }
     }
-}
-
-fn exr_decoder<'a>(reader: BufReader<WatchedBytes<'a>>) -> ImageResult<OpenExrDecoder<BufReader<WatchedBytes<'a>>>> {
-    OpenExrDecoder::with_alpha_preference(reader, Some(false))
 }
 
 /// The size of a decompressed block of an OpenEXR layer, in bytes.
@@ -268,27 +265,6 @@ fn warnings(size: [u32; 2], kept: [u32; 2], repaired: Repaired) -> Vec<String> {
         replaced(repaired.infinite, "infinite", "65504"),
     ];
     [stretched, reduced].into_iter().chain(repairs).flatten().collect()
-}
-
-/// Bytes that can't be read any more once the job was cancelled, and that report how many of them were read.
-struct WatchedBytes<'a> {
-    bytes: Cursor<&'a [u8]>,
-    progress: &'a Progress,
-}
-
-impl Read for WatchedBytes<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        self.progress.check().map_err(std::io::Error::other)?;
-        let count = self.bytes.read(buffer)?;
-        self.progress.set(self.bytes.position() as f32 / self.bytes.get_ref().len().max(1) as f32);
-        Ok(count)
-    }
-}
-
-impl Seek for WatchedBytes<'_> {
-    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
-        self.bytes.seek(to)
-    }
 }
 
 #[cfg(test)]

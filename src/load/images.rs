@@ -98,7 +98,7 @@ fn may_be_tga(bytes: &[u8]) -> bool {
 /// Decodes a PNG, JPEG, WebP, TGA or BMP image. All memory is borrowed.
 fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
-    webp::check(&mut Cursor::new(bytes), budget.allowed()).map_err(|error| error.to_string())?;
+    webp::check(bytes, budget.allowed())?;
     let mut reader = reader(bytes).map_err(|error| error.to_string())?;
     let whole = Borrowed::from(budget);
     if reader.format() == Some(ImageFormat::Png) {
@@ -188,7 +188,7 @@ fn decode_ktx2(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
 }
 
 /// Returns the width and height in the header of a PNG image in px, and whether it is interlaced; none for another file.
-fn png_header(bytes: &[u8]) -> Option<([u32; 2], bool)> {
+pub(super) fn png_header(bytes: &[u8]) -> Option<([u32; 2], bool)> {
     let header = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")?.first_chunk::<13>()?;
     let side = |at: usize| u32::from_be_bytes(std::array::from_fn(|k| header[at + k]));
     Some(([side(0), side(4)], header[12] != 0))

@@ -12,9 +12,10 @@ mod values;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
+use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
+use super::notes::counted;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
@@ -308,9 +309,7 @@ impl<'a> Reader<'a, '_> {
         let is_colored = is_colored && !is_uncolored && element.name == b"face";
         let color = is_colored.then(|| (places, color_scale(element, &slots)));
         if color.is_some() || !is_uncolored && !vertices.colors.is_empty() {
-            self.faces.color();
-            // Corners that were added before have the number 0.
-            self.faces.number(Vec4::ONE)?;
+            self.faces.color()?;
         }
         Ok(FaceProperties { vertices: list, wedges, image, color })
     }

@@ -46,8 +46,7 @@ impl Source {
     /// Builds the shape, or loads the file within `limits` with the materials of a variant, or another scene than the default one.
     ///
     /// # Errors
-    /// The same as [`load_selected`]'s; a shape has only [`LoadError::NoVariant`], [`LoadError::NoScene`], [`LoadError::Shape`] and
-    /// [`LoadError::Cancelled`].
+    /// The same as [`load_selected`]'s; a shape has only [`LoadError::Absent`], [`LoadError::Shape`] and [`LoadError::Cancelled`].
     pub fn load_selected(
         &self,
         selected: Selection,

@@ -21,7 +21,7 @@ use super::schema_check::Faults;
 use super::{GltfError, extension_table, extensions, glb, json, repair, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
-use geometry::mesh::{Borrowed, Light, MemoryRefused};
+use geometry::mesh::{Borrowed, Light};
 use geometry::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
@@ -95,9 +95,7 @@ pub(super) fn parse(
     settled.settle(&mut root, notes.get_mut())?;
     let document = Document::from_json_without_validation(root);
     drop(json);
-    let too_large =
-        |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    budget.hold(lists.bytes()).map_err(too_large)?;
+    budget.hold(lists.bytes()).map_err(GltfError::large_json)?;
     Ok(Parsed {
         document,
         blob,

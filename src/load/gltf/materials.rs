@@ -21,7 +21,7 @@ use crate::texture_room::{Scaling, TextureRoom};
 use crate::uri::Files;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryRefused, Sampling, Slot, Texture};
+use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, Sampling, Slot, Texture};
 use geometry::progress::Progress;
 
 /// How many materials a sentence names.
@@ -125,7 +125,8 @@ impl<'a> Materials<'a> {
         if self.sources.contains_key(&index) {
             return Ok(());
         }
-        self.hold(size_of::<MaterialSource>() + size_of::<Material>())?;
+        let bytes = size_of::<MaterialSource>() + size_of::<Material>();
+        self.budget.hold(bytes as u64).map_err(GltfError::too_large("its materials"))?;
         let value = index.and_then(|index| Some((index, self.lists.materials.get(index)?)));
         let members = value.and_then(|(i, value)| Members::new(value, format!("/materials/{i}"), &self.notes));
         let source = MaterialSource::new(members.as_ref(), self.lists.textures.len());
@@ -135,12 +136,6 @@ impl<'a> Materials<'a> {
         }
         self.sources.insert(index, source);
         Ok(())
-    }
-
-    fn hold(&self, bytes: usize) -> Result<(), GltfError> {
-        let too_large =
-            |refused: MemoryRefused| GltfError::TooLarge { what: "its materials".to_owned(), reason: refused.into() };
-        self.budget.hold(bytes as u64).map_err(too_large)
     }
 
     /// Returns whether corners of this material need more than position, normal and texture coordinates.

@@ -9,10 +9,10 @@ use super::document::{Document, ObjectAt};
 use super::looks::{Faults, Looks, Resolved, Textured};
 use super::model::{Object, Placed, Triangle, UNREAD};
 use super::properties::Group;
-use crate::face_builder::{FaceBuilder, NumberedCorner, counted};
+use crate::face_builder::{FaceBuilder, NumberedCorner};
 use crate::import::Import;
 use crate::memory_budget::{Budget, edge_bytes};
-use crate::notes::Notes;
+use crate::notes::{Notes, counted};
 use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
 use geometry::mesh::build_limits::MAX_TRIANGLES;
@@ -49,7 +49,7 @@ pub(super) fn place(
     faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
     let colors = |group: &Group| matches!(group, Group::Colors(colors) if !colors.is_empty());
     if document.parts.iter().any(|part| part.groups.values().any(colors)) {
-        faces.color();
+        faces.color()?;
     }
     let root = of_file(document, &faces.import);
     let mut placer = Placer {

@@ -82,7 +82,7 @@ fn a_scene_that_is_not_there_is_an_error_with_the_names() {
     };
     assert_eq!(load(Source::File(path.clone()), "hall").expect("a scene").scene, Some(0));
     let error = load(Source::File(path), "3").expect_err("another scene");
-    assert!(matches!(error, LoadError::NoScene { .. }));
+    assert!(matches!(error, LoadError::Absent { what: "scene", .. }));
     let said = error.to_string();
     assert!(said.ends_with("three.gltf has no scene 3; choose one of hall, scene 1, 0"), "{said}");
     let said = load("shape:torus".parse().expect("a shape"), "0").expect_err("it has none").to_string();
