@@ -63,13 +63,6 @@ pub(super) enum LocalTransform {
 }
 
 impl LocalTransform {
-    fn placement(&self) -> Option<Placement> {
-        match self {
-            Self::Placement(placement) => Some(*placement),
-            Self::Matrix(_) => None,
-        }
-    }
-
     fn matrix(&self) -> DMat4 {
         match self {
             Self::Placement(placement) if *placement == Placement::default() => DMat4::IDENTITY,
@@ -94,13 +87,12 @@ pub(super) fn attachments(scene: &SceneNodes, moved: &[bool]) -> (Vec<AnimatedNo
     let mut attachments = vec![root; scene.local.len()];
     for &node in &scene.order {
         let above = scene.parents[node].map_or(root, |parent| attachments[parent]);
-        let local = &scene.local[node];
-        attachments[node] = match local.placement().filter(|_| moved[node]) {
-            Some(rest) => {
+        attachments[node] = match scene.local[node] {
+            LocalTransform::Placement(rest) if moved[node] => {
                 animated.push(AnimatedNode { parent: above.node, between: above.below, rest, is_joint: false });
                 Attachment { node: Some(to_u32(animated.len()) - 1), below: DMat4::IDENTITY }
             }
-            None => Attachment { below: above.below * local.matrix(), ..above },
+            local => Attachment { below: above.below * local.matrix(), ..above },
         };
     }
     (animated, attachments)

@@ -121,7 +121,7 @@ impl EnvironmentFile {
             EnvironmentFault::Cancelled(cancelled) => EnvironmentError::Cancelled(cancelled),
             fault => EnvironmentError::Broken { path: path.to_owned(), fault },
         };
-        let known = |start: &[u8]| Kind::new(start).map(|_| ()).map_err(broken);
+        let known = |start: &[u8]| check_start(start).map_err(broken);
         let bytes = read_file(path, limits, known, progress)?;
         let own = Self::read(&bytes, limits, progress).map_err(broken)?;
         let name = shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())));
@@ -133,9 +133,9 @@ impl EnvironmentFile {
     /// # Errors
     /// [`EnvironmentFault`].
     pub fn read(bytes: &[u8], limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentFault> {
-        let kind = Kind::new(bytes)?;
+        check_start(bytes)?;
         let budget = Budget::new(bytes.len(), limits.memory);
-        let pixels = pixels(kind, bytes, &budget, &progress.part(0.0, 0.7));
+        let pixels = pixels(bytes, &budget, progress.part(0.0, 0.7));
         // Cancelling stops the decoder with some error.
         progress.check()?;
         let (size, pixels) = pixels?;
@@ -149,46 +149,23 @@ impl EnvironmentFile {
     }
 }
 
-/// A file format.
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    Radiance { is_old: bool },
-    OpenExr,
-}
-
-impl Kind {
-    fn new(start: &[u8]) -> Result<Self, EnvironmentFault> {
-        match start {
-            _ if start.starts_with(RADIANCE) => Ok(Self::Radiance { is_old: false }),
-            _ if start.starts_with(OLD_RADIANCE) => Ok(Self::Radiance { is_old: true }),
-            _ if start.starts_with(OPEN_EXR) => Ok(Self::OpenExr),
-            _ => Err(EnvironmentFault::Unknown),
-        }
-    }
+fn check_start(start: &[u8]) -> Result<(), EnvironmentFault> {
+    let is_known = [RADIANCE, OLD_RADIANCE, OPEN_EXR].iter().any(|known| start.starts_with(known));
+    if is_known { Ok(()) } else { Err(EnvironmentFault::Unknown) }
 }
 
 /// Decodes the pixels, in linear RGB. Returns the size too.
-fn pixels(
-    kind: Kind,
-    bytes: &[u8],
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<([u32; 2], Vec<[f32; 3]>), EnvironmentFault> {
-    let reader = watched(bytes, progress.clone());
-    match kind {
-        Kind::Radiance { is_old } => {
-            let decoder = HdrDecoder::with_strictness(reader, !is_old).map_err(undecoded)?;
-            decode(decoder, budget, |_| 0)
-        }
-        Kind::OpenExr => {
-            let headers =
-                MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
-            let block = headers.iter().map(block_bytes).max().unwrap_or(0);
-            let decoder = OpenExrDecoder::with_alpha_preference(reader, Some(false)).map_err(undecoded)?;
-            // The decoder has a copy of the pixels, and of a block about three while it is unpacked.
-            decode(decoder, budget, |whole| whole.saturating_add(block.saturating_mul(3)))
-        }
+fn pixels(bytes: &[u8], budget: &Budget, progress: Progress) -> Result<([u32; 2], Vec<[f32; 3]>), EnvironmentFault> {
+    let reader = watched(bytes, progress);
+    if !bytes.starts_with(OPEN_EXR) {
+        let decoder = HdrDecoder::with_strictness(reader, !bytes.starts_with(OLD_RADIANCE)).map_err(undecoded)?;
+        return decode(decoder, budget, |_| 0);
     }
+    let headers = MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
+    let block = headers.iter().map(block_bytes).max().unwrap_or(0);
+    let decoder = OpenExrDecoder::with_alpha_preference(reader, Some(false)).map_err(undecoded)?;
+    // The decoder has a copy of the pixels, and of a block about three while it is unpacked.
+    decode(decoder, budget, |whole| whole.saturating_add(block.saturating_mul(3)))
 }
 
 /// The size of a decompressed block of an OpenEXR layer, in bytes.

@@ -64,8 +64,8 @@ pub(super) struct FaceBuilder<'a> {
     pub import: Import,
     /// What was repaired or left out.
     pub notes: Notes,
-    parts: Parts,
-    builder: MeshBuilder,
+    pub parts: Parts,
+    pub builder: MeshBuilder,
     recent: RecentCorners,
     block: TriangleBlock,
     /// The colours of corners, if the file has any, or if corners may need tangents.
@@ -136,11 +136,6 @@ impl<'a> FaceBuilder<'a> {
         Ok(())
     }
 
-    /// Whether any part was entered.
-    pub(super) fn has_parts(&self) -> bool {
-        self.parts.have_begun()
-    }
-
     /// Adds a material and returns its index for [`add`](Self::add).
     ///
     /// # Errors
@@ -151,14 +146,6 @@ impl<'a> FaceBuilder<'a> {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
         Ok(self.builder.material(material))
-    }
-
-    /// A material that was added.
-    ///
-    /// # Panics
-    /// If `material` isn't an index that [`material`](Self::material) returned.
-    pub(super) fn material_mut(&mut self, material: usize) -> &mut Material {
-        self.builder.material_mut(material)
     }
 
     /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.

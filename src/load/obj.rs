@@ -292,7 +292,7 @@ impl Reader<'_, '_> {
 
     /// Enters the part of faces that belong to none, if there was none before.
     fn begin_parts(&mut self) -> Result<(), ReadError> {
-        if self.faces.has_parts() { Ok(()) } else { self.faces.enter_part(DEFAULT_PART) }
+        if self.faces.parts.have_begun() { Ok(()) } else { self.faces.enter_part(DEFAULT_PART) }
     }
 
     /// Adds a face with these corners.

@@ -129,7 +129,7 @@ impl Reader<'_> {
         let attributes = triangles.iter().take(there).map(|&[.., low, high]| u16::from_le_bytes([low, high]));
         let colors = Colors::new(&bytes[..HEADER - 4], attributes.clone());
         if let Some(colors) = &colors {
-            self.faces.material_mut(self.material).base_color = colors.of_all();
+            self.faces.builder.material_mut(self.material).base_color = colors.of_all();
         }
         let of_triangles = colors.filter(|colors| colors.are_many);
         if of_triangles.is_some() {

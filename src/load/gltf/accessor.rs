@@ -196,6 +196,23 @@ impl<'a> Accessors<'a> {
         Ok(self.faults.check("accessors", accessor.index())?)
     }
 
+    /// # Errors
+    /// [`GltfError::Document`] for an accessor that is wrong, and [`GltfError::Accessor`] for one that hasn't as many elements as there
+    /// are of `what`.
+    pub(crate) fn check_count(
+        &self,
+        accessor: &Accessor,
+        role: &str,
+        count: usize,
+        what: &str,
+    ) -> Result<(), GltfError> {
+        self.check_sound(accessor)?;
+        match accessor.count() {
+            has if has == count => Ok(()),
+            has => Err(DataError::Here(format!("has {has} elements for {count} {what}")).of(accessor, role)),
+        }
+    }
+
     fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {
         let MeshoptExtension { buffer, offset, length, stride, count, mode, .. } = *compressed;
         let bytes = self.range(buffer, offset, length).map_err(|error| match error {

@@ -68,7 +68,7 @@ impl<'a> Textures<'a> {
         for ((name, material), image) in used.into_iter().zip(images) {
             problems.extend(image.said.map(|said| format!("the texture {} {said}", shown(name))));
             if let Some(material) = material.filter(|_| image.texture.is_some()) {
-                faces.material_mut(material).texture = image.texture;
+                faces.builder.material_mut(material).texture = image.texture;
             }
         }
         Ok(problems)

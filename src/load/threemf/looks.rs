@@ -49,14 +49,6 @@ impl Faults {
     }
 }
 
-/// A material that shows an image of the archive.
-pub(super) struct Textured {
-    /// Its index in the face builder.
-    pub material: usize,
-    /// The image's name in the archive.
-    pub path: String,
-}
-
 /// What tells materials apart.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum MaterialKey {
@@ -72,17 +64,13 @@ enum MaterialKey {
 pub(super) struct Looks<'d> {
     document: &'d Document,
     materials: HashMap<MaterialKey, usize>,
-    textured: Vec<Textured>,
+    /// Which materials show images, by their indices in the face builder, and the images' names in the archive.
+    pub textured: Vec<(usize, String)>,
 }
 
 impl<'d> Looks<'d> {
     pub(super) fn new(document: &'d Document) -> Self {
         Self { document, materials: HashMap::new(), textured: Vec::new() }
-    }
-
-    /// Which materials show images.
-    pub(super) fn into_textured(self) -> Vec<Textured> {
-        self.textured
     }
 
     /// Finds a triangle's material and colours (core specification, section 4.1.4.1).
@@ -181,7 +169,7 @@ impl<'d> Looks<'d> {
         let make = || Material { sampling: texture.sampling, ..Material::plain(&name(), [1.0; 4]) };
         let resolved = self.material(faces, MaterialKey::Textured(part, id), make)?;
         if self.materials.len() > known {
-            self.textured.push(Textured { material: resolved.material, path: texture.path.clone() });
+            self.textured.push((resolved.material, texture.path.clone()));
         }
         let fault = uvs.iter().any(|uv| texture.leaves(*uv)).then_some(Fault::Beyond);
         Ok(Resolved { uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), fault, ..resolved })

@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::broken;
 use super::document::{Document, ObjectAt};
-use super::looks::{Faults, Looks, Resolved, Textured};
+use super::looks::{Faults, Looks, Resolved};
 use super::model::{Object, Placed, Triangle, UNREAD};
 use super::properties::Group;
 use crate::face_builder::{FaceBuilder, NumberedCorner};
@@ -25,7 +25,7 @@ const MAX_NESTING: usize = 64;
 /// How many triangles are placed before the job asks whether it was cancelled.
 const TRIANGLES: u64 = 4096;
 
-/// Places everything that the build has, or all objects if it has nothing. Returns which materials show images.
+/// Places everything that the build has, or all objects if it has nothing. Returns which materials show images, and their names.
 ///
 /// # Errors
 /// [`ReadError`].
@@ -34,7 +34,7 @@ pub(super) fn place(
     faces: &mut FaceBuilder,
     budget: &Budget,
     progress: &Progress,
-) -> Result<Vec<Textured>, ReadError> {
+) -> Result<Vec<(usize, String)>, ReadError> {
     let items = items(document, &mut faces.notes);
     let mut counter = Counter { document, counted: HashMap::new(), missing: 0 };
     let mut total = 0_u64;
@@ -70,7 +70,7 @@ pub(super) fn place(
     faces.notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
     faces.notes.extend(unread(document, &counter.counted));
     faces.notes.extend(found.warnings());
-    Ok(looks.into_textured())
+    Ok(looks.textured)
 }
 
 /// Turns axes so that Y points up in place of Z, and scales the file's unit to metres, unless another axis or unit was chosen.
