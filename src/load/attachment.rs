@@ -43,6 +43,15 @@ impl SceneNodes {
         }
     }
 
+    /// Includes the nodes above those that are marked. `order` has parents before children.
+    pub(super) fn include_parents(marked: &mut [bool], order: &[usize], parents: &[Option<usize>]) {
+        for &node in order.iter().rev() {
+            if let Some(parent) = parents[node].filter(|_| marked[node]) {
+                marked[parent] = true;
+            }
+        }
+    }
+
     /// Returns the transform from each node's own space to the scene's.
     pub(super) fn global(&self) -> Vec<DMat4> {
         let mut global = vec![DMat4::IDENTITY; self.local.len()];
@@ -63,8 +72,9 @@ pub(super) enum LocalTransform {
 }
 
 impl LocalTransform {
-    fn matrix(&self) -> DMat4 {
+    pub(super) fn matrix(&self) -> DMat4 {
         match self {
+            // Most nodes have no transform: that is worth a shortcut where there are hundreds of thousands.
             Self::Placement(placement) if *placement == Placement::default() => DMat4::IDENTITY,
             Self::Placement(placement) => placement.matrix(),
             Self::Matrix(matrix) => *matrix,

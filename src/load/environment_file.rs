@@ -233,15 +233,7 @@ fn warnings(size: [u32; 2], kept: [u32; 2], repaired: Repaired) -> Vec<String> {
     });
     let reduced = (kept != size)
         .then(|| format!("it has {width} x {height} px, and was reduced to {} x {} px.", kept[0], kept[1]));
-    let replaced = |count: usize, what: &str, by: &str| {
-        (count > 0).then(|| format!("numbers of its pixels that are {what} were replaced by {by}: {count}."))
-    };
-    let repairs = [
-        replaced(repaired.not_numbers, "no numbers (NaN)", "0"),
-        replaced(repaired.negative, "negative", "0"),
-        replaced(repaired.infinite, "infinite", "65504"),
-    ];
-    [stretched, reduced].into_iter().chain(repairs).flatten().collect()
+    [stretched, reduced].into_iter().flatten().chain(repaired.sentences()).collect()
 }
 
 #[cfg(test)]

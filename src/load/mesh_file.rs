@@ -255,9 +255,7 @@ pub fn read(
     let file = &ModelFile { folder, name, selected, limits: *limits, progress };
     let broken = |fault| of_fault(fault, path);
     let mut loaded = match format {
-        Format::Gltf => {
-            gltf::read(bytes, folder, name, selected, limits, progress).map_err(|problem| of_problem(problem, path))
-        }
+        Format::Gltf => gltf::read(bytes, file).map_err(|problem| of_problem(problem, path)),
         Format::Fbx => fbx::read(bytes, file).map_err(broken),
         Format::Obj => obj::read(bytes, file).map_err(broken),
         Format::Stl => stl::read(bytes, file).map_err(broken),

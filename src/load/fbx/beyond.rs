@@ -33,7 +33,7 @@ pub(super) struct Beyond {
     /// Samples per second.
     rate: f64,
     /// How many samples may still be taken in the whole file.
-    left: usize,
+    pub left: usize,
 }
 
 impl Beyond {
@@ -56,11 +56,6 @@ impl Beyond {
         }
         edges.retain(|_, edges| edges.iter().any(Option::is_some));
         Self { edges, span, rate, left }
-    }
-
-    /// How many samples may still be taken.
-    pub(super) fn left(&self) -> usize {
-        self.left
     }
 
     /// Returns the times in s at which an object is sampled beyond its key frames, in order; none if no curve of it goes on.

@@ -125,7 +125,7 @@ impl Reader<'_> {
         let beyond = Beyond::new(anim, span, SAMPLES, self.samples_left);
         let mut curves = Curves { anim, span, beyond };
         let channels = self.channels(&baked, &mut curves);
-        self.samples_left = curves.beyond.left();
+        self.samples_left = curves.beyond.left;
         drop(baked);
         self.budget.release(bytes);
         Ok(channels.map(|channels| {

@@ -217,8 +217,9 @@ impl MeshReader<'_, '_, '_> {
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
-            let undeformed = self.vertices.undeformed(&posed, &self.deltas, binder.first_weight.is_some());
-            let at = (undeformed, &posed.corner);
+            // Blend shapes are at rest, unless a clip weighs them.
+            let start = if binder.first_weight.is_some() { posed.undeformed } else { posed.morphed };
+            let at = (start, &posed.corner);
             number = binder.bind(at, &self.influences, &mut self.deltas, self.budget)?;
         }
         if let Some(table) = self.details.take() {

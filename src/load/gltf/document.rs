@@ -10,6 +10,7 @@ use super::cameras::{self, CameraSource};
 use super::carried::Carried;
 use super::extensions::Extensions;
 use super::json::{list, objects};
+use super::lenient::take_list;
 use super::lights;
 use super::material_lists::MaterialLists;
 use super::node_parts::{self, NodeParts};
@@ -63,7 +64,8 @@ pub(super) fn parse(
     check_version(root, notes.get_mut())?;
     extension_table::check(root, notes.get_mut())?;
     let requires_draco = extension_table::requires(root, schema::DRACO);
-    let animations = take_animations(root);
+    // They are read separately, so that an error in one doesn't keep the model from loading.
+    let animations = take_list(root, "animations", "there are no animations", &notes);
     let variants = variants::choose(root, selected.variant, notes.get_mut());
     let scenes = Scenes::choose(root, selected.scene, notes.get_mut());
     let lists = MaterialLists::take(root, &notes);
@@ -134,14 +136,6 @@ fn json_and_blob(
     bytes.truncate(bin.end);
     bytes.drain(..bin.start);
     Ok((value, Some(bytes)))
-}
-
-/// Takes the animations, which are read separately, so that an error in one doesn't keep the model from loading.
-fn take_animations(root: &mut Map<String, Value>) -> Vec<Value> {
-    match root.remove("animations") {
-        Some(Value::Array(animations)) => animations,
-        _ => Vec::new(),
-    }
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {

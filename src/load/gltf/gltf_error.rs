@@ -45,6 +45,10 @@ impl GltfError {
         Self::Document { pointer: "its JSON".to_owned(), reason: refused.into() }
     }
 
+    pub(super) fn large_scene(refused: MemoryRefused) -> Self {
+        Self::too_large("the scene")(refused)
+    }
+
     /// The error of `what`, which takes too much memory.
     pub(super) fn too_large(what: &str) -> impl Fn(MemoryRefused) -> Self {
         move |refused| Self::TooLarge { what: what.to_owned(), reason: refused.into() }

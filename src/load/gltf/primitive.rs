@@ -158,9 +158,7 @@ impl PrimitiveReader {
         let moving = binder.map(|binder| AnimatedVertices::new(budget, &vertices, pose.instance, is_morphing, binder));
         let indices = Indices::new(&source, vertices.count)?;
         // The number and the marks of each vertex's corner, and a bit that says whether it is used.
-        budget
-            .borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8)
-            .map_err(GltfError::too_large("the scene"))?;
+        budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(GltfError::large_scene)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
         let kept = KeptVertices::from_used(&mut vertices, &used, moving, details, builder, budget)?;
         drop(used);
@@ -172,7 +170,7 @@ impl PrimitiveReader {
         }
         builder
             .make_room_for_triangles(material.index, most_triangles(mode, count), budget)
-            .map_err(GltfError::too_large("the scene"))?;
+            .map_err(GltfError::large_scene)?;
         let unplaced = self.add_triangles(mode, &indices, &kept, builder, material.index);
         if unplaced > 0 {
             self.unplaced.0 += unplaced;
@@ -318,10 +316,6 @@ impl KeptVertices {
     const RESCALED: u8 = 2 << CornerRepairs::BITS;
     const UNPLACED: u8 = 4 << CornerRepairs::BITS;
 
-    fn new(count: usize) -> Self {
-        Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
-    }
-
     /// Stores the corners of the vertices whose bit in `used` is set, with what moves them and their details.
     ///
     /// # Errors
@@ -334,7 +328,7 @@ impl KeptVertices {
         builder: &mut MeshBuilder,
         budget: &Budget,
     ) -> Result<Self, GltfError> {
-        let mut kept = Self::new(vertices.count);
+        let mut kept = Self { ids: Vec::with_capacity(vertices.count), marks: Vec::with_capacity(vertices.count) };
         // What moves a vertex gets its number in the order of the vertices, and its memory before that of later corners.
         let at_once = if moving.is_some() { BATCH } else { at_once(vertices.count) };
         for first in (0..vertices.count).step_by(at_once) {
@@ -346,8 +340,7 @@ impl KeptVertices {
                 }),
             };
             read.iter().for_each(|(_, repairs)| vertices.repairs.add(repairs));
-            kept.store(&read, used, details.as_deref_mut(), builder, budget)
-                .map_err(GltfError::too_large("the scene"))?;
+            kept.store(&read, used, details.as_deref_mut(), builder, budget).map_err(GltfError::large_scene)?;
         }
         Ok(kept)
     }

@@ -90,7 +90,7 @@ fn unpacked(archive: &Archive, path: &str, budget: &Budget) -> Result<Vec<u8>, S
         other => other.to_string(),
     })?;
     let mut part = part.ok_or("it isn't in the archive")?;
-    let size = part.left();
+    let size = part.left;
     budget.hold(size).map_err(|refused| format!("unpacking it {refused}"))?;
     // A part that is longer or shorter than it says is an error.
     let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(usize::MAX));

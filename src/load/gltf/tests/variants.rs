@@ -24,11 +24,10 @@ fn loaded(draft: &Draft, variant: Option<&str>) -> LoadedMesh {
     let bytes = draft.document().to_string().into_bytes();
     read(
         bytes,
-        Path::new("nowhere"),
-        "draft",
-        Selection { variant, ..Selection::default() },
-        &Limits::default(),
-        &Progress::new(),
+        &ModelFile {
+            selected: Selection { variant, ..Selection::default() },
+            ..ModelFile::from_test("draft", &Progress::new())
+        },
     )
     .expect("triangles")
 }
