@@ -290,7 +290,7 @@ impl<'a> FaceBuilder<'a> {
             }
             count += 1;
         }
-        self.builder.make_room(block.corners().len(), self.memory)?;
+        self.builder.make_room(block.corners.len(), self.memory)?;
         block.store(&mut recent, |corners, stored| self.builder.corners(corners, stored));
         self.recent = recent;
         self.parts.leave_out(count);

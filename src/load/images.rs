@@ -42,18 +42,10 @@ pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
 }
 
 /// Decodes a PNG, JPEG, WebP, TGA, BMP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too
-/// large.
+/// large, and halves it so many times.
 ///
 /// # Errors
 /// A clause that says what is wrong.
-pub(super) fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
-    decode_halved(bytes, 0, MipFilter::Colors, budget)
-}
-
-/// Decodes an image as [`decode_texture`] does, and halves it so many times.
-///
-/// # Errors
-/// The same.
 pub(super) fn decode_halved(
     bytes: &[u8],
     halvings: u32,
@@ -209,4 +201,4 @@ fn too_large([width, height]: [u32; 2], refused: MemoryRefused) -> String {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -303,7 +303,7 @@ impl<'a> Reader<'a, '_> {
         let has_uvs = wedges.is_some() || !vertices.uvs.is_empty();
         let first = if has_uvs { self.textures.material(&mut self.faces, 0)? } else { None };
         self.material = first.unwrap_or(self.plain);
-        let image = named(b"texnumber").filter(|_| first.is_some() && self.textures.len() > 1);
+        let image = named(b"texnumber").filter(|_| first.is_some() && self.textures.names.len() > 1);
         // Where there is an image, colours count for nothing: scans have both.
         let is_uncolored = first.is_some() && image.is_none();
         let is_colored = is_colored && !is_uncolored && element.name == b"face";
@@ -499,7 +499,7 @@ impl<'a> Reader<'a, '_> {
             (without_normals, made.as_str()),
             (values.long_lines, "lines with more numbers than their element has, left out"),
             (values.left_over(), "bytes after the last element, left out"),
-            (header.images.len() - self.textures.len(), "images beyond the first 256, left out"),
+            (header.images.len() - self.textures.names.len(), "images beyond the first 256, left out"),
         ]));
         faces.notes.extend(problems);
         self.files.budget.release(read.bytes());

@@ -282,7 +282,7 @@ struct Binder<'b> {
 impl<'b> Binder<'b> {
     fn new(mut node: NodeBinder<'b>, vertices: &Vertices) -> Self {
         let (skinned, rigid) = (node.frame(true, vertices.to_node), node.frame(false, vertices.to_node));
-        let first_weight = node.first_weight().filter(|_| !vertices.morphs.is_empty());
+        let first_weight = node.first_weight().filter(|_| !vertices.morphs.shapes.is_empty());
         Self { node, skinned, rigid, first_weight }
     }
 

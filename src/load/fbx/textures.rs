@@ -86,13 +86,9 @@ fn names(texture: &ufbx::Texture) -> Vec<String> {
         let path = path.as_ref().replace('\\', "/");
         let last = path.rsplit('/').next().unwrap_or_default().to_owned();
         let is_below = !path.starts_with('/') && !path.contains(':') && !path.split('/').any(|part| part == "..");
-        let candidates = [Some(path).filter(|_| is_below), Some(last)];
-        for name in candidates.into_iter().flatten().filter(|name| !name.is_empty()) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
+        names.extend([Some(path).filter(|_| is_below), Some(last)].into_iter().flatten());
     }
+    names.retain(|name| !name.is_empty());
     names
 }
 

@@ -125,7 +125,7 @@ fn json_and_blob(
     notes: &mut Notes,
     progress: &Progress,
 ) -> Result<(Value, Option<Vec<u8>>), GltfError> {
-    if !glb::is_glb(&bytes) {
+    if !bytes.starts_with(b"glTF") {
         return Ok((json::parse(&bytes, budget, progress)?, None));
     }
     let parts = glb::parts(&bytes)?;
