@@ -83,7 +83,7 @@ impl LocalTransform {
 }
 
 /// The animated node that a node is attached to, and its transform relative to that.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Attachment {
     /// An index into the animated nodes; none if no clip moves the node.
     pub node: Option<u32>,
@@ -92,11 +92,10 @@ pub(super) struct Attachment {
 
 /// Returns the animated nodes, parents before children, and the attachment of each of the scene's nodes.
 pub(super) fn attachments(scene: &SceneNodes, moved: &[bool]) -> (Vec<AnimatedNode>, Vec<Attachment>) {
-    let root = Attachment { node: None, below: DMat4::IDENTITY };
     let mut animated = Vec::new();
-    let mut attachments = vec![root; scene.local.len()];
+    let mut attachments = vec![Attachment::default(); scene.local.len()];
     for &node in &scene.order {
-        let above = scene.parents[node].map_or(root, |parent| attachments[parent]);
+        let above = scene.parents[node].map_or(Attachment::default(), |parent| attachments[parent]);
         attachments[node] = match scene.local[node] {
             LocalTransform::Placement(rest) if moved[node] => {
                 animated.push(AnimatedNode { parent: above.node, between: above.below, rest, is_joint: false });

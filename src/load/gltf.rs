@@ -187,9 +187,9 @@ struct Scene<'a> {
     document: &'a Document,
     /// The transform from each node's own space to the scene's, in which the meshes are built.
     global: &'a [DMat4],
-    /// By node, the instances of its mesh.
     /// The part of each node that is one.
     parts: &'a HashMap<usize, u32>,
+    /// By node, the instances of its mesh.
     instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
     materials: Materials<'a>,

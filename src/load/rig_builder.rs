@@ -156,9 +156,8 @@ impl RigBuilder {
 
     /// Returns what moves something that is on a node, in the node's own space.
     pub(super) fn mount(&self, node: usize) -> Joint {
-        let attachment = self.attachments.get(node);
-        let offset = attachment.map_or(DMat4::IDENTITY, |own| own.below);
-        Joint { node: attachment.and_then(|own| own.node), offset, ..Joint::default() }
+        let Attachment { node, below } = self.attachments.get(node).copied().unwrap_or_default();
+        Joint { node, offset: below, ..Joint::default() }
     }
 
     /// Gives up building a rig. The first reason is reported.
@@ -428,10 +427,9 @@ impl NodeBinder<'_> {
         }
         let of_skin = self.skin.and_then(|skin| Some((*skin.nodes.get(joint)?, *skin.inverse_binds.get(joint)?)));
         let (node, inverse_bind) = of_skin.unwrap_or((usize::MAX, DMat4::IDENTITY));
-        let attachment =
-            self.binder.attachments.get(node).copied().unwrap_or(Attachment { node: None, below: DMat4::IDENTITY });
+        let Attachment { node, below } = self.binder.attachments.get(node).copied().unwrap_or_default();
         let place = self.skin.map_or(DMat4::IDENTITY, |skin| skin.place);
-        let id = self.binder.joint(Joint { node: attachment.node, offset: attachment.below * inverse_bind, place });
+        let id = self.binder.joint(Joint { node, offset: below * inverse_bind, place });
         if let Some(known) = self.skin_joints.get_mut(joint) {
             *known = Some(id);
         }

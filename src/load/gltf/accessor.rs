@@ -42,23 +42,19 @@ pub(crate) struct Accessors<'a> {
 }
 
 /// Why data can't be read.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub(crate) enum DataError {
     /// A clause about what needs it.
+    #[error("{0}")]
     Here(String),
     /// Something else in the document is wrong.
-    Elsewhere(GltfError),
+    #[error(transparent)]
+    Elsewhere(#[from] GltfError),
 }
 
 impl From<String> for DataError {
     fn from(reason: String) -> Self {
         Self::Here(reason)
-    }
-}
-
-impl From<GltfError> for DataError {
-    fn from(error: GltfError) -> Self {
-        Self::Elsewhere(error)
     }
 }
 
