@@ -28,9 +28,6 @@ const MAX_NUMBERS: usize = 4 + 3 + 4 + 2;
 const LEAST_FACE: usize = 4;
 
 /// Builds a mesh from a file's bytes.
-///
-/// # Errors
-/// [`ReadError`].
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     read_faces(bytes, file, gather)
 }

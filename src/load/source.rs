@@ -112,9 +112,6 @@ impl Source {
 }
 
 /// Returns a shape with normals that are made from its triangles.
-///
-/// # Errors
-/// [`Cancelled`].
 fn with_made_normals(mesh: Mesh, import: &Import, progress: &Progress) -> Result<Mesh, Cancelled> {
     let mut builder = MeshBuilder::with_crease_angle(import.crease_angle);
     for material in &mesh.materials {

@@ -32,9 +32,6 @@ const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
 /// Builds a mesh from a file's bytes.
-///
-/// # Errors
-/// [`ReadError`].
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     read_faces(bytes, file, |bytes, files, mut faces| {
         let material = faces.material(Material::plain("default", [1.0; 4]))?;

@@ -98,9 +98,6 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     }
 
     /// Adds the polygons of a node's mesh.
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub(super) fn add(&mut self, index: usize, progress: &Progress) -> Result<(), ReadError> {
         let node = &self.scene.nodes[index];
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };

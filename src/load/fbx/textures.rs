@@ -24,9 +24,6 @@ impl<'a> Textures<'a> {
     }
 
     /// Reads the images of these textures. `reserved` is the memory that the rest of the load takes, in bytes.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn read<'t>(
         &mut self,
         used: impl Iterator<Item = (&'t ufbx::Texture, MipFilter)>,

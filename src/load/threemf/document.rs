@@ -36,9 +36,6 @@ pub(super) type ObjectAt = (usize, u32);
 
 impl Document {
     /// Reads the model, and the parts that it names (production extension). The budget holds its memory.
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub(super) fn read(
         archive: &Archive,
         budget: &Budget,

@@ -23,9 +23,6 @@ pub(super) struct Images(HashMap<String, Result<Vec<u8>, String>>);
 
 impl Images {
     /// Unpacks the images. The budget holds their bytes.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn unpack(
         archive: &Archive,
         document: &Document,
@@ -52,9 +49,6 @@ impl Images {
 
     /// Decodes the images that materials show, each given by a material's index and an image's name, and scales the largest down until all fit. `freed` is the memory that is freed before the
     /// mesh is finished, in bytes. What is wrong with an image costs a note.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn give(
         self,
         textured: &[(usize, String)],

@@ -74,9 +74,6 @@ impl<'d> Looks<'d> {
     }
 
     /// Finds a triangle's material and colours (core specification, section 4.1.4.1).
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub(super) fn resolve(
         &mut self,
         faces: &mut FaceBuilder,

@@ -26,9 +26,6 @@ const MAX_NESTING: usize = 64;
 const TRIANGLES: u64 = 4096;
 
 /// Places everything that the build has, or all objects if it has nothing. Returns which materials show images, and their names.
-///
-/// # Errors
-/// [`ReadError`].
 pub(super) fn place(
     document: &Document,
     faces: &mut FaceBuilder,
