@@ -43,6 +43,15 @@ impl SceneNodes {
         }
     }
 
+    /// Includes the nodes above those that are marked. `order` has parents before children.
+    pub(super) fn include_parents(marked: &mut [bool], order: &[usize], parents: &[Option<usize>]) {
+        for &node in order.iter().rev() {
+            if let Some(parent) = parents[node].filter(|_| marked[node]) {
+                marked[parent] = true;
+            }
+        }
+    }
+
     /// Returns the transform from each node's own space to the scene's.
     pub(super) fn global(&self) -> Vec<DMat4> {
         let mut global = vec![DMat4::IDENTITY; self.local.len()];
@@ -63,15 +72,9 @@ pub(super) enum LocalTransform {
 }
 
 impl LocalTransform {
-    fn placement(&self) -> Option<Placement> {
+    pub(super) fn matrix(&self) -> DMat4 {
         match self {
-            Self::Placement(placement) => Some(*placement),
-            Self::Matrix(_) => None,
-        }
-    }
-
-    fn matrix(&self) -> DMat4 {
-        match self {
+            // Most nodes have no transform: that is worth a shortcut where there are hundreds of thousands.
             Self::Placement(placement) if *placement == Placement::default() => DMat4::IDENTITY,
             Self::Placement(placement) => placement.matrix(),
             Self::Matrix(matrix) => *matrix,
@@ -80,7 +83,7 @@ impl LocalTransform {
 }
 
 /// The animated node that a node is attached to, and its transform relative to that.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Attachment {
     /// An index into the animated nodes; none if no clip moves the node.
     pub node: Option<u32>,
@@ -89,18 +92,16 @@ pub(super) struct Attachment {
 
 /// Returns the animated nodes, parents before children, and the attachment of each of the scene's nodes.
 pub(super) fn attachments(scene: &SceneNodes, moved: &[bool]) -> (Vec<AnimatedNode>, Vec<Attachment>) {
-    let root = Attachment { node: None, below: DMat4::IDENTITY };
     let mut animated = Vec::new();
-    let mut attachments = vec![root; scene.local.len()];
+    let mut attachments = vec![Attachment::default(); scene.local.len()];
     for &node in &scene.order {
-        let above = scene.parents[node].map_or(root, |parent| attachments[parent]);
-        let local = &scene.local[node];
-        attachments[node] = match local.placement().filter(|_| moved[node]) {
-            Some(rest) => {
+        let above = scene.parents[node].map_or(Attachment::default(), |parent| attachments[parent]);
+        attachments[node] = match scene.local[node] {
+            LocalTransform::Placement(rest) if moved[node] => {
                 animated.push(AnimatedNode { parent: above.node, between: above.below, rest, is_joint: false });
                 Attachment { node: Some(to_u32(animated.len()) - 1), below: DMat4::IDENTITY }
             }
-            None => Attachment { below: above.below * local.matrix(), ..above },
+            local => Attachment { below: above.below * local.matrix(), ..above },
         };
     }
     (animated, attachments)

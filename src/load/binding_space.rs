@@ -17,11 +17,9 @@ pub(super) struct BindingSpace {
 impl BindingSpace {
     pub(super) fn new(matrix: DMat4) -> Self {
         let linear = DMat3::from_mat4(matrix);
-        let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        let cofactors = cofactors(&linear);
         let largest = cofactors.to_cols_array().iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
-        let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-        let scale = if largest > 0.0 && largest.is_finite() { sign / largest } else { sign };
+        let scale = if largest > 0.0 && largest.is_finite() { 1.0 / largest } else { 1.0 };
         Self { matrix, linear, cofactors: cofactors * scale }
     }
 
@@ -58,6 +56,13 @@ impl BindingSpace {
     }
 }
 
+/// Returns the inverse transpose of a linear map, times its determinant without a sign: that exists even where the inverse doesn't.
+fn cofactors(linear: &DMat3) -> DMat3 {
+    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
+    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
+    DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
+}
+
 /// Transforms a normal by the inverse transpose of a linear map, and normalises it; returns none if the result has no
 /// direction.
 pub(super) fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
@@ -65,11 +70,7 @@ pub(super) fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
     if *linear == DMat3::IDENTITY {
         return Some(normal);
     }
-    // The cofactors are the inverse transpose times the determinant, and exist even where the inverse doesn't.
-    let [x, y, z] = [linear.x_axis, linear.y_axis, linear.z_axis];
-    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    let sign = if linear.determinant() < 0.0 { -1.0 } else { 1.0 };
-    (sign * (cofactors * normal.as_dvec3())).try_normalize().map(DVec3::as_vec3)
+    (cofactors(linear) * normal.as_dvec3()).try_normalize().map(DVec3::as_vec3)
 }
 
 /// Returns zero for a vector that doesn't fit f32.

@@ -94,7 +94,7 @@ fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
     std::iter::from_fn(move || {
         let line = lines.next().ok().flatten()?;
         // The last line may be cut off.
-        (!lines.is_open() || line.number == 1).then_some(line.text)
+        (!lines.is_open || line.number == 1).then_some(line.text)
     })
 }
 

@@ -2,17 +2,19 @@
 //!
 //! Sources: Ward, "Real Pixels", Graphics Gems II, 1991; "Technical Introduction to OpenEXR", <https://openexr.com>.
 
-use std::io::{BufReader, Cursor, ErrorKind, Read, Seek, SeekFrom};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use exr::meta::header::Header;
 use exr::meta::{BlockDescription, MetaData};
 use image::codecs::hdr::HdrDecoder;
 use image::codecs::openexr::OpenExrDecoder;
-use image::{ImageDecoder, ImageError, ImageResult};
+use image::{ImageDecoder, ImageError};
 
+use super::format::extension_of;
 use super::memory_budget::Budget;
 use super::panorama::{Panorama, Repaired};
+use super::watched_bytes::watched;
 use crate::files::{FileError, Limits, read_file};
 use geometry::mesh::MemoryRefused;
 use geometry::names::{shown, shown_path};
@@ -95,8 +97,7 @@ impl From<FileError> for EnvironmentError {
 
 /// Whether a path has the ending of a file of light.
 pub fn is_environment(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    extension.is_some_and(|extension| ENVIRONMENT_EXTENSIONS.contains(&&*extension))
+    extension_of(path).is_some_and(|extension| ENVIRONMENT_EXTENSIONS.contains(&&*extension))
 }
 
 impl EnvironmentFile {
@@ -120,7 +121,7 @@ impl EnvironmentFile {
             EnvironmentFault::Cancelled(cancelled) => EnvironmentError::Cancelled(cancelled),
             fault => EnvironmentError::Broken { path: path.to_owned(), fault },
         };
-        let known = |start: &[u8]| Kind::new(start).map(|_| ()).map_err(broken);
+        let known = |start: &[u8]| check_start(start).map_err(broken);
         let bytes = read_file(path, limits, known, progress)?;
         let own = Self::read(&bytes, limits, progress).map_err(broken)?;
         let name = shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())));
@@ -132,9 +133,9 @@ impl EnvironmentFile {
     /// # Errors
     /// [`EnvironmentFault`].
     pub fn read(bytes: &[u8], limits: &Limits, progress: &Progress) -> Result<Self, EnvironmentFault> {
-        let kind = Kind::new(bytes)?;
+        check_start(bytes)?;
         let budget = Budget::new(bytes.len(), limits.memory);
-        let pixels = pixels(kind, bytes, &budget, &progress.part(0.0, 0.7));
+        let pixels = pixels(bytes, &budget, progress.part(0.0, 0.7));
         // Cancelling stops the decoder with some error.
         progress.check()?;
         let (size, pixels) = pixels?;
@@ -148,50 +149,23 @@ impl EnvironmentFile {
     }
 }
 
-/// A file format.
-#[derive(Clone, Copy, Debug)]
-enum Kind {
-    Radiance { is_old: bool },
-    OpenExr,
-}
-
-impl Kind {
-    fn new(start: &[u8]) -> Result<Self, EnvironmentFault> {
-        match start {
-            _ if start.starts_with(RADIANCE) => Ok(Self::Radiance { is_old: false }),
-            _ if start.starts_with(OLD_RADIANCE) => Ok(Self::Radiance { is_old: true }),
-            _ if start.starts_with(OPEN_EXR) => Ok(Self::OpenExr),
-            _ => Err(EnvironmentFault::Unknown),
-        }
-    }
+fn check_start(start: &[u8]) -> Result<(), EnvironmentFault> {
+    let is_known = [RADIANCE, OLD_RADIANCE, OPEN_EXR].iter().any(|known| start.starts_with(known));
+    if is_known { Ok(()) } else { Err(EnvironmentFault::Unknown) }
 }
 
 /// Decodes the pixels, in linear RGB. Returns the size too.
-fn pixels(
-    kind: Kind,
-    bytes: &[u8],
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<([u32; 2], Vec<[f32; 3]>), EnvironmentFault> {
-    let reader = BufReader::new(WatchedBytes { bytes: Cursor::new(bytes), progress });
-    match kind {
-        Kind::Radiance { is_old } => {
-            let decoder = HdrDecoder::with_strictness(reader, !is_old).map_err(undecoded)?;
-            decode(decoder, budget, |_| 0)
-        }
-        Kind::OpenExr => {
-            let headers =
-                MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
-            let block = headers.iter().map(block_bytes).max().unwrap_or(0);
-            let decoder = exr_decoder(reader).map_err(undecoded)?;
-            // The decoder has a copy of the pixels, and of a block about three while it is unpacked.
-            decode(decoder, budget, |whole| whole.saturating_add(block.saturating_mul(3)))
-        }
+fn pixels(bytes: &[u8], budget: &Budget, progress: Progress) -> Result<([u32; 2], Vec<[f32; 3]>), EnvironmentFault> {
+    let reader = watched(bytes, progress);
+    if !bytes.starts_with(OPEN_EXR) {
+        let decoder = HdrDecoder::with_strictness(reader, !bytes.starts_with(OLD_RADIANCE)).map_err(undecoded)?;
+        return decode(decoder, budget, |_| 0);
     }
-}
-
-fn exr_decoder<'a>(reader: BufReader<WatchedBytes<'a>>) -> ImageResult<OpenExrDecoder<BufReader<WatchedBytes<'a>>>> {
-    OpenExrDecoder::with_alpha_preference(reader, Some(false))
+    let headers = MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
+    let block = headers.iter().map(block_bytes).max().unwrap_or(0);
+    let decoder = OpenExrDecoder::with_alpha_preference(reader, Some(false)).map_err(undecoded)?;
+    // The decoder has a copy of the pixels, and of a block about three while it is unpacked.
+    decode(decoder, budget, |whole| whole.saturating_add(block.saturating_mul(3)))
 }
 
 /// The size of a decompressed block of an OpenEXR layer, in bytes.
@@ -259,36 +233,7 @@ fn warnings(size: [u32; 2], kept: [u32; 2], repaired: Repaired) -> Vec<String> {
     });
     let reduced = (kept != size)
         .then(|| format!("it has {width} x {height} px, and was reduced to {} x {} px.", kept[0], kept[1]));
-    let replaced = |count: usize, what: &str, by: &str| {
-        (count > 0).then(|| format!("numbers of its pixels that are {what} were replaced by {by}: {count}."))
-    };
-    let repairs = [
-        replaced(repaired.not_numbers, "no numbers (NaN)", "0"),
-        replaced(repaired.negative, "negative", "0"),
-        replaced(repaired.infinite, "infinite", "65504"),
-    ];
-    [stretched, reduced].into_iter().chain(repairs).flatten().collect()
-}
-
-/// Bytes that can't be read any more once the job was cancelled, and that report how many of them were read.
-struct WatchedBytes<'a> {
-    bytes: Cursor<&'a [u8]>,
-    progress: &'a Progress,
-}
-
-impl Read for WatchedBytes<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        self.progress.check().map_err(std::io::Error::other)?;
-        let count = self.bytes.read(buffer)?;
-        self.progress.set(self.bytes.position() as f32 / self.bytes.get_ref().len().max(1) as f32);
-        Ok(count)
-    }
-}
-
-impl Seek for WatchedBytes<'_> {
-    fn seek(&mut self, to: SeekFrom) -> std::io::Result<u64> {
-        self.bytes.seek(to)
-    }
+    [stretched, reduced].into_iter().flatten().chain(repaired.sentences()).collect()
 }
 
 #[cfg(test)]

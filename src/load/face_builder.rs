@@ -1,15 +1,13 @@
 //! Builds a mesh from the faces of FBX, OBJ, STL, PLY, OFF and 3MF files: checks them, cuts polygons into triangles, and
 //! counts repairs.
 
-use std::fmt::Display;
-
 use glam::{Vec2, Vec3, Vec4};
 
 use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
-use super::notes::Notes;
+use super::notes::{Notes, counted, counts};
 use super::parts::{Part, Parts};
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::{RecentCorners, VertexNumbers};
@@ -66,8 +64,8 @@ pub(super) struct FaceBuilder<'a> {
     pub import: Import,
     /// What was repaired or left out.
     pub notes: Notes,
-    parts: Parts,
-    builder: MeshBuilder,
+    pub parts: Parts,
+    pub builder: MeshBuilder,
     recent: RecentCorners,
     block: TriangleBlock,
     /// The colours of corners, if the file has any, or if corners may need tangents.
@@ -76,20 +74,23 @@ pub(super) struct FaceBuilder<'a> {
     materials: usize,
     triangles: usize,
     work: polygon::WorkBudget,
-    /// Faces with fewer than 3 corners.
-    too_small: usize,
-    /// Corners at the position of the corner before them.
-    repeated: usize,
-    /// Polygons whose triangles may overlap.
-    maybe_overlapping: usize,
-    /// Corners with texture coordinates that aren't finite.
-    bad_uvs: usize,
+    found: Counts,
     /// Faces with a position that isn't finite or is too far away, and the place of the first one.
     unplaced: (usize, Option<FilePosition>),
     /// Faces with the number of a position that the file doesn't have, and the place of the first one.
     misnumbered: (usize, Option<FilePosition>),
     /// The triangles of the polygon that is being cut.
     cut: Vec<[usize; 3]>,
+}
+
+counts! {
+    struct Counts {
+        bad_uvs => "uvs that aren't finite, replaced by (0, 0)";
+        too_small => "faces of fewer than 3 corners, left out";
+        repeated => "corners of polygons at the position of the corner before, left out";
+        maybe_overlapping =>
+            "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap";
+    }
 }
 
 /// A mesh, and what belongs to it.
@@ -118,10 +119,7 @@ impl<'a> FaceBuilder<'a> {
             materials: 0,
             triangles: 0,
             work: polygon::WorkBudget::new(usize::try_from(memory.files()).unwrap_or(usize::MAX)),
-            too_small: 0,
-            repeated: 0,
-            maybe_overlapping: 0,
-            bad_uvs: 0,
+            found: Counts::default(),
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
@@ -138,11 +136,6 @@ impl<'a> FaceBuilder<'a> {
         Ok(())
     }
 
-    /// Whether any part was entered.
-    pub(super) fn has_parts(&self) -> bool {
-        self.parts.have_begun()
-    }
-
     /// Adds a material and returns its index for [`add`](Self::add).
     ///
     /// # Errors
@@ -155,24 +148,21 @@ impl<'a> FaceBuilder<'a> {
         Ok(self.builder.material(material))
     }
 
-    /// A material that was added.
-    ///
-    /// # Panics
-    /// If `material` isn't an index that [`material`](Self::material) returned.
-    pub(super) fn material_mut(&mut self, material: usize) -> &mut Material {
-        self.builder.material_mut(material)
-    }
-
     /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.
     pub(super) fn bytes_to_finish(&self) -> u64 {
         let [corners, triangles] = [self.builder.distinct_corners(), self.triangles].map(|count| count as u64);
         edge_bytes(corners, triangles).saturating_sub(32 * corners + 12 * triangles)
     }
 
-    /// Keeps the colours of corners, and gives them tangents where a normal map needs them.
-    pub(super) fn color(&mut self) {
+    /// Keeps the colours of corners from now on, and gives them tangents where a normal map needs them.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`].
+    pub(super) fn color(&mut self) -> Result<(), ReadError> {
         self.are_colored = true;
         self.colors.get_or_insert_default();
+        // Corners that were added before have the number 0.
+        self.number(Vec4::ONE).map(|_| ())
     }
 
     /// Gives corners tangents if a normal map needs them.
@@ -217,14 +207,14 @@ impl<'a> FaceBuilder<'a> {
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
-        let bad_uvs = self.bad_uvs;
+        let bad_uvs = self.found.bad_uvs;
         for NumberedCorner { corner, .. } in corners.iter_mut() {
             if self.import.makes_normals() {
                 corner.normal = None;
             }
             if !corner.uv.is_finite() {
                 corner.uv = Vec2::ZERO;
-                self.bad_uvs += 1;
+                self.found.bad_uvs += 1;
             }
         }
         if corners.len() > 3 {
@@ -234,10 +224,10 @@ impl<'a> FaceBuilder<'a> {
             if corners.len() > 1 && first == corners.last().map(|at| at.corner.position) {
                 corners.pop();
             }
-            self.repeated += given - corners.len();
+            self.found.repeated += given - corners.len();
         }
         if corners.len() < 3 {
-            self.too_small += 1;
+            self.found.too_small += 1;
             return Ok(());
         }
         if self.parts.leave_out(corners.len() - 2) {
@@ -246,7 +236,7 @@ impl<'a> FaceBuilder<'a> {
         self.make_room(material, corners.len() - 2)?;
         self.builder.make_room(corners.len(), self.memory)?;
         // Repairs are counted again wherever their vertices are used.
-        self.cut(material, corners, bad_uvs == self.bad_uvs);
+        self.cut(material, corners, bad_uvs == self.found.bad_uvs);
         Ok(())
     }
 
@@ -300,7 +290,7 @@ impl<'a> FaceBuilder<'a> {
             }
             count += 1;
         }
-        self.builder.make_room(block.corners().len(), self.memory)?;
+        self.builder.make_room(block.corners.len(), self.memory)?;
         block.store(&mut recent, |corners, stored| self.builder.corners(corners, stored));
         self.recent = recent;
         self.parts.leave_out(count);
@@ -338,7 +328,7 @@ impl<'a> FaceBuilder<'a> {
         let outline: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
         self.cut.clear();
         let cut = triangulate(&outline, &mut self.work, &mut self.cut);
-        self.maybe_overlapping += usize::from(cut == CutQuality::MayOverlap);
+        self.found.maybe_overlapping += usize::from(cut == CutQuality::MayOverlap);
         for triangle in &self.cut {
             add(triangle.map(|i| corners[i]));
         }
@@ -375,7 +365,7 @@ impl<'a> FaceBuilder<'a> {
         // No more corners are stored.
         (self.recent, self.block) = Default::default();
         if self.builder.is_empty() {
-            let small = match self.too_small {
+            let small = match self.found.too_small {
                 0 => String::new(),
                 count => format!(", and {count} faces of fewer than 3 corners"),
             };
@@ -384,15 +374,7 @@ impl<'a> FaceBuilder<'a> {
         }
         let flawed = self.flawed().map(|flawed| format!("{flawed}; they are left out."));
         self.notes.extend(flawed);
-        self.notes.extend(counted([
-            (self.bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
-            (self.too_small, "faces of fewer than 3 corners, left out"),
-            (self.repeated, "corners of polygons at the position of the corner before, left out"),
-            (
-                self.maybe_overlapping,
-                "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap",
-            ),
-        ]));
+        self.notes.extend(self.found.sentences());
         let (parts, beyond, places) = self.parts.into_list();
         self.notes.extend(counted([(beyond, "parts beyond the first 65,536, which can't be hidden")]));
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
@@ -431,12 +413,6 @@ pub(super) fn is_near(corner: &InputCorner) -> bool {
 pub(super) fn linear_color([r, g, b, a]: [u8; 4]) -> Vec4 {
     let [r, g, b] = [r, g, b].map(|byte| SRGB_TABLE[usize::from(byte)]);
     Vec4::new(r, g, b, f32::from(a) / 255.0)
-}
-
-/// Returns a sentence for each count that isn't 0.
-pub(super) fn counted<S: Display>(sentences: impl IntoIterator<Item = (usize, S)>) -> impl Iterator<Item = String> {
-    let found = sentences.into_iter().filter(|(count, _)| *count > 0);
-    found.map(|(count, sentence)| format!("{sentence}: {count}."))
 }
 
 #[cfg(test)]

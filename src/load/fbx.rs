@@ -21,8 +21,6 @@ mod surfaces;
 mod textures;
 mod vertices;
 
-use std::sync::Arc;
-
 use super::face_builder::Finished;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
@@ -30,7 +28,6 @@ use super::model_file::ModelFile;
 use super::notes::Notes;
 use super::read_error::ReadError;
 use super::rig_builder::RigBuilder;
-use super::tangents;
 use super::uri::Files;
 
 use nodes::Placed;
@@ -85,15 +82,8 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(scene);
     progress.set(0.8);
     let finished = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
-    let Finished { mut mesh, mut numbers, mut notes, parts } = finished;
-    if let Some(details) = details {
-        numbers = tangents::with_details(&mut mesh, details, &numbers, &mut notes, &budget, progress)?;
-    }
-    match binder.map(|binder| binder.finish(&mut mesh, &numbers)) {
-        Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
-        Some(Err(warning)) => notes.push(warning),
-        None => {}
-    }
+    let Finished { mut mesh, numbers, mut notes, parts } = finished;
+    RigBuilder::complete(&mut mesh, numbers, details, binder, &mut notes, &budget, progress)?;
     let (files, file_bytes) = (files.named(), budget.files());
     Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, files, file_bytes, ..LoadedMesh::default() })
 }

@@ -49,7 +49,6 @@ mod vertex_repairs;
 mod vertices;
 
 use std::collections::HashMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use ::gltf::{Document, Node, Semantic};
@@ -57,17 +56,17 @@ use glam::DMat4;
 
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
+use super::model_file::ModelFile;
 use super::notes::Notes;
 use super::rig_builder::{RigBuilder, SkinJoints};
-use super::selection::{Selection, choice};
+use super::selection::choice;
 use super::uri::Files;
 use super::warnings::repair_warnings;
-use super::{notes, rig_builder, tangents};
-use crate::files::Limits;
+use super::{notes, rig_builder};
+use geometry::mesh::Borrowed;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::rig::Joint;
-use geometry::mesh::{Borrowed, Mesh};
 use geometry::progress::Progress;
 
 use accessor::Accessors;
@@ -83,16 +82,9 @@ pub use gltf_error::GltfError;
 
 /// Builds a mesh from a document's bytes.
 ///
-/// `folder` is the document's folder; `name` becomes the mesh's name. `selected` says which scene is read, and with the materials of
-/// which variant, if the document has it. `limits` apply to the files that the document names.
-pub(super) fn read(
-    bytes: Vec<u8>,
-    folder: &Path,
-    name: &str,
-    selected: Selection,
-    limits: &Limits,
-    progress: &Progress,
-) -> Result<LoadedMesh, GltfError> {
+/// What is selected says which scene is read, and with the materials of which variant, if the document has it.
+pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfError> {
+    let &ModelFile { folder, name, selected, ref limits, progress } = file;
     let budget = Budget::new(bytes.len(), limits.memory);
     let mut parsed = document::parse(bytes, selected, &budget, progress)?;
     let (document, notes) = (&parsed.document, &mut parsed.notes);
@@ -171,7 +163,8 @@ pub(super) fn read(
     let lights = parsed.lights.shown(&placed, &mut of_lights);
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
-    let mut mesh = finished(name, builder, details, binder, notes, &budget, progress)?;
+    let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
+    RigBuilder::complete(&mut mesh, bindings, details, binder, notes, &budget, progress)?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
         [rig.lights, rig.cameras] = mounts;
     }
@@ -194,9 +187,9 @@ struct Scene<'a> {
     document: &'a Document,
     /// The transform from each node's own space to the scene's, in which the meshes are built.
     global: &'a [DMat4],
-    /// By node, the instances of its mesh.
     /// The part of each node that is one.
     parts: &'a HashMap<usize, u32>,
+    /// By node, the instances of its mesh.
     instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
     materials: Materials<'a>,
@@ -302,31 +295,6 @@ fn afforded(
 fn mounts<T>(binder: Option<&RigBuilder>, shown: &[(usize, T)]) -> Vec<Joint> {
     let all: Vec<_> = binder.iter().flat_map(|own| shown.iter().map(|(node, _)| own.mount(*node))).collect();
     if all.iter().any(|mount| mount.node.is_some()) { all } else { Vec::new() }
-}
-
-/// Builds the mesh from what was collected, with the details of its corners and its rig.
-///
-/// # Errors
-/// [`GltfError::TooLarge`] and [`GltfError::Cancelled`].
-fn finished(
-    name: &str,
-    builder: MeshBuilder,
-    details: Option<DetailTable>,
-    binder: Option<RigBuilder>,
-    notes: &mut Notes,
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<Mesh, GltfError> {
-    let (mut mesh, mut bindings) = builder.finish_bound(name.to_owned(), budget, progress)?;
-    if let Some(details) = details {
-        bindings = tangents::with_details(&mut mesh, details, &bindings, notes, budget, progress)?;
-    }
-    match binder.map(|binder| binder.finish(&mut mesh, &bindings)) {
-        Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
-        Some(Err(warning)) => notes.push(warning),
-        None => {}
-    }
-    Ok(mesh)
 }
 
 /// Returns the weights of a node's morph targets at rest: the node's own, or else those of its mesh.

@@ -42,18 +42,10 @@ pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
 }
 
 /// Decodes a PNG, JPEG, WebP, TGA, BMP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too
-/// large.
+/// large, and halves it so many times.
 ///
 /// # Errors
 /// A clause that says what is wrong.
-pub(super) fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
-    decode_halved(bytes, 0, MipFilter::Colors, budget)
-}
-
-/// Decodes an image as [`decode_texture`] does, and halves it so many times.
-///
-/// # Errors
-/// The same.
 pub(super) fn decode_halved(
     bytes: &[u8],
     halvings: u32,
@@ -98,7 +90,7 @@ fn may_be_tga(bytes: &[u8]) -> bool {
 /// Decodes a PNG, JPEG, WebP, TGA or BMP image. All memory is borrowed.
 fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
-    webp::check(&mut Cursor::new(bytes), budget.allowed()).map_err(|error| error.to_string())?;
+    webp::check(bytes, budget.allowed())?;
     let mut reader = reader(bytes).map_err(|error| error.to_string())?;
     let whole = Borrowed::from(budget);
     if reader.format() == Some(ImageFormat::Png) {
@@ -188,7 +180,7 @@ fn decode_ktx2(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
 }
 
 /// Returns the width and height in the header of a PNG image in px, and whether it is interlaced; none for another file.
-fn png_header(bytes: &[u8]) -> Option<([u32; 2], bool)> {
+pub(super) fn png_header(bytes: &[u8]) -> Option<([u32; 2], bool)> {
     let header = bytes.strip_prefix(b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR")?.first_chunk::<13>()?;
     let side = |at: usize| u32::from_be_bytes(std::array::from_fn(|k| header[at + k]));
     Some(([side(0), side(4)], header[12] != 0))
@@ -209,4 +201,4 @@ fn too_large([width, height]: [u32; 2], refused: MemoryRefused) -> String {
 }
 
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

@@ -45,6 +45,7 @@ mod triangle_block;
 mod unread_formats;
 mod uri;
 mod warnings;
+mod watched_bytes;
 mod webp;
 
 pub use crate::files::{FileError, Limits};

@@ -2,10 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use super::images::decode_texture;
+use super::images::decode_halved;
 use super::memory_budget::Budget;
 use crate::files::{FileError, Limits, read_file};
 use geometry::mesh::Texture;
+use geometry::mesh::mipmap::MipFilter;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 
@@ -28,7 +29,8 @@ pub enum MatcapError {
 pub fn load_matcap(path: &Path, limits: &Limits) -> Result<Texture, MatcapError> {
     let bytes = read_file::<FileError>(path, limits, |_| Ok(()), &Progress::new())?;
     let budget = Budget::new(bytes.len(), limits.memory);
-    decode_texture(&bytes, &budget).map_err(|reason| MatcapError::Image { path: path.to_owned(), reason })
+    let decoded = decode_halved(&bytes, 0, MipFilter::Colors, &budget);
+    decoded.map_err(|reason| MatcapError::Image { path: path.to_owned(), reason })
 }
 
 #[cfg(test)]

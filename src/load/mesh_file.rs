@@ -65,33 +65,13 @@ pub enum LoadError {
     /// The file has no triangles.
     #[error("{} has no triangles to show: {holds}", shown_path(path))]
     Empty { path: PathBuf, holds: String },
-    /// The file doesn't have the material variant.
-    #[error(
-        "{} has no material variant {}; {}",
-        shown_path(path),
-        shown(variant),
-        choice(known, "it has no variants, so omit --variant")
-    )]
-    NoVariant { path: PathBuf, variant: String, known: Vec<String> },
-    /// The file doesn't have a part that should be left out, or be read alone.
-    #[error(
-        "{} has no part {}; {}",
-        shown_path(path),
-        shown(part),
-        choice(known, "it has no named parts, so omit --hide-part and --show-part")
-    )]
-    NoPart { path: PathBuf, part: String, known: Vec<String> },
     /// The shape is made in code, where Y is up.
     #[error("{shape} is made in code with Y up, in metres: omit --up and --unit")]
     Shape { shape: String },
-    /// The file doesn't have the scene.
-    #[error(
-        "{} has no scene {}; {}",
-        shown_path(path),
-        shown(scene),
-        choice(known, "it has no scenes, so omit --scene")
-    )]
-    NoScene { path: PathBuf, scene: String, known: Vec<String> },
+    /// The file doesn't have the "material variant", the "scene" or the "part" of this name, but others. `none` is said if there are no
+    /// others.
+    #[error("{} has no {what} {}; {}", shown_path(path), shown(name), choice(known, none))]
+    Absent { path: PathBuf, what: &'static str, name: String, known: Vec<String>, none: &'static str },
 }
 
 impl From<FileError> for LoadError {
@@ -129,7 +109,7 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
 /// Loads a mesh as [`load`] does, with the materials of a variant, or another scene than the default one.
 ///
 /// # Errors
-/// The same, [`LoadError::NoVariant`] and [`LoadError::NoScene`].
+/// The same, and [`LoadError::Absent`].
 pub fn load_selected(
     path: &Path,
     selected: Selection,
@@ -160,22 +140,24 @@ pub fn load_selected(
 /// Checks that a mesh has the variant, the scene and the parts that were named.
 ///
 /// # Errors
-/// [`LoadError::NoVariant`], [`LoadError::NoScene`] and [`LoadError::NoPart`].
+/// [`LoadError::Absent`].
 pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMesh) -> Result<(), LoadError> {
+    let absent = |what, name: &str, known, none| {
+        Err(LoadError::Absent { path: path.to_owned(), what, name: name.to_owned(), known, none })
+    };
     if let Some(scene) = selected.scene.filter(|scene| scenes::number(&loaded.scenes, scene).is_none()) {
-        let known = loaded.scenes.clone();
-        return Err(LoadError::NoScene { path: path.to_owned(), scene: scene.to_owned(), known });
+        return absent("scene", scene, loaded.scenes.clone(), "it has no scenes, so omit --scene");
     }
     let is_unknown = |name: &&String| loaded.parts.iter().all(|part| part.name != **name);
     if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown) {
         let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
-        return Err(LoadError::NoPart { path: path.to_owned(), part: part.clone(), known });
+        return absent("part", part, known, "it has no named parts, so omit --hide-part and --show-part");
     }
     match selected.variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
         None => Ok(()),
         Some(variant) => {
-            let known = loaded.variants.clone();
-            Err(LoadError::NoVariant { path: path.to_owned(), variant: variant.to_owned(), known })
+            let none = "it has no variants, so omit --variant";
+            absent("material variant", variant, loaded.variants.clone(), none)
         }
     }
 }
@@ -273,9 +255,7 @@ pub fn read(
     let file = &ModelFile { folder, name, selected, limits: *limits, progress };
     let broken = |fault| of_fault(fault, path);
     let mut loaded = match format {
-        Format::Gltf => {
-            gltf::read(bytes, folder, name, selected, limits, progress).map_err(|problem| of_problem(problem, path))
-        }
+        Format::Gltf => gltf::read(bytes, file).map_err(|problem| of_problem(problem, path)),
         Format::Fbx => fbx::read(bytes, file).map_err(broken),
         Format::Obj => obj::read(bytes, file).map_err(broken),
         Format::Stl => stl::read(bytes, file).map_err(broken),

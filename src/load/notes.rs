@@ -1,5 +1,7 @@
 //! Sentences about what was repaired or left out.
 
+use std::fmt::Display;
+
 /// The greatest number of warnings about a document.
 pub(super) const MAX_WARNINGS: usize = 100;
 
@@ -69,6 +71,36 @@ impl Notes {
         }
         warnings
     }
+}
+
+/// Declares a type of counts of what was repaired or left out, each with its sentence.
+macro_rules! counts {
+    ($(#[$about:meta])* $seen:vis struct $name:ident { $($field:ident => $sentence:literal;)* }) => {
+        $(#[$about])*
+        #[derive(Clone, Copy, Debug, Default)]
+        $seen struct $name { $(pub $field: usize,)* }
+
+        impl $name {
+            /// Returns a sentence for each count that isn't 0.
+            $seen fn sentences(&self) -> impl Iterator<Item = String> + use<> {
+                $crate::notes::counted([$((self.$field, $sentence)),*])
+            }
+        }
+
+        impl std::ops::AddAssign for $name {
+            fn add_assign(&mut self, other: Self) {
+                $(self.$field += other.$field;)*
+            }
+        }
+    };
+}
+
+pub(super) use counts;
+
+/// Returns a sentence for each count that isn't 0.
+pub(super) fn counted<S: Display>(sentences: impl IntoIterator<Item = (usize, S)>) -> impl Iterator<Item = String> {
+    let found = sentences.into_iter().filter(|(count, _)| *count > 0);
+    found.map(|(count, sentence)| format!("{sentence}: {count}."))
 }
 
 /// Whether two sentences differ in nothing but quoted names, paths of files, and places in a document with the name there:

@@ -21,10 +21,10 @@ use std::borrow::Cow;
 
 use glam::Vec4;
 
-use super::face_builder::{FaceBuilder, NumberedCorner, counted, linear_color, read_faces};
-use super::import::Import;
+use super::face_builder::{FaceBuilder, NumberedCorner, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
+use super::notes::counted;
 use super::parts::DEFAULT_PART;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
@@ -83,7 +83,7 @@ fn gather<'a>(
         found: Counts::default(),
     };
     if !vertices.colors.is_empty() {
-        reader.faces.color();
+        reader.faces.color()?;
     }
     if reader.materials.may_have_normal_maps() {
         reader.faces.expect_normal_maps();
@@ -94,8 +94,11 @@ fn gather<'a>(
     let Reader { mut faces, mut materials, found, .. } = reader;
     materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
     faces.notes.extend(materials.warnings());
-    let warnings = found.warnings(&faces.import, &vertices);
-    faces.notes.extend(warnings);
+    let lacking = faces.import.lacking_normals(found.without_normals, "faces without normals, or with some missing");
+    faces.notes.extend(counted([lacking]));
+    let smoothed = "faces without normals, or with some missing, which got those of their smoothing groups";
+    faces.notes.extend(counted([(found.smoothed, smoothed)]));
+    faces.notes.extend(vertices.flaws.sentences().chain(found.statements.sentences()));
     let holds = found.holds(&vertices);
     budget.release(vertices.bytes());
     Ok((faces, holds))
@@ -185,26 +188,6 @@ struct Counts {
 }
 
 impl Counts {
-    fn warnings(&self, import: &Import, vertices: &Vertices) -> impl Iterator<Item = String> + use<> {
-        let lacking = import.lacking_normals(self.without_normals, "faces without normals, or with some missing");
-        let StatementCounts { points, lines, surfaces, calls, unknown, .. } = self.statements;
-        let StatementCounts { long_corners, absent_uvs, absent_normals, .. } = self.statements;
-        let others = counted([
-            (self.smoothed, "faces without normals, or with some missing, which got those of their smoothing groups"),
-            (vertices.with_commas, "statements with a comma in a number, which was taken for its point"),
-            (vertices.flat, "positions of two numbers, which are placed at z = 0"),
-            (long_corners, "corners with more than three numbers, of which the first three are read"),
-            (absent_normals, "corners with the number of a normal that isn't in the file, left out"),
-            (absent_uvs, "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)"),
-            (points, "points (p), left out"),
-            (lines, "lines (l), left out"),
-            (surfaces, "free-form curves and surfaces (curv, curv2, surf), which aren't read"),
-            (calls, "calls of other files and of programs (call, csh), left out"),
-            (unknown, "statements that OBJ doesn't have, left out"),
-        ]);
-        counted([lacking]).chain(others)
-    }
-
     fn holds(&self, vertices: &Vertices) -> String {
         let StatementCounts { points, lines, surfaces, unknown, .. } = self.statements;
         if vertices.positions.is_empty() && self.faces + points + lines + surfaces == 0 {
@@ -248,7 +231,7 @@ impl Reader<'_, '_> {
     /// Takes what was found in the next piece of the file.
     fn take_piece(&mut self, made: FacePiece) -> Result<(), ReadError> {
         let FacePiece { found, corners, counts, error } = made;
-        self.found.statements.add(counts);
+        self.found.statements += counts;
         let (mut start, mut found) = (0, found.as_slice());
         while let [first, others @ ..] = found {
             let run = triangles(found, start);
@@ -309,7 +292,7 @@ impl Reader<'_, '_> {
 
     /// Enters the part of faces that belong to none, if there was none before.
     fn begin_parts(&mut self) -> Result<(), ReadError> {
-        if self.faces.has_parts() { Ok(()) } else { self.faces.enter_part(DEFAULT_PART) }
+        if self.faces.parts.have_begun() { Ok(()) } else { self.faces.enter_part(DEFAULT_PART) }
     }
 
     /// Adds a face with these corners.

@@ -6,11 +6,11 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
-use super::import::Import;
+use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
+use super::notes::{counted, counts};
 use super::read_error::{FilePosition, ReadError};
 use super::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
 use super::uri::Files;
@@ -28,9 +28,6 @@ const MAX_NUMBERS: usize = 4 + 3 + 4 + 2;
 const LEAST_FACE: usize = 4;
 
 /// Builds a mesh from a file's bytes.
-///
-/// # Errors
-/// [`ReadError`].
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     read_faces(bytes, file, gather)
 }
@@ -67,8 +64,9 @@ fn gather<'a>(
     let cut_short = reader.read(&header, &mut rows)?;
     let Reader { mut faces, found, .. } = reader;
     faces.notes.extend(cut_short);
-    let warnings = found.warnings(&vertices, &faces.import);
-    faces.notes.extend(warnings);
+    let without_normals = if vertices.normals.is_empty() { vertices.positions.len() } else { 0 };
+    faces.notes.extend(counted([faces.import.lacking_normals(without_normals, "vertices without normals")]));
+    faces.notes.extend(found.sentences());
     files.budget.release(vertices.bytes());
     Ok((faces, format!("it holds {} vertices and {} faces", header.vertices, header.faces)))
 }
@@ -91,7 +89,7 @@ impl<'a> Rows<'a> {
             if line.number % 4096 == 0
                 && let Some(progress) = self.progress
             {
-                progress.set(0.5 * (1.0 - self.lines.rest().len() as f32 / self.bytes as f32));
+                progress.set(0.5 * (1.0 - self.lines.rest.len() as f32 / self.bytes as f32));
                 progress.check()?;
             }
             let comment = memchr::memchr(b'#', line.text).unwrap_or(line.text.len());
@@ -283,24 +281,11 @@ fn encoded(color: [f32; 4], scale: f32) -> Vec4 {
     linear_color([r, g, b, if color[3].is_nan() { 255 } else { a }])
 }
 
-/// Numbers of what was left out.
-#[derive(Default)]
-struct Counts {
-    /// Faces whose colour is a number of a colour map.
-    mapped: usize,
-    /// Faces whose colour can't be read.
-    bad_colors: usize,
-    after_faces: usize,
-}
-
-impl Counts {
-    fn warnings(&self, vertices: &Vertices, import: &Import) -> impl Iterator<Item = String> + use<> {
-        let without_normals = if vertices.normals.is_empty() { vertices.positions.len() } else { 0 };
-        counted([import.lacking_normals(without_normals, "vertices without normals")]).chain(counted([
-            (self.mapped, "faces with a number of a colour map, which isn't read"),
-            (self.bad_colors, "faces with a colour that isn't 3 or 4 numbers, left out"),
-            (self.after_faces, "lines after the last face, left out"),
-        ]))
+counts! {
+    struct Counts {
+        mapped => "faces with a number of a colour map, which isn't read";
+        bad_colors => "faces with a colour that isn't 3 or 4 numbers, left out";
+        after_faces => "lines after the last face, left out";
     }
 }
 
@@ -333,7 +318,7 @@ impl Reader<'_, '_> {
             };
             let Some(row) = rows.next()? else { return Ok(cut_short()) };
             match self.face(&row) {
-                Err(ReadError::Broken { .. }) if rows.lines.is_open() => return Ok(cut_short()),
+                Err(ReadError::Broken { .. }) if rows.lines.is_open => return Ok(cut_short()),
                 read => read?,
             }
         }
@@ -346,9 +331,7 @@ impl Reader<'_, '_> {
     /// From now on corners have colours. Those before are white.
     fn color(&mut self) -> Result<(), ReadError> {
         self.is_colored = true;
-        self.faces.color();
-        // Corners that were added before have the number 0.
-        self.faces.number(Vec4::ONE).map(|_| ())
+        self.faces.color()
     }
 
     fn face(&mut self, row: &Line) -> Result<(), ReadError> {

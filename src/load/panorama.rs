@@ -5,6 +5,8 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec3;
 
+use super::notes::counts;
+
 /// The largest number of a half float, in which light is stored on the device.
 const MOST_LIGHT: f32 = 65504.0;
 
@@ -17,15 +19,14 @@ pub struct Panorama {
     pixels: Vec<Vec3>,
 }
 
-/// How many numbers of a panorama were replaced, because no light can be so.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Repaired {
-    /// Replaced by 0.
-    pub not_numbers: usize,
-    /// Replaced by 0.
-    pub negative: usize,
-    /// Replaced by the largest number of a half float.
-    pub infinite: usize,
+counts! {
+    /// How many numbers of a panorama were replaced, because no light can be so.
+    #[derive(PartialEq, Eq)]
+    pub struct Repaired {
+        not_numbers => "numbers of its pixels that are no numbers (NaN) were replaced by 0";
+        negative => "numbers of its pixels that are negative were replaced by 0";
+        infinite => "numbers of its pixels that are infinite were replaced by 65504";
+    }
 }
 
 impl Panorama {

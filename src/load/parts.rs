@@ -52,9 +52,6 @@ impl Parts {
     }
 
     /// Says which part the next faces belong to, by its name.
-    ///
-    /// # Errors
-    /// [`MemoryRefused`].
     pub(super) fn enter(&mut self, name: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
         budget.hold(PER_RANGE)?;
         if let Some(&number) = self.numbers.get(name) {

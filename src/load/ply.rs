@@ -12,9 +12,10 @@ mod values;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted, linear_color, read_faces};
+use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
+use super::notes::counted;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
@@ -302,15 +303,13 @@ impl<'a> Reader<'a, '_> {
         let has_uvs = wedges.is_some() || !vertices.uvs.is_empty();
         let first = if has_uvs { self.textures.material(&mut self.faces, 0)? } else { None };
         self.material = first.unwrap_or(self.plain);
-        let image = named(b"texnumber").filter(|_| first.is_some() && self.textures.len() > 1);
+        let image = named(b"texnumber").filter(|_| first.is_some() && self.textures.names.len() > 1);
         // Where there is an image, colours count for nothing: scans have both.
         let is_uncolored = first.is_some() && image.is_none();
         let is_colored = is_colored && !is_uncolored && element.name == b"face";
         let color = is_colored.then(|| (places, color_scale(element, &slots)));
         if color.is_some() || !is_uncolored && !vertices.colors.is_empty() {
-            self.faces.color();
-            // Corners that were added before have the number 0.
-            self.faces.number(Vec4::ONE)?;
+            self.faces.color()?;
         }
         Ok(FaceProperties { vertices: list, wedges, image, color })
     }
@@ -500,7 +499,7 @@ impl<'a> Reader<'a, '_> {
             (without_normals, made.as_str()),
             (values.long_lines, "lines with more numbers than their element has, left out"),
             (values.left_over(), "bytes after the last element, left out"),
-            (header.images.len() - self.textures.len(), "images beyond the first 256, left out"),
+            (header.images.len() - self.textures.names.len(), "images beyond the first 256, left out"),
         ]));
         faces.notes.extend(problems);
         self.files.budget.release(read.bytes());

@@ -1,16 +1,22 @@
 //! Builds the rig of an animated mesh: nodes and skins become joints, and vertices are bound to them.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use glam::{DMat4, Vec3};
 
 use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, posed, unturned, untwisted};
+use super::notes::Notes;
+use super::tangents;
 use geometry::casts::{to_f32, to_u32};
+use geometry::mesh::build_limits::BuildError;
+use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::normals::GivenNormal;
 use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
-use geometry::mesh::{CornerDetail, CornerDetails, Mesh};
+use geometry::mesh::{Budget, CornerDetail, CornerDetails, Mesh};
+use geometry::progress::Progress;
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
 pub(super) const MAX_BOUND: usize = 1 << 24;
@@ -18,6 +24,7 @@ pub(super) const MAX_BOUND: usize = 1 << 24;
 const MAX_DISPLACED: usize = 1 << 28;
 
 /// Collects bindings, node by node, and builds a [`Rig`] of them.
+#[derive(Default)]
 pub(super) struct RigBuilder {
     /// What is there of it so far, without bindings.
     rig: Rig,
@@ -95,20 +102,7 @@ impl RigBuilder {
         for (i, node) in nodes.iter().enumerate() {
             is_grown[i] |= node.parent.is_some_and(|parent| is_grown[parent as usize]);
         }
-        let mut binder = Self {
-            rig: Rig { nodes, ..Rig::default() },
-            attachments,
-            grown,
-            is_grown,
-            node_morphs: HashMap::new(),
-            joint_ids: HashMap::new(),
-            bound: Vec::new(),
-            bound_ids: HashMap::new(),
-            lists: HashMap::new(),
-            tangent_deltas: Vec::new(),
-            displaced: 0,
-            problem: None,
-        };
+        let mut binder = Self { rig: Rig { nodes, ..Rig::default() }, attachments, grown, is_grown, ..Self::default() };
         binder.add_morphs(&clips, scene);
         for clip in clips {
             let (name, clip) = (clip.name.clone(), binder.retargeted(clip, &moved));
@@ -162,9 +156,8 @@ impl RigBuilder {
 
     /// Returns what moves something that is on a node, in the node's own space.
     pub(super) fn mount(&self, node: usize) -> Joint {
-        let attachment = self.attachments.get(node);
-        let offset = attachment.map_or(DMat4::IDENTITY, |own| own.below);
-        Joint { node: attachment.and_then(|own| own.node), offset, ..Joint::default() }
+        let Attachment { node, below } = self.attachments.get(node).copied().unwrap_or_default();
+        Joint { node, offset: below, ..Joint::default() }
     }
 
     /// Gives up building a rig. The first reason is reported.
@@ -174,7 +167,7 @@ impl RigBuilder {
 
     /// Builds the rig of a mesh whose corners have these bindings, and puts corners below nodes that are scaled to nothing at rest where
     /// they are then. If no rig can be built, returns a warning.
-    pub(super) fn finish(mut self, mesh: &mut Mesh, corners: &[u32]) -> Result<Rig, String> {
+    fn finish(mut self, mesh: &mut Mesh, corners: &[u32]) -> Result<Rig, String> {
         let mut rig = std::mem::take(&mut self.rig);
         if self.problem.is_none() {
             self.bind_corners(&mut rig, mesh, corners);
@@ -188,6 +181,30 @@ impl RigBuilder {
             }
         }
         self.problem.map_or(Ok(rig), |problem| Err(format!("animations are left out: {problem}.")))
+    }
+
+    /// Finishes a mesh whose corners have these numbers, with their details and its rig.
+    ///
+    /// # Errors
+    /// Those of [`tangents::with_details`].
+    pub(super) fn complete(
+        mesh: &mut Mesh,
+        mut numbers: Vec<u32>,
+        details: Option<DetailTable>,
+        binder: Option<Self>,
+        notes: &mut Notes,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<(), BuildError> {
+        if let Some(details) = details {
+            numbers = tangents::with_details(mesh, details, &numbers, notes, budget, progress)?;
+        }
+        match binder.map(|binder| binder.finish(mesh, &numbers)) {
+            Some(Ok(rig)) => mesh.rig = Some(Arc::new(rig)),
+            Some(Err(warning)) => notes.push(warning),
+            None => {}
+        }
+        Ok(())
     }
 
     fn bind_corners(&self, rig: &mut Rig, mesh: &Mesh, corners: &[u32]) {
@@ -410,10 +427,9 @@ impl NodeBinder<'_> {
         }
         let of_skin = self.skin.and_then(|skin| Some((*skin.nodes.get(joint)?, *skin.inverse_binds.get(joint)?)));
         let (node, inverse_bind) = of_skin.unwrap_or((usize::MAX, DMat4::IDENTITY));
-        let attachment =
-            self.binder.attachments.get(node).copied().unwrap_or(Attachment { node: None, below: DMat4::IDENTITY });
+        let Attachment { node, below } = self.binder.attachments.get(node).copied().unwrap_or_default();
         let place = self.skin.map_or(DMat4::IDENTITY, |skin| skin.place);
-        let id = self.binder.joint(Joint { node: attachment.node, offset: attachment.below * inverse_bind, place });
+        let id = self.binder.joint(Joint { node, offset: below * inverse_bind, place });
         if let Some(known) = self.skin_joints.get_mut(joint) {
             *known = Some(id);
         }

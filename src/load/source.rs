@@ -46,8 +46,7 @@ impl Source {
     /// Builds the shape, or loads the file within `limits` with the materials of a variant, or another scene than the default one.
     ///
     /// # Errors
-    /// The same as [`load_selected`]'s; a shape has only [`LoadError::NoVariant`], [`LoadError::NoScene`], [`LoadError::Shape`] and
-    /// [`LoadError::Cancelled`].
+    /// The same as [`load_selected`]'s; a shape has only [`LoadError::Absent`], [`LoadError::Shape`] and [`LoadError::Cancelled`].
     pub fn load_selected(
         &self,
         selected: Selection,
@@ -113,9 +112,6 @@ impl Source {
 }
 
 /// Returns a shape with normals that are made from its triangles.
-///
-/// # Errors
-/// [`Cancelled`].
 fn with_made_normals(mesh: Mesh, import: &Import, progress: &Progress) -> Result<Mesh, Cancelled> {
     let mut builder = MeshBuilder::with_crease_angle(import.crease_angle);
     for material in &mesh.materials {

@@ -12,9 +12,10 @@ mod colors;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, NumberedCorner, counted, read_faces};
+use super::face_builder::{FaceBuilder, NumberedCorner, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
+use super::notes::{counted, counts};
 use super::read_error::{FilePosition, ReadError};
 use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
 use geometry::casts::to_usize;
@@ -31,9 +32,6 @@ const HEADER: usize = 84;
 const TRIANGLE: usize = 50;
 
 /// Builds a mesh from a file's bytes.
-///
-/// # Errors
-/// [`ReadError`].
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     read_faces(bytes, file, |bytes, files, mut faces| {
         let material = faces.material(Material::plain("default", [1.0; 4]))?;
@@ -43,9 +41,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadE
             corners: Vec::new(),
             progress: files.progress,
             bytes: bytes.len(),
-            other_lines: 0,
-            open_facets: 0,
-            with_commas: 0,
+            found: Counts::default(),
             cut_short: None,
         };
         let holds = if is_text(bytes) { reader.text(bytes)? } else { reader.binary(bytes)? };
@@ -95,14 +91,19 @@ struct Reader<'a> {
     progress: &'a Progress,
     /// The file's size, in bytes.
     bytes: usize,
-    /// Lines of a text file that aren't part of the format.
-    other_lines: usize,
-    /// Facets of a text file without an end.
-    open_facets: usize,
-    /// Lines of a text file whose numbers have a comma instead of a point.
-    with_commas: usize,
+    found: Counts,
     /// A warning about a text file that ends too early.
     cut_short: Option<String>,
+}
+
+counts! {
+    /// What was found in a text file.
+    struct Counts {
+        open_facets => "facets without an end";
+        with_commas => "lines with a comma in a number, which was taken for its point";
+        open_solids => "solids without an end: the file may have been cut short";
+        other_lines => "lines that aren't part of the format, left out";
+    }
 }
 
 impl Reader<'_> {
@@ -125,11 +126,11 @@ impl Reader<'_> {
         let attributes = triangles.iter().take(there).map(|&[.., low, high]| u16::from_le_bytes([low, high]));
         let colors = Colors::new(&bytes[..HEADER - 4], attributes.clone());
         if let Some(colors) = &colors {
-            self.faces.material_mut(self.material).base_color = colors.of_all();
+            self.faces.builder.material_mut(self.material).base_color = colors.of_all();
         }
         let of_triangles = colors.filter(|colors| colors.are_many);
         if of_triangles.is_some() {
-            self.faces.color();
+            self.faces.color()?;
         }
         for (i, (triangle, bits)) in triangles.iter().zip(attributes).enumerate() {
             if i % 4096 == 0 {
@@ -164,7 +165,7 @@ impl Reader<'_> {
         let mut next = lines.next()?;
         while let Some(line) = next {
             if line.number % 4096 == 0 {
-                self.at(bytes.len() - lines.rest().len())?;
+                self.at(bytes.len() - lines.rest.len())?;
             }
             next = None;
             let rest = first_word(line.text).1;
@@ -180,19 +181,15 @@ impl Reader<'_> {
                 b"endsolid" => open = false,
                 b"facet" => next = self.facet(&line, &mut lines)?,
                 b"outer" | b"vertex" => return Err(unexpected(&line, "facet, endsolid or solid")),
-                _ => self.other_lines += 1,
+                _ => self.found.other_lines += 1,
             }
             if next.is_none() {
                 next = lines.next()?;
             }
         }
         self.faces.notes.extend(self.cut_short.take());
-        self.faces.notes.extend(counted([
-            (self.open_facets, "facets without an end"),
-            (self.with_commas, "lines with a comma in a number, which was taken for its point"),
-            (usize::from(open), "solids without an end: the file may have been cut short"),
-            (self.other_lines, "lines that aren't part of the format, left out"),
-        ]));
+        self.found.open_solids = usize::from(open);
+        self.faces.notes.extend(self.found.sentences());
         Ok(format!("it holds {solids} solids without facets"))
     }
 
@@ -204,7 +201,7 @@ impl Reader<'_> {
                 b"" | b"outer" | b"endloop" => {}
                 b"vertex" => {
                     let rest = first_word(line.text).1;
-                    self.with_commas += usize::from(has_comma(rest));
+                    self.found.with_commas += usize::from(has_comma(rest));
                     if let Some(slot) = positions.get_mut(count) {
                         *slot = numbers_or_nan(rest).into();
                     }
@@ -213,12 +210,12 @@ impl Reader<'_> {
                 b"endfacet" if count == 3 => return self.add(positions, Vec4::ONE, line.place()).map(|()| None),
                 b"endfacet" => return Err(line.place().error(format!("the facet has {count} vertices instead of 3"))),
                 b"facet" | b"solid" | b"endsolid" if count == 3 => {
-                    self.open_facets += 1;
+                    self.found.open_facets += 1;
                     return self.add(positions, Vec4::ONE, line.place()).map(|()| Some(line));
                 }
                 b"facet" | b"solid" | b"endsolid" => return Err(unexpected(&line, "vertex, endloop or endfacet")),
                 // Some programs write colours and notes in lines of their own.
-                _ => self.other_lines += 1,
+                _ => self.found.other_lines += 1,
             }
         }
         let number = first.number;

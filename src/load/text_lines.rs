@@ -10,13 +10,14 @@ const MAX_LINE: usize = 1 << 22;
 /// The lines of a text, one after another.
 #[derive(Clone)]
 pub(super) struct Lines<'a> {
-    rest: &'a [u8],
+    /// The text that hasn't been read.
+    pub rest: &'a [u8],
     /// The byte that ends a line.
-    end: u8,
-    /// The number of lines that have been read.
-    count: usize,
-    /// Whether the line that was read last has no end.
-    is_open: bool,
+    pub end: u8,
+    /// How many lines have been read, or come before the text.
+    pub count: usize,
+    /// Whether the line that was read last has no end, because the text ends within it or just after it.
+    pub is_open: bool,
 }
 
 /// A line without its end.
@@ -37,16 +38,6 @@ impl<'a> Lines<'a> {
     /// Splits a text into lines that end with this byte. A byte order mark isn't part of the first line.
     pub(super) fn ending(bytes: &'a [u8], end: u8) -> Self {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), end, count: 0, is_open: false }
-    }
-
-    /// Splits a part of a text, above which there are so many lines.
-    pub(super) fn from_part(rest: &'a [u8], end: u8, above: usize) -> Self {
-        Self { rest, end, count: above, is_open: false }
-    }
-
-    /// Returns the byte that ends a line.
-    pub(super) fn end(&self) -> u8 {
-        self.end
     }
 
     /// Returns the next line, if there is one.
@@ -77,21 +68,6 @@ impl<'a> Lines<'a> {
         }
         let reason = format!("the line has {length} bytes, but at most {MAX_LINE} are read");
         Err(FilePosition::Line(self.count).error(reason))
-    }
-
-    /// Returns the text that hasn't been read.
-    pub(super) fn rest(&self) -> &'a [u8] {
-        self.rest
-    }
-
-    /// Returns whether the line that was read last has no end, because the text ends within it or just after it.
-    pub(super) fn is_open(&self) -> bool {
-        self.is_open
-    }
-
-    /// Returns how many lines have been read.
-    pub(super) fn count(&self) -> usize {
-        self.count
     }
 }
 

@@ -54,9 +54,6 @@ pub(super) struct ReadImage {
 
 /// Reads images, and scales the largest down until all fit. `bytes` returns an image's file and how its texels are averaged; `reserved`
 /// is the memory that the rest of the load takes, in bytes.
-///
-/// # Errors
-/// [`Cancelled`].
 pub(super) fn read_images<'b, I: Copy>(
     images: &[I],
     bytes: impl Fn(I) -> Result<(Cow<'b, [u8]>, MipFilter), String>,

@@ -26,9 +26,6 @@ use document::Document;
 use images::Images;
 
 /// Builds a mesh from a file's bytes.
-///
-/// # Errors
-/// [`ReadError`].
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     let (budget, progress) = (Budget::new(bytes.len(), file.limits.memory), file.progress);
     let mut faces = FaceBuilder::new(file, &budget);

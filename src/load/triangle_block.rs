@@ -15,7 +15,7 @@ const NEW: u8 = 1 << CornerRepairs::BITS;
 pub(super) struct TriangleBlock {
     triangles: Vec<[StoredCorner; 3]>,
     /// Corners that are to be stored, with the numbers that keep them apart, and the vertex of each.
-    corners: Vec<(InputCorner, u32)>,
+    pub corners: Vec<(InputCorner, u32)>,
     vertices: Vec<VertexNumbers>,
     /// What the new corners are stored as.
     stored: Vec<StoredCorner>,
@@ -57,12 +57,7 @@ impl TriangleBlock {
         Ok(true)
     }
 
-    /// The corners that aren't stored yet, with the numbers that keep them apart.
-    pub(super) fn corners(&self) -> &[(InputCorner, u32)] {
-        &self.corners
-    }
-
-    /// Stores the [corners](Self::corners): `store` appends to a list what each is stored as.
+    /// Stores the corners: `store` appends to a list what each is stored as.
     pub(super) fn store(
         &mut self,
         recent: &mut RecentCorners,

@@ -160,33 +160,25 @@ fn relative_path(uri: &str) -> Result<PathBuf, String> {
     let Ok(decoded) = String::from_utf8(percent_decoded(uri)) else {
         return Err("its name is not UTF-8 once its % signs are decoded; rename the file".to_owned());
     };
-    let mut parts = decoded.split('/');
     // A colon before any slash ends a scheme, a Windows drive, or the name of a file with a hidden stream.
-    match parts.next() {
-        Some(first) if first.contains(':') => {
-            return refused(&format!("it names another place, with {}:", shown(first.split(':').next().unwrap_or(""))));
-        }
-        Some("") if !decoded.is_empty() => return refused("it is an absolute path"),
-        _ => {}
+    if let Some((place, _)) = decoded.split('/').next().and_then(|first| first.split_once(':')) {
+        return refused(&format!("it names another place, with {}:", shown(place)));
     }
     if decoded.is_empty() {
         return Err("its name is empty; export the model again".to_owned());
     }
-    if decoded.contains('\\') {
-        return refused("it has a backslash instead of a /");
-    }
-    if decoded.contains(char::is_control) {
-        return refused("it has a control character");
-    }
-    if decoded.contains(':') {
-        return refused("it has a colon");
-    }
-    if parts.any(|part| part == "..") || decoded.starts_with("../") || decoded == ".." {
-        return refused("it leads out of a folder, with ..");
-    }
-    let path = PathBuf::from(decoded);
-    let inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
-    if path.components().all(inside) { Ok(path) } else { refused("it leads elsewhere") }
+    let path = PathBuf::from(&decoded);
+    let is_inside = |part: Component| matches!(part, Component::Normal(_) | Component::CurDir);
+    let faults = [
+        (decoded.starts_with('/'), "it is an absolute path"),
+        (decoded.contains('\\'), "it has a backslash instead of a /"),
+        (decoded.contains(char::is_control), "it has a control character"),
+        (decoded.contains(':'), "it has a colon"),
+        (decoded.split('/').any(|part| part == ".."), "it leads out of a folder, with .."),
+        (!path.components().all(is_inside), "it leads elsewhere"),
+    ];
+    let fault = faults.into_iter().find(|(is_wrong, _)| *is_wrong);
+    fault.map_or(Ok(path), |(_, reason)| refused(reason))
 }
 
 /// Decodes %XX. A % that isn't followed by two hexadecimal digits stays.

@@ -1,6 +1,7 @@
 //! Warnings about a mesh that was loaded or changed, as sentences.
 
 use super::import::Import;
+use super::notes::counted;
 use geometry::mesh::crease_band::CreaseBand;
 use geometry::mesh::{Heights, Mesh, Repairs};
 
@@ -13,8 +14,7 @@ pub(super) fn repair_warnings(repairs: &Repairs, import: &Import) -> Vec<String>
         (repairs.normals_rescaled, "normals whose length wasn't 1, scaled to it"),
         (repairs.denormals, "positions with coordinates too small for some devices (below 1.2e-38), set to 0"),
     ];
-    let found = sentences.into_iter().filter(|(count, _)| *count > 0);
-    found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect()
+    counted(sentences.map(|(count, sentence)| (count as usize, sentence))).collect()
 }
 
 /// Returns warnings about a crease band: that the mesh has no crease, or that the band is narrower than requested in places.

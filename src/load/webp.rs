@@ -7,7 +7,7 @@
 //! Source: RFC 9649, section 2.
 
 use geometry::casts::{to_u32, to_usize};
-use std::io::{self, Cursor, Error, ErrorKind, Read, Seek, SeekFrom};
+use std::io::Cursor;
 
 use image::ImageDecoder;
 use image::codecs::webp::WebPDecoder;
@@ -17,99 +17,81 @@ use image::codecs::webp::WebPDecoder;
 const PER_CODE_BYTE: u64 = 512;
 /// The greatest width and height of a lossless image in px.
 const LARGEST: u32 = 1 << 14;
+const ANIMATED: &str = "it is a WebP animation; save one of its images";
 /// What pixels are before they are decoded.
 const UNTOUCHED: u8 = 0x5b;
 
 /// Checks a file, whose prefix codes may take so much memory, in bytes. A file of another format passes, and so does one that is cut off: the
-/// decoder says what is missing. Afterwards the file is at its start.
+/// decoder says what is missing.
 ///
 /// # Errors
-/// The errors of reading; and [`ErrorKind::InvalidData`], with a clause, for an animation, for a file that says two sizes, and for prefix
-/// codes that may take more memory.
-pub(super) fn check(file: &mut (impl Read + Seek), memory: u64) -> io::Result<()> {
-    file.seek(SeekFrom::Start(0))?;
-    check_chunks(file, memory).or_else(|error| match error.kind() {
-        ErrorKind::UnexpectedEof => Ok(()),
-        _ => Err(error),
-    })?;
-    file.seek(SeekFrom::Start(0)).map(|_| ())
-}
-
-fn check_chunks(file: &mut (impl Read + Seek), memory: u64) -> io::Result<()> {
-    let start: [u8; 12] = taken(file)?;
-    if !start.starts_with(b"RIFF") || !start.ends_with(b"WEBP") {
-        return Ok(());
-    }
-    let mut canvas = None;
-    let mut at = 12;
-    loop {
-        file.seek(SeekFrom::Start(at))?;
-        let [a, b, c, d, length @ ..]: [u8; 8] = taken(file)?;
-        let length = u64::from(u32::from_le_bytes(length));
-        match &[a, b, c, d] {
-            b"VP8X" => {
-                let [flags, _, _, _, w0, w1, w2, h0, h1, h2] = taken(file)?;
-                if flags & 2 != 0 {
-                    return Err(animated());
-                }
-                canvas = Some([[w0, w1, w2, 0], [h0, h1, h2, 0]].map(|side| u32::from_le_bytes(side) + 1));
-            }
-            b"ANMF" => return Err(animated()),
-            b"VP8 " => {
-                let [_, _, _, _, _, _, w0, w1, h0, h1] = taken(file)?;
-                agree(canvas, [[w0, w1], [h0, h1]].map(|side| u32::from(u16::from_le_bytes(side)) & 0x3fff))?;
-            }
-            b"VP8L" => {
-                let [_, sizes @ ..]: [u8; 5] = taken(file)?;
-                let sizes = u32::from_le_bytes(sizes);
-                let size = [sizes, sizes >> 14].map(|side| (side & 0x3fff) + 1);
-                agree(canvas, size)?;
-                check_codes(file.by_ref().take(length.saturating_sub(5)), size, memory)?;
-            }
-            b"ALPH" => {
-                let [kind] = taken(file)?;
-                // Alpha may also be stored as it is.
-                if let (1, Some(size)) = (kind & 3, canvas) {
-                    check_codes(file.by_ref().take(length.saturating_sub(1)), size, memory)?;
-                }
-            }
-            _ => {}
-        }
+/// A clause for an animation, for a file that says two sizes, and for prefix codes that may take more memory.
+pub(super) fn check(file: &[u8], memory: u64) -> Result<(), String> {
+    let chunks = file.strip_prefix(b"RIFF").and_then(|rest| rest.get(4..)?.strip_prefix(b"WEBP"));
+    let (mut rest, mut canvas) = (chunks.unwrap_or_default(), None);
+    while let Some((&[a, b, c, d, length @ ..], data)) = rest.split_first_chunk::<8>() {
+        let length = u32::from_le_bytes(length) as usize;
+        check_chunk(&[a, b, c, d], &data[..length.min(data.len())], &mut canvas, memory)?;
         // A file that doesn't begin with a canvas has one chunk.
         if canvas.is_none() {
-            return Ok(());
+            break;
         }
-        at += 8 + length + length % 2;
+        rest = data.get(length + length % 2..).unwrap_or_default();
+    }
+    Ok(())
+}
+
+/// Checks a chunk of a file with this canvas, if that is known by now.
+fn check_chunk(kind: &[u8; 4], data: &[u8], canvas: &mut Option<[u32; 2]>, memory: u64) -> Result<(), String> {
+    match (kind, data) {
+        (b"VP8X", [flags, ..]) if flags & 2 != 0 => Err(ANIMATED.to_owned()),
+        (b"ANMF", _) => Err(ANIMATED.to_owned()),
+        (b"VP8X", &[_, _, _, _, w0, w1, w2, h0, h1, h2, ..]) => {
+            *canvas = Some([[w0, w1, w2, 0], [h0, h1, h2, 0]].map(|side| u32::from_le_bytes(side) + 1));
+            Ok(())
+        }
+        (b"VP8 ", &[_, _, _, _, _, _, w0, w1, h0, h1, ..]) => {
+            agree(*canvas, [[w0, w1], [h0, h1]].map(|side| u32::from(u16::from_le_bytes(side)) & 0x3fff))
+        }
+        (b"VP8L", &[_, a, b, c, d, ref codes @ ..]) => {
+            let sizes = u32::from_le_bytes([a, b, c, d]);
+            let size = [sizes, sizes >> 14].map(|side| (side & 0x3fff) + 1);
+            agree(*canvas, size)?;
+            check_codes(codes, size, memory)
+        }
+        // Alpha may also be stored as it is.
+        (b"ALPH", [kind, codes @ ..]) if kind & 3 == 1 => {
+            canvas.map_or(Ok(()), |size| check_codes(codes, size, memory))
+        }
+        _ => Ok(()),
     }
 }
 
 /// Checks that an image has the size of its canvas, for which memory is counted.
-fn agree(canvas: Option<[u32; 2]>, size: [u32; 2]) -> io::Result<()> {
+fn agree(canvas: Option<[u32; 2]>, size: [u32; 2]) -> Result<(), String> {
     match canvas {
         Some([a, b]) if [a, b] != size => {
             let [c, d] = size;
-            Err(invalid(format!("it says {a} x {b} px, but the image in it has {c} x {d}")))
+            Err(format!("it says {a} x {b} px, but the image in it has {c} x {d}"))
         }
         _ => Ok(()),
     }
 }
 
 /// Checks how much memory the prefix codes of an image take. `data` is what comes behind the image's header.
-fn check_codes(data: impl Read, size: [u32; 2], memory: u64) -> io::Result<()> {
+fn check_codes(data: &[u8], size: [u32; 2], memory: u64) -> Result<(), String> {
     let pixels = 4 * u64::from(size[0]) * u64::from(size[1]);
     // An image that is too large is refused for that.
     if size.iter().any(|&side| side > LARGEST) || pixels > memory {
         return Ok(());
     }
-    let most = memory / PER_CODE_BYTE;
-    let mut codes = Vec::new();
-    data.take(most + 1).read_to_end(&mut codes)?;
-    if codes.len() as u64 > most && !has_pixels(size, &codes) {
+    let codes = data.get(..=to_usize(memory / PER_CODE_BYTE));
+    if codes.is_some_and(|codes| !has_pixels(size, codes)) {
         let allowed = memory >> 20;
-        return Err(invalid(format!(
+        return Err(format!(
             "its prefix codes may take more memory than the {allowed} MiB that files of this size may take (--max-memory allows \
              more); save it as a PNG image"
-        )));
+        ));
     }
     Ok(())
 }
@@ -123,20 +105,6 @@ fn has_pixels(size: [u32; 2], data: &[u8]) -> bool {
     let Ok(decoder) = WebPDecoder::new(Cursor::new(file)) else { return false };
     let mut pixels = vec![UNTOUCHED; to_usize(decoder.total_bytes())];
     decoder.read_image(&mut pixels).is_ok() || pixels.iter().any(|&byte| byte != UNTOUCHED)
-}
-
-fn animated() -> Error {
-    invalid("it is a WebP animation; save one of its images".to_owned())
-}
-
-fn invalid(clause: String) -> Error {
-    Error::new(ErrorKind::InvalidData, clause)
-}
-
-fn taken<const N: usize>(file: &mut impl Read) -> io::Result<[u8; N]> {
-    let mut bytes = [0; N];
-    file.read_exact(&mut bytes)?;
-    Ok(bytes)
 }
 
 #[cfg(test)]
@@ -157,10 +125,6 @@ mod tests {
         bytes
     }
 
-    fn checked(file: &[u8], memory: u64) -> Result<(), String> {
-        check(&mut Cursor::new(file), memory).map_err(|error| error.to_string())
-    }
-
     /// The data of alpha that is stored in a file like the colours of this one.
     fn alpha(lossless: &[u8]) -> Vec<u8> {
         [&[1], &lossless[12 + 8 + 5..]].concat()
@@ -179,16 +143,16 @@ mod tests {
     fn codes_that_may_take_too_much_are_refused_before_they_are_decoded() {
         // 60 KB, of which the decoder makes 21 MB of tables.
         let groups = of_groups(1000);
-        assert_eq!(checked(&groups, 32 << 20), Ok(()));
+        assert_eq!(check(&groups, 32 << 20), Ok(()));
         let said = "its prefix codes may take more memory than the 16 MiB that files of this size may take (--max-memory allows \
                     more); save it as a PNG image";
-        assert_eq!(checked(&groups, 16 << 20), Err(said.to_owned()));
+        assert_eq!(check(&groups, 16 << 20), Err(said.to_owned()));
         let with_alpha = file(&[(b"VP8X", &canvas(4)), (b"ALPH", &alpha(&groups)), (b"VP8 ", &lossy(4))]);
-        assert_eq!(checked(&with_alpha, 16 << 20), Err(said.to_owned()));
-        assert_eq!(checked(&with_alpha, 32 << 20), Ok(()));
+        assert_eq!(check(&with_alpha, 16 << 20), Err(said.to_owned()));
+        assert_eq!(check(&with_alpha, 32 << 20), Ok(()));
         let stored = file(&[(b"VP8X", &canvas(4)), (b"ALPH", &[0; 60_000]), (b"VP8 ", &lossy(4))]);
-        assert_eq!(checked(&stored, 16 << 20), Ok(()));
-        assert_eq!(checked(&groups[..groups.len() / 2], 32 << 20), Ok(()), "the decoder says that it is cut off");
+        assert_eq!(check(&stored, 16 << 20), Ok(()));
+        assert_eq!(check(&groups[..groups.len() / 2], 32 << 20), Ok(()), "the decoder says that it is cut off");
     }
 
     #[test]
@@ -207,10 +171,10 @@ mod tests {
             let bytes = bytes.into_inner();
             // Its codes may take 8 KiB.
             assert!(bytes.len() > 100_000);
-            assert_eq!(checked(&bytes, 4 << 20), Ok(()));
+            assert_eq!(check(&bytes, 4 << 20), Ok(()));
             let with_alpha = file(&[(b"VP8X", &canvas(200)), (b"ALPH", &alpha(&bytes)), (b"VP8 ", &lossy(200))]);
-            assert_eq!(checked(&with_alpha, 4 << 20), Ok(()));
-            let large = checked(&bytes, 100 << 10);
+            assert_eq!(check(&with_alpha, 4 << 20), Ok(()));
+            let large = check(&bytes, 100 << 10);
             assert_eq!(large, Ok(()), "its size is for others to refuse");
         }
     }
@@ -218,11 +182,11 @@ mod tests {
     #[test]
     fn two_sizes_and_animations_are_refused() {
         let two = file(&[(b"VP8X", &canvas(32)), (b"VP8 ", &lossy(33))]);
-        assert_eq!(checked(&two, 1 << 20), Err("it says 32 x 32 px, but the image in it has 33 x 33".to_owned()));
-        assert_eq!(checked(&file(&[(b"VP8X", &canvas(32)), (b"VP8 ", &lossy(32))]), 1 << 20), Ok(()));
+        assert_eq!(check(&two, 1 << 20), Err("it says 32 x 32 px, but the image in it has 33 x 33".to_owned()));
+        assert_eq!(check(&file(&[(b"VP8X", &canvas(32)), (b"VP8 ", &lossy(32))]), 1 << 20), Ok(()));
         let moving = file(&[(b"VP8X", &[2, 0, 0, 0, 31, 0, 0, 15, 0, 0])]);
         let frames = file(&[(b"VP8X", &canvas(32)), (b"ANMF", &[])]);
-        assert!(checked(&moving, 1 << 20).is_err() && checked(&frames, 1 << 20).is_err());
-        assert_eq!([checked(b"no WebP image", 0), checked(&file(&[]), 0)], [Ok(()), Ok(())]);
+        assert!(check(&moving, 1 << 20).is_err() && check(&frames, 1 << 20).is_err());
+        assert_eq!([check(b"no WebP image", 0), check(&file(&[]), 0)], [Ok(()), Ok(())]);
     }
 }

@@ -104,7 +104,7 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
 fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<(Loaded, Vec<String>), LoadError> {
     let mut absent = Vec::new();
     let loaded = match inspect::engine::load(&job.source, &preparation, progress) {
-        Err(LoadError::NoPart { known, .. }) => {
+        Err(LoadError::Absent { what: "part", known, .. }) => {
             absent = preparation.parts.hidden.extract_if(.., |part| !known.contains(part)).collect();
             inspect::engine::load(&job.source, &preparation, progress)
         }

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use std::io::Cursor;
+
 use super::*;
 
 fn read(bytes: &[u8]) -> Result<EnvironmentFile, EnvironmentFault> {

@@ -88,7 +88,7 @@ fn corners_keep_their_colours() {
     let (budget, progress) = (Budget::unlimited(), Progress::new());
     let mut faces = FaceBuilder::new(&ModelFile::from_test("faces", &progress), &budget);
     let material = faces.material(Material::plain("default", [1.0; 4])).unwrap();
-    faces.color();
+    faces.color().expect("memory");
     let square = corners(&[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]);
     let colors = [[255, 0, 0, 255], [0, 188, 0, 128], [0, 0, 0, 255], [255, 255, 255, 255]].map(linear_color);
     // The same corners in other colours are other corners.

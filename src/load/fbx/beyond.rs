@@ -25,19 +25,21 @@ impl Span {
     }
 }
 
-/// Where curves of objects go on beyond their key frames: by the object's `element_id`, the time until which they do from the
-/// clip's beginning, and the time from which they do until its end.
-pub(super) struct Beyond {
+/// The curves of a clip, the part of them that it shows, and where they go on beyond their key frames.
+pub(super) struct Curves<'a> {
+    pub anim: &'a Anim,
+    /// By an object's `element_id`, the time until which its curves go on from the clip's beginning, and the time from which they do
+    /// until its end.
     edges: HashMap<u32, [Option<f64>; 2]>,
-    span: Span,
+    pub span: Span,
     /// Samples per second.
     rate: f64,
     /// How many samples may still be taken in the whole file.
-    left: usize,
+    pub left: usize,
 }
 
-impl Beyond {
-    pub(super) fn new(anim: &Anim, span: Span, rate: f64, left: usize) -> Self {
+impl<'a> Curves<'a> {
+    pub(super) fn new(anim: &'a Anim, span: Span, rate: f64, left: usize) -> Self {
         let mut edges: HashMap<u32, [Option<f64>; 2]> = HashMap::new();
         for prop in anim.layers.into_iter().flat_map(|layer| &layer.anim_props) {
             for curve in prop.anim_value.curves.iter().flatten() {
@@ -55,12 +57,7 @@ impl Beyond {
             }
         }
         edges.retain(|_, edges| edges.iter().any(Option::is_some));
-        Self { edges, span, rate, left }
-    }
-
-    /// How many samples may still be taken.
-    pub(super) fn left(&self) -> usize {
-        self.left
+        Self { anim, edges, span, rate, left }
     }
 
     /// Returns the times in s at which an object is sampled beyond its key frames, in order; none if no curve of it goes on.

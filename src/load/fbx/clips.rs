@@ -4,11 +4,11 @@
 use std::collections::HashMap;
 
 use ufbx::{
-    Anim, AnimLayer, AnimOpts, AnimStack, BakeOpts, BakedAnim, BakedNode, BakedVec3, BlendChannel, ElementType,
-    ErrorType, Scene,
+    AnimLayer, AnimOpts, AnimStack, BakeOpts, BakedAnim, BakedNode, BakedVec3, BlendChannel, ElementType, ErrorType,
+    Scene,
 };
 
-use super::beyond::{Beyond, Span, within};
+use super::beyond::{Curves, Span, within};
 use super::convert::{placement, quaternion, vec3};
 use super::looks::name;
 use super::morphs::{channels, shape_weights};
@@ -78,13 +78,6 @@ struct Reader<'a> {
     hides: bool,
 }
 
-/// A clip that is read: its curves, and the part of them that it shows.
-struct Curves<'a> {
-    anim: &'a Anim,
-    span: Span,
-    beyond: Beyond,
-}
-
 impl Reader<'_> {
     /// Reads a clip. The inner error is a clause that says why it is left out.
     ///
@@ -122,10 +115,9 @@ impl Reader<'_> {
         let bytes = baked.metadata.result_memory_used as u64;
         self.budget.hold(bytes)?;
         let span = Span::new(&stack.anim, [baked.key_time_min, baked.key_time_max]);
-        let beyond = Beyond::new(anim, span, SAMPLES, self.samples_left);
-        let mut curves = Curves { anim, span, beyond };
+        let mut curves = Curves::new(anim, span, SAMPLES, self.samples_left);
         let channels = self.channels(&baked, &mut curves);
-        self.samples_left = curves.beyond.left();
+        self.samples_left = curves.left;
         drop(baked);
         self.budget.release(bytes);
         Ok(channels.map(|channels| {
@@ -177,7 +169,7 @@ impl Reader<'_> {
         };
         let (anim, span) = (curves.anim, curves.span);
         let at = |time| placement(&ufbx::evaluate_transform(anim, node, time));
-        let samples: Vec<_> = curves.beyond.times(baked.element_id).into_iter().map(|time| (time, at(time))).collect();
+        let samples: Vec<_> = curves.times(baked.element_id).into_iter().map(|time| (time, at(time))).collect();
         let target = baked.typed_id;
         let mut vectors = |keys: &[BakedVec3], property, rest: glam::DVec3, of: fn(&Placement) -> glam::DVec3| {
             let keys: Vec<_> = keys.iter().map(|key| (key.time, vec3(&key.value))).collect();
@@ -218,7 +210,7 @@ impl Reader<'_> {
             let weight = |time| ufbx::evaluate_blend_weight(anim, channel, time);
             let keys = baked.get(&id).into_iter().flat_map(|keys| keys.iter());
             let keys: Vec<_> = keys.map(|key| (key.time, key.value.x / 100.0)).collect();
-            let samples: Vec<_> = curves.beyond.times(id).into_iter().map(|time| (time, weight(time))).collect();
+            let samples: Vec<_> = curves.times(id).into_iter().map(|time| (time, weight(time))).collect();
             let keys = within(&keys, &samples, span, weight);
             times.extend(keys.iter().map(|key| key.0));
             times.extend(crossings(channel, &keys));

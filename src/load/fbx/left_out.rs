@@ -3,8 +3,7 @@
 use ufbx::{Mesh, Scene, SkinningMethod, SubdivisionDisplayMode, WarningType};
 
 use super::nodes::Placed;
-use crate::face_builder::counted;
-use crate::notes::Notes;
+use crate::notes::{Notes, counted};
 
 /// Adds a warning for each kind of thing that is left out.
 pub(super) fn warn(scene: &Scene, notes: &mut Notes) {

@@ -43,7 +43,7 @@ pub(super) fn shape_weights(channel: &BlendChannel, weight: f64, weights: &mut V
 /// The displacements of a mesh's vertices, by vertex.
 #[derive(Default)]
 pub(super) struct Morphs<'a> {
-    shapes: Vec<&'a BlendShape>,
+    pub shapes: Vec<&'a BlendShape>,
     /// For each vertex, where its entries begin; the last number is their end. Empty without shapes.
     starts: Vec<u32>,
     /// A shape, and the index of an offset.
@@ -85,11 +85,6 @@ impl<'a> Morphs<'a> {
             }
         }
         Ok(Self { shapes, starts, entries })
-    }
-
-    /// Whether the mesh has any shapes.
-    pub(super) fn is_empty(&self) -> bool {
-        self.shapes.is_empty()
     }
 
     /// Collects the displacements of a vertex by the shapes that move or turn it, at weight 1.

@@ -51,7 +51,7 @@ impl Placed {
         }
         let carries = carries_shown(scene, &shown, &order, &parents);
         let mut carries_mesh: Vec<bool> = nodes.into_iter().map(|node| node.mesh.is_some()).collect();
-        include_parents(&mut carries_mesh, &order, &parents);
+        SceneNodes::include_parents(&mut carries_mesh, &order, &parents);
         let morphed = shown.iter().filter_map(|&node| {
             let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?);
             (!rest.is_empty()).then_some((node, rest))
@@ -148,16 +148,6 @@ fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Opt
             carries[index(bone)] = true;
         }
     }
-    include_parents(&mut carries, order, parents);
+    SceneNodes::include_parents(&mut carries, order, parents);
     carries
-}
-
-/// Includes the nodes above those that are marked.
-fn include_parents(marked: &mut [bool], order: &[usize], parents: &[Option<usize>]) {
-    // Children before parents.
-    for &node in order.iter().rev() {
-        if let Some(parent) = parents[node].filter(|_| marked[node]) {
-            marked[parent] = true;
-        }
-    }
 }

@@ -8,10 +8,10 @@ use super::materials::{self, Materials, Resolved};
 use super::nodes::Placed;
 use super::skin::Skin;
 use super::vertices::Vertices;
-use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, counted};
+use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner};
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::model_file::ModelFile;
-use crate::notes::Notes;
+use crate::notes::{Notes, counted, counts};
 use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
 use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
@@ -41,17 +41,17 @@ pub(super) struct Surfaces<'s, 'a> {
     details: Option<DetailTable>,
     /// None if nothing is animated.
     binder: Option<RigBuilder>,
+    without_normals: usize,
     found: Counts,
 }
 
-/// What was repaired or left out.
-#[derive(Default)]
-struct Counts {
-    without_normals: usize,
-    holes: usize,
-    bad_uvs: usize,
-    bad_colors: usize,
-    many_joints: usize,
+counts! {
+    struct Counts {
+        holes => "polygons that are holes, left out";
+        bad_uvs => "uvs that aren't finite or don't exist, replaced by (0, 0)";
+        bad_colors => "colours of corners that aren't finite or don't exist, replaced by white";
+        many_joints => "corners that more than four joints move, of which the four with the largest weights are used";
+    }
 }
 
 impl<'s, 'a> Surfaces<'s, 'a> {
@@ -92,14 +92,12 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             faces,
             details: is_detailed.then(DetailTable::default),
             binder,
+            without_normals: 0,
             found: Counts::default(),
         })
     }
 
     /// Adds the polygons of a node's mesh.
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub(super) fn add(&mut self, index: usize, progress: &Progress) -> Result<(), ReadError> {
         let node = &self.scene.nodes[index];
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
@@ -107,7 +105,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let global = &self.placed.global;
         let skin = Skin::new(node, mesh, global);
         let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), &self.faces.import, self.budget)?;
-        self.found.without_normals += usize::from(vertices.is_without_normals());
+        self.without_normals += usize::from(vertices.is_without_normals());
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
@@ -141,18 +139,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     /// Returns what was collected; `notes` gets what was repaired or left out.
     pub(super) fn into_parts(self, notes: &mut Notes) -> (FaceBuilder<'a>, Option<DetailTable>, Option<RigBuilder>) {
         notes.append(self.materials.into_notes());
-        let Counts { without_normals, holes, bad_uvs, bad_colors, many_joints } = self.found;
-        let (without_normals, made) = self.faces.import.lacking_normals(without_normals, "meshes without normals");
-        notes.extend(counted([
-            (without_normals, made.as_str()),
-            (holes, "polygons that are holes, left out"),
-            (bad_uvs, "uvs that aren't finite or don't exist, replaced by (0, 0)"),
-            (bad_colors, "colours of corners that aren't finite or don't exist, replaced by white"),
-            (
-                many_joints,
-                "corners that more than four joints move, of which the four with the largest weights are used",
-            ),
-        ]));
+        notes.extend(counted([self.faces.import.lacking_normals(self.without_normals, "meshes without normals")]));
+        notes.extend(self.found.sentences());
         (self.faces, self.details, self.binder)
     }
 }
@@ -226,8 +214,9 @@ impl MeshReader<'_, '_, '_> {
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
-            let undeformed = self.vertices.undeformed(&posed, &self.deltas, binder.first_weight.is_some());
-            let at = (undeformed, &posed.corner);
+            // Blend shapes are at rest, unless a clip weighs them.
+            let start = if binder.first_weight.is_some() { posed.undeformed } else { posed.morphed };
+            let at = (start, &posed.corner);
             number = binder.bind(at, &self.influences, &mut self.deltas, self.budget)?;
         }
         if let Some(table) = self.details.take() {
@@ -290,7 +279,7 @@ struct Binder<'b> {
 impl<'b> Binder<'b> {
     fn new(mut node: NodeBinder<'b>, vertices: &Vertices) -> Self {
         let (skinned, rigid) = (node.frame(true, vertices.to_node), node.frame(false, vertices.to_node));
-        let first_weight = node.first_weight().filter(|_| !vertices.morphs.is_empty());
+        let first_weight = node.first_weight().filter(|_| !vertices.morphs.shapes.is_empty());
         Self { node, skinned, rigid, first_weight }
     }
 

@@ -24,9 +24,6 @@ impl<'a> Textures<'a> {
     }
 
     /// Reads the images of these textures. `reserved` is the memory that the rest of the load takes, in bytes.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn read<'t>(
         &mut self,
         used: impl Iterator<Item = (&'t ufbx::Texture, MipFilter)>,
@@ -86,13 +83,9 @@ fn names(texture: &ufbx::Texture) -> Vec<String> {
         let path = path.as_ref().replace('\\', "/");
         let last = path.rsplit('/').next().unwrap_or_default().to_owned();
         let is_below = !path.starts_with('/') && !path.contains(':') && !path.split('/').any(|part| part == "..");
-        let candidates = [Some(path).filter(|_| is_below), Some(last)];
-        for name in candidates.into_iter().flatten().filter(|name| !name.is_empty()) {
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
+        names.extend([Some(path).filter(|_| is_below), Some(last)].into_iter().flatten());
     }
+    names.retain(|name| !name.is_empty());
     names
 }
 

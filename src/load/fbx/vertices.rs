@@ -34,8 +34,9 @@ pub(super) struct Vertices<'a> {
 /// A corner in its rest pose, and as it was before.
 pub(super) struct PosedCorner {
     pub corner: InputCorner,
-    /// The position and normal in the mesh's space, without blend shapes.
+    /// The position and normal in the mesh's space, without blend shapes, and with them at rest.
     pub undeformed: (Vec3, Option<Vec3>),
+    pub morphed: (Vec3, Option<Vec3>),
     /// Transforms its directions.
     pub linear: DMat3,
 }
@@ -104,6 +105,7 @@ impl<'a> Vertices<'a> {
             position += Vec3::from(delta.position).as_dvec3() * f64::from(weight);
             morphed = morphed.map(|normal| normal + Vec3::from(delta.normal) * weight);
         }
+        let (undeformed, morphed) = ((own.as_vec3(), normal), (position.as_vec3(), morphed));
         let matrix = match self.skin {
             Some(skin) if !influences.is_empty() => skin.matrix(influences),
             _ => self.rigid,
@@ -111,9 +113,8 @@ impl<'a> Vertices<'a> {
         let position = matrix.transform_point3(position).as_vec3();
         let linear = DMat3::from_mat4(matrix);
         // A normal without a direction becomes zero, which the builder replaces and counts.
-        let turned = morphed.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
-        let corner = InputCorner { position, normal: turned, uv: glam::Vec2::ZERO };
-        PosedCorner { corner, undeformed: (own.as_vec3(), normal), linear }
+        let normal = morphed.1.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
+        PosedCorner { corner: InputCorner { position, normal, uv: glam::Vec2::ZERO }, undeformed, morphed, linear }
     }
 
     fn normal(&self, corner: usize) -> Option<Vec3> {
@@ -126,16 +127,5 @@ impl<'a> Vertices<'a> {
         let normals = &self.mesh.vertex_normal;
         let normal = normals.indices.get(corner).and_then(|&index| normals.values.get(index as usize));
         normal.map(|normal| vec3(normal).as_vec3())
-    }
-
-    /// Returns the position and normal that poses start from: with blend shapes at rest, unless a clip weighs them.
-    pub(super) fn undeformed(&self, posed: &PosedCorner, deltas: &[Delta], is_weighed: bool) -> (Vec3, Option<Vec3>) {
-        let (mut position, mut normal) = posed.undeformed;
-        for delta in deltas.iter().filter(|_| !is_weighed) {
-            let weight = self.rest.get(delta.weight as usize).copied().unwrap_or_default();
-            position += Vec3::from(delta.position) * weight;
-            normal = normal.map(|normal| normal + Vec3::from(delta.normal) * weight);
-        }
-        (position, normal)
     }
 }

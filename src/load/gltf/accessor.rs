@@ -42,23 +42,19 @@ pub(crate) struct Accessors<'a> {
 }
 
 /// Why data can't be read.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub(crate) enum DataError {
     /// A clause about what needs it.
+    #[error("{0}")]
     Here(String),
     /// Something else in the document is wrong.
-    Elsewhere(GltfError),
+    #[error(transparent)]
+    Elsewhere(#[from] GltfError),
 }
 
 impl From<String> for DataError {
     fn from(reason: String) -> Self {
         Self::Here(reason)
-    }
-}
-
-impl From<GltfError> for DataError {
-    fn from(error: GltfError) -> Self {
-        Self::Elsewhere(error)
     }
 }
 
@@ -194,6 +190,23 @@ impl<'a> Accessors<'a> {
     /// [`GltfError::Document`] for an accessor that is wrong.
     pub(crate) fn check_sound(&self, accessor: &Accessor) -> Result<(), GltfError> {
         Ok(self.faults.check("accessors", accessor.index())?)
+    }
+
+    /// # Errors
+    /// [`GltfError::Document`] for an accessor that is wrong, and [`GltfError::Accessor`] for one that hasn't as many elements as there
+    /// are of `what`.
+    pub(crate) fn check_count(
+        &self,
+        accessor: &Accessor,
+        role: &str,
+        count: usize,
+        what: &str,
+    ) -> Result<(), GltfError> {
+        self.check_sound(accessor)?;
+        match accessor.count() {
+            has if has == count => Ok(()),
+            has => Err(DataError::Here(format!("has {has} elements for {count} {what}")).of(accessor, role)),
+        }
     }
 
     fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {

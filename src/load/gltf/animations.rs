@@ -10,6 +10,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use super::{Accessors, nodes};
+use crate::attachment::LocalTransform;
 use geometry::casts::to_u32;
 use geometry::mesh::borrowing;
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Property};
@@ -129,7 +130,7 @@ impl Reader<'_> {
         if width == 0 {
             return Err(format!("changes weights of morph targets of node {index}, which has none"));
         }
-        if property != Property::Weights && nodes::placement(&node).is_none() {
+        if property != Property::Weights && matches!(nodes::local(&node), LocalTransform::Matrix(_)) {
             return Err(format!("moves node {index}, whose transform is a matrix"));
         }
         let sampler = samplers.get(entry.sampler);

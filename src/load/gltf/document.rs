@@ -10,6 +10,7 @@ use super::cameras::{self, CameraSource};
 use super::carried::Carried;
 use super::extensions::Extensions;
 use super::json::{list, objects};
+use super::lenient::take_list;
 use super::lights;
 use super::material_lists::MaterialLists;
 use super::node_parts::{self, NodeParts};
@@ -21,7 +22,7 @@ use super::schema_check::Faults;
 use super::{GltfError, extension_table, extensions, glb, json, repair, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
-use geometry::mesh::{Borrowed, Light, MemoryRefused};
+use geometry::mesh::{Borrowed, Light};
 use geometry::progress::Progress;
 
 /// A validated document, the binary chunk of a `.glb`, and what was left out.
@@ -63,7 +64,8 @@ pub(super) fn parse(
     check_version(root, notes.get_mut())?;
     extension_table::check(root, notes.get_mut())?;
     let requires_draco = extension_table::requires(root, schema::DRACO);
-    let animations = take_animations(root);
+    // They are read separately, so that an error in one doesn't keep the model from loading.
+    let animations = take_list(root, "animations", "there are no animations", &notes);
     let variants = variants::choose(root, selected.variant, notes.get_mut());
     let scenes = Scenes::choose(root, selected.scene, notes.get_mut());
     let lists = MaterialLists::take(root, &notes);
@@ -95,9 +97,7 @@ pub(super) fn parse(
     settled.settle(&mut root, notes.get_mut())?;
     let document = Document::from_json_without_validation(root);
     drop(json);
-    let too_large =
-        |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    budget.hold(lists.bytes()).map_err(too_large)?;
+    budget.hold(lists.bytes()).map_err(GltfError::large_json)?;
     Ok(Parsed {
         document,
         blob,
@@ -125,7 +125,7 @@ fn json_and_blob(
     notes: &mut Notes,
     progress: &Progress,
 ) -> Result<(Value, Option<Vec<u8>>), GltfError> {
-    if !glb::is_glb(&bytes) {
+    if !bytes.starts_with(b"glTF") {
         return Ok((json::parse(&bytes, budget, progress)?, None));
     }
     let parts = glb::parts(&bytes)?;
@@ -136,14 +136,6 @@ fn json_and_blob(
     bytes.truncate(bin.end);
     bytes.drain(..bin.start);
     Ok((value, Some(bytes)))
-}
-
-/// Takes the animations, which are read separately, so that an error in one doesn't keep the model from loading.
-fn take_animations(root: &mut Map<String, Value>) -> Vec<Value> {
-    match root.remove("animations") {
-        Some(Value::Array(animations)) => animations,
-        _ => Vec::new(),
-    }
 }
 
 fn not_gltf(reason: impl ToString) -> GltfError {

@@ -21,11 +21,6 @@ pub(super) struct Parts {
     pub warning: Option<String>,
 }
 
-/// Returns whether these bytes start like a `.glb`.
-pub(super) fn is_glb(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"glTF")
-}
-
 /// Finds the chunks. Chunks of other kinds are ignored, and so are bytes after the length in the header, unless they belong to a chunk
 /// that begins before: some programs count the file without its padding.
 ///

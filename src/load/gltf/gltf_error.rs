@@ -1,6 +1,6 @@
 //! Errors in glTF documents.
 
-use geometry::mesh::build_limits::BuildError;
+use geometry::mesh::build_limits::{BuildError, MemoryRefused};
 use geometry::progress::Cancelled;
 
 /// Why a glTF document could not be loaded. The message doesn't contain the file's path. Places in the document are
@@ -41,6 +41,19 @@ pub enum GltfError {
 }
 
 impl GltfError {
+    pub(super) fn large_json(refused: MemoryRefused) -> Self {
+        Self::Document { pointer: "its JSON".to_owned(), reason: refused.into() }
+    }
+
+    pub(super) fn large_scene(refused: MemoryRefused) -> Self {
+        Self::too_large("the scene")(refused)
+    }
+
+    /// The error of `what`, which takes too much memory.
+    pub(super) fn too_large(what: &str) -> impl Fn(MemoryRefused) -> Self {
+        move |refused| Self::TooLarge { what: what.to_owned(), reason: refused.into() }
+    }
+
     /// Says why something that a model can do without isn't read, as a clause.
     pub(super) fn into_clause(self) -> String {
         match self {

@@ -3,7 +3,7 @@
 //! Source: Khronos, `EXT_mesh_gpu_instancing`,
 //! <https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Vendor/EXT_mesh_gpu_instancing>.
 
-use ::gltf::Document;
+use ::gltf::{Accessor, Document};
 use glam::{DMat4, Quat, Vec3};
 
 use super::accessor::List;
@@ -33,12 +33,14 @@ impl<'a> Instances<'a> {
         own: &InstancingExtension,
         node: usize,
     ) -> Result<Self, GltfError> {
-        let source = Source { document, accessors, count: count(document, own), node };
+        let count = count(document, own);
+        let role = |name: &str| format!("{name} of the instances of node {node}");
+        let find = |index: Option<usize>| document.accessors().nth(index?);
         Ok(Self {
-            count: source.count,
-            translations: source.list(own.translation, "TRANSLATION")?,
-            rotations: source.list(own.rotation, "ROTATION")?,
-            scales: source.list(own.scale, "SCALE")?,
+            count,
+            translations: list(find(own.translation), role("TRANSLATION"), count, accessors)?,
+            rotations: list(find(own.rotation), role("ROTATION"), count, accessors)?,
+            scales: list(find(own.scale), role("SCALE"), count, accessors)?,
         })
     }
 
@@ -46,13 +48,10 @@ impl<'a> Instances<'a> {
     pub(super) fn transforms(&self) -> impl Iterator<Item = DMat4> {
         (0..self.count).map(|i| {
             let vector = |list: &Option<List<[f32; 3]>>, default| list.as_ref().map_or(default, |list| list.get(i));
+            let rotation = self.rotations.as_ref();
             let placement = Placement {
                 translation: Vec3::from(vector(&self.translations, [0.0; 3])).as_dvec3(),
-                rotation: self
-                    .rotations
-                    .as_ref()
-                    .map_or(Quat::IDENTITY, |list| Quat::from_array(list.get(i)))
-                    .as_dquat(),
+                rotation: rotation.map_or(Quat::IDENTITY, |list| Quat::from_array(list.get(i))).as_dquat(),
                 scale: Vec3::from(vector(&self.scales, [1.0; 3])).as_dvec3(),
             };
             placement.matrix()
@@ -60,28 +59,13 @@ impl<'a> Instances<'a> {
     }
 }
 
-/// Where a node's instances are read from.
-struct Source<'a> {
-    document: &'a Document,
-    accessors: &'a Accessors<'a>,
+fn list<'a, const N: usize>(
+    accessor: Option<Accessor>,
+    role: String,
     count: usize,
-    node: usize,
-}
-
-impl<'a> Source<'a> {
-    fn list<const N: usize>(
-        &self,
-        accessor: Option<usize>,
-        name: &str,
-    ) -> Result<Option<List<'a, [f32; N]>>, GltfError> {
-        let accessor = accessor.and_then(|index| self.document.accessors().nth(index));
-        let Some(accessor) = accessor else { return Ok(None) };
-        let role = format!("{name} of the instances of node {}", self.node);
-        self.accessors.check_sound(&accessor)?;
-        if accessor.count() != self.count {
-            let reason = format!("has {} elements for {} instances", accessor.count(), self.count);
-            return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
-        }
-        self.accessors.list(&accessor, &role).map(Some)
-    }
+    accessors: &'a Accessors,
+) -> Result<Option<List<'a, [f32; N]>>, GltfError> {
+    let Some(accessor) = accessor else { return Ok(None) };
+    accessors.check_count(&accessor, &role, count, "instances")?;
+    accessors.list(&accessor, &role).map(Some)
 }

@@ -5,8 +5,7 @@ use serde_json::{Map, Value};
 
 use super::GltfError;
 use crate::memory_budget::Budget;
-use geometry::mesh::MemoryRefused;
-use geometry::progress::{Cancelled, Progress};
+use geometry::progress::Progress;
 
 /// How deep lists and objects may be nested. The specification itself needs 8 levels; `extras` may need more.
 const MAX_DEPTH: usize = 100;
@@ -29,15 +28,18 @@ pub(super) const PER_READ: u64 = 400;
 pub(super) fn parse(text: &[u8], budget: &Budget, progress: &Progress) -> Result<Value, GltfError> {
     // JSON has no byte order mark, but some editors write one.
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let shape = JsonSize::new(text, progress)?;
-    if shape.depth > MAX_DEPTH {
-        let reason = format!("its JSON is nested {} levels deep, but at most {MAX_DEPTH} levels are read", shape.depth);
+    let mut size = JsonSize::default();
+    for piece in text.chunks(PIECE) {
+        progress.check()?;
+        piece.iter().for_each(|&byte| size.take(byte));
+    }
+    let JsonSize { depth, values, objects, .. } = size;
+    if depth > MAX_DEPTH {
+        let reason = format!("its JSON is nested {depth} levels deep, but at most {MAX_DEPTH} levels are read");
         return Err(GltfError::NotGltf { reason });
     }
-    let too_large =
-        |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    budget.borrow(shape.values * PER_VALUE + shape.objects * PER_OBJECT).map_err(too_large)?;
-    budget.hold(shape.objects * PER_READ).map_err(too_large)?;
+    budget.borrow(values * PER_VALUE + objects * PER_OBJECT).map_err(GltfError::large_json)?;
+    budget.hold(objects * PER_READ).map_err(GltfError::large_json)?;
     let mut value = serde_json::from_slice(text).map_err(|error| GltfError::NotGltf { reason: reason(&error) })?;
     make_whole(&mut value);
     Ok(value)
@@ -94,33 +96,17 @@ pub(super) fn bytes(value: &Value) -> u64 {
 /// The size of a document, counted from brackets and commas.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct JsonSize {
+    /// The greatest depth, and that of the next byte.
     depth: usize,
+    open: usize,
     /// At least as many as there are members and elements.
     values: u64,
     objects: u64,
-}
-
-impl JsonSize {
-    fn new(text: &[u8], progress: &Progress) -> Result<Self, Cancelled> {
-        let mut scan = Scan::default();
-        for piece in text.chunks(PIECE) {
-            progress.check()?;
-            piece.iter().for_each(|&byte| scan.take(byte));
-        }
-        Ok(scan.shape)
-    }
-}
-
-/// The state of a scan through a text.
-#[derive(Default)]
-struct Scan {
-    shape: JsonSize,
-    depth: usize,
     in_string: bool,
     escaped: bool,
 }
 
-impl Scan {
+impl JsonSize {
     fn take(&mut self, byte: u8) {
         if self.in_string {
             self.in_string = self.escaped || byte != b'"';
@@ -130,13 +116,13 @@ impl Scan {
         match byte {
             b'"' => self.in_string = true,
             b'{' | b'[' => {
-                self.depth += 1;
-                self.shape.depth = self.shape.depth.max(self.depth);
-                self.shape.values += 1;
-                self.shape.objects += u64::from(byte == b'{');
+                self.open += 1;
+                self.depth = self.depth.max(self.open);
+                self.values += 1;
+                self.objects += u64::from(byte == b'{');
             }
-            b'}' | b']' => self.depth = self.depth.saturating_sub(1),
-            b',' => self.shape.values += 1,
+            b'}' | b']' => self.open = self.open.saturating_sub(1),
+            b',' => self.values += 1,
             _ => {}
         }
     }
@@ -157,10 +143,13 @@ mod tests {
 
     #[test]
     fn brackets_in_strings_do_not_count() {
-        let of = |text: &[u8]| JsonSize::new(text, &Progress::new()).expect("not cancelled");
-        let shape = of(br#"{"a[\"{[":[[1,2],{}],"b\\":"]"}"#);
-        assert_eq!(shape, JsonSize { depth: 3, values: 7, objects: 2 });
-        assert_eq!(of(b"]]]["), JsonSize { depth: 1, values: 1, objects: 0 });
+        let of = |text: &[u8]| {
+            let mut size = JsonSize::default();
+            text.iter().for_each(|&byte| size.take(byte));
+            [size.depth as u64, size.values, size.objects]
+        };
+        assert_eq!(of(br#"{"a[\"{[":[[1,2],{}],"b\\":"]"}"#), [3, 7, 2]);
+        assert_eq!(of(b"]]]["), [1, 1, 0]);
     }
 
     #[test]

@@ -90,23 +90,14 @@ impl<'a> Members<'a> {
             self.note(name, format_args!("is {}, not a number", shown(value)), format_args!("{default} is used"));
             return default;
         };
-        if number < f64::from(least) {
-            self.note(
-                name,
-                format_args!("is {value}, but must be at least {least:?}"),
-                format_args!("{} is used", short(least)),
-            );
-            least
-        } else if number > f64::from(most) {
-            self.note(
-                name,
-                format_args!("is {value}, but must be at most {most:?}"),
-                format_args!("{} is used", short(most)),
-            );
-            most
-        } else {
-            to_f32(number)
-        }
+        let (which, limit) = match number {
+            _ if number < f64::from(least) => ("least", least),
+            _ if number > f64::from(most) => ("most", most),
+            _ => return to_f32(number),
+        };
+        let fault = format!("is {value}, but must be at {which} {limit:?}");
+        self.note(name, fault, format_args!("{} is used", short(limit)));
+        limit
     }
 
     /// Returns which of some words a member is.
@@ -124,14 +115,11 @@ impl<'a> Members<'a> {
     pub(super) fn code<T: Copy>(&self, name: &str, codes: &[(u64, T)], default: T) -> T {
         let Some(value) = self.get(name) else { return default };
         let known = value.as_u64().and_then(|code| codes.iter().find(|(known, _)| *known == code));
-        known.map_or_else(
-            || {
-                let known: Vec<_> = codes.iter().map(|(code, _)| code.to_string()).collect();
-                self.note(name, format_args!("is {}, not {}", shown(value), known.join(" or ")), "the default is used");
-                default
-            },
-            |(_, value)| *value,
-        )
+        if known.is_none() {
+            let known: Vec<_> = codes.iter().map(|(code, _)| code.to_string()).collect();
+            self.note(name, format_args!("is {}, not {}", shown(value), known.join(" or ")), "the default is used");
+        }
+        known.map_or(default, |(_, value)| *value)
     }
 
     /// Returns the n of a TEXCOORD_n; none if the member is missing or no such number.

@@ -21,7 +21,7 @@ use crate::texture_room::{Scaling, TextureRoom};
 use crate::uri::Files;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, MemoryRefused, Sampling, Slot, Texture};
+use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, Sampling, Slot, Texture};
 use geometry::progress::Progress;
 
 /// How many materials a sentence names.
@@ -60,8 +60,8 @@ pub(super) struct Materials<'a> {
     rough: HashMap<(*const Texture, u32), Arc<Texture>>,
     /// The memory that the rest of the load takes, in bytes.
     reserved: u64,
-    /// For what isn't drawn, the materials that have it.
-    undrawn: BTreeMap<String, NamedMaterials>,
+    /// For what isn't drawn, the names of the first few materials that have it, and how many have it.
+    undrawn: BTreeMap<String, (Vec<String>, usize)>,
     notes: RefCell<Notes>,
 }
 
@@ -80,13 +80,6 @@ struct ReadImage {
     texture: Result<Arc<Texture>, String>,
     /// What is to be said of how it was scaled down; none once a warning said so.
     scaled: Option<String>,
-}
-
-/// Some materials, of which the first few are named.
-#[derive(Default)]
-struct NamedMaterials {
-    named: Vec<String>,
-    count: usize,
 }
 
 impl<'a> Materials<'a> {
@@ -125,22 +118,19 @@ impl<'a> Materials<'a> {
         if self.sources.contains_key(&index) {
             return Ok(());
         }
-        self.hold(size_of::<MaterialSource>() + size_of::<Material>())?;
+        let bytes = size_of::<MaterialSource>() + size_of::<Material>();
+        self.budget.hold(bytes as u64).map_err(GltfError::too_large("its materials"))?;
         let value = index.and_then(|index| Some((index, self.lists.materials.get(index)?)));
         let members = value.and_then(|(i, value)| Members::new(value, format!("/materials/{i}"), &self.notes));
         let source = MaterialSource::new(members.as_ref(), self.lists.textures.len());
         let name = name(&source, index);
         for undrawn in &source.undrawn {
-            self.undrawn.entry(undrawn.clone()).or_default().add(&name);
+            let (named, count) = self.undrawn.entry(undrawn.clone()).or_default();
+            *count += 1;
+            named.extend((*count <= NAMED).then(|| format!("\"{}\"", crate::uri::shown(&name))));
         }
         self.sources.insert(index, source);
         Ok(())
-    }
-
-    fn hold(&self, bytes: usize) -> Result<(), GltfError> {
-        let too_large =
-            |refused: MemoryRefused| GltfError::TooLarge { what: "its materials".to_owned(), reason: refused.into() };
-        self.budget.hold(bytes as u64).map_err(too_large)
     }
 
     /// Returns whether corners of this material need more than position, normal and texture coordinates.
@@ -325,7 +315,14 @@ impl<'a> Materials<'a> {
     /// Returns what was repaired or left out.
     pub(super) fn into_notes(self) -> Notes {
         let mut notes = self.notes.into_inner();
-        notes.extend(self.undrawn.into_iter().map(|(what, materials)| format!("{what} isn't drawn; {materials}.")));
+        for (what, (named, count)) in self.undrawn {
+            let names = named.join(", ");
+            notes.push(match count - named.len() {
+                0 if count == 1 => format!("{what} isn't drawn; material {names} has it."),
+                0 => format!("{what} isn't drawn; materials {names} have it."),
+                more => format!("{what} isn't drawn; materials {names} and {more} more have it."),
+            });
+        }
         notes
     }
 }
@@ -339,26 +336,6 @@ impl DetailNeeds {
             }
         }
         needs
-    }
-}
-
-impl NamedMaterials {
-    fn add(&mut self, name: &str) {
-        self.count += 1;
-        if self.named.len() < NAMED {
-            self.named.push(crate::uri::shown(name));
-        }
-    }
-}
-
-impl std::fmt::Display for NamedMaterials {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let names: Vec<_> = self.named.iter().map(|name| format!("\"{name}\"")).collect();
-        match self.count - self.named.len() {
-            0 if self.count == 1 => write!(f, "material {} has it", names.concat()),
-            0 => write!(f, "materials {} have it", names.join(", ")),
-            more => write!(f, "materials {} and {more} more have it", names.join(", ")),
-        }
     }
 }
 

@@ -35,21 +35,14 @@ pub(super) fn decompress(view: &MeshoptExtension, bytes: &[u8], budget: &Budget)
     let (count, length) = (to_usize(view.count), to_usize(length));
     let mut words = vec![0_u32; length.div_ceil(4)];
     let to = words.as_mut_ptr();
-    let code = match view.mode {
-        // SAFETY: `words` has room for `count` elements of `stride` bytes, which `check` found to be of a size that the
-        // decoders take; they read no more than the bytes given.
-        MeshoptMode::Attributes => unsafe {
-            ffi::meshopt_decodeVertexBuffer(to.cast(), count, view.stride, bytes.as_ptr(), bytes.len())
-        },
-        // SAFETY: the same.
-        MeshoptMode::Triangles => unsafe {
-            ffi::meshopt_decodeIndexBuffer(to.cast(), count, view.stride, bytes.as_ptr(), bytes.len())
-        },
-        // SAFETY: the same.
-        MeshoptMode::Indices => unsafe {
-            ffi::meshopt_decodeIndexSequence(to.cast(), count, view.stride, bytes.as_ptr(), bytes.len())
-        },
+    let decode = match view.mode {
+        MeshoptMode::Attributes => ffi::meshopt_decodeVertexBuffer,
+        MeshoptMode::Triangles => ffi::meshopt_decodeIndexBuffer,
+        MeshoptMode::Indices => ffi::meshopt_decodeIndexSequence,
     };
+    // SAFETY: `words` has room for `count` elements of `stride` bytes, which `check` found to be of a size that the
+    // decoders take; they read no more than the bytes given.
+    let code = unsafe { decode(to.cast(), count, view.stride, bytes.as_ptr(), bytes.len()) };
     if code != 0 {
         let (held, mode) = (bytes.len(), view.mode);
         return Err(format!("can't be decompressed: {held} bytes aren't {count} elements in mode {mode:?}"));

@@ -15,7 +15,6 @@ use crate::memory_budget::Budget;
 use crate::parts::{Part, Parts};
 use crate::selection::Selection;
 use geometry::casts::to_usize;
-use geometry::mesh::MemoryRefused;
 
 /// The parts of a scene.
 #[derive(Debug, Default)]
@@ -46,11 +45,7 @@ pub(super) fn take(
     for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| reach.shown[*i]) {
         let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { continue };
         let Some(name) = node.name.as_ref().or(mesh.name.as_ref()).filter(|name| !name.is_empty()) else { continue };
-        let too_large = |refused: MemoryRefused| GltfError::TooLarge {
-            what: "the list of named nodes".to_owned(),
-            reason: refused.into(),
-        };
-        parts.enter(name.as_bytes(), budget).map_err(too_large)?;
+        parts.enter(name.as_bytes(), budget).map_err(GltfError::too_large("the list of named nodes"))?;
         entered.extend(parts.current().map(|part| (i, part)));
         let first = instances.get(&i).and_then(InstancingExtension::first);
         if parts.leave_out(triangles(root, mesh).saturating_mul(first.map_or(1, |first| count(root, first)))) {

@@ -6,6 +6,7 @@ use glam::{DMat4, Mat4};
 
 use super::GltfError;
 use super::notes::Notes;
+use crate::attachment::LocalTransform;
 use geometry::mesh::rig::Placement;
 
 /// The nodes of a document with their places.
@@ -62,7 +63,7 @@ pub(super) fn place(document: &Document, hiding: &[bool], notes: &mut Notes) -> 
     }
     for node in order.iter().filter_map(|&node| document.nodes().nth(node)) {
         let above = parents[node.index()].map_or(DMat4::IDENTITY, |parent| global[parent]);
-        global[node.index()] = below(above, local(&node));
+        global[node.index()] = below(above, local(&node).matrix());
     }
     let roots = document.default_scene().map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
     Ok(Placed { global, shown: walk(nodes, &parents, &roots, hiding), parents, order })
@@ -120,24 +121,15 @@ pub(super) fn below(above: DMat4, own: DMat4) -> DMat4 {
 }
 
 /// Returns a node's own transform.
-pub(super) fn local(node: &Node) -> DMat4 {
+pub(super) fn local(node: &Node) -> LocalTransform {
     match node.transform() {
-        Transform::Matrix { matrix } => Mat4::from_cols_array_2d(&matrix).as_dmat4(),
-        // Most nodes have no transform: that is worth a shortcut where there are hundreds of thousands.
-        Transform::Decomposed { translation, rotation, scale }
-            if (translation, rotation, scale) == ([0.0; 3], [0.0, 0.0, 0.0, 1.0], [1.0; 3]) =>
-        {
-            DMat4::IDENTITY
+        Transform::Matrix { matrix } => LocalTransform::Matrix(Mat4::from_cols_array_2d(&matrix).as_dmat4()),
+        Transform::Decomposed { translation, rotation, scale } => {
+            let [translation, scale] = [translation, scale].map(|v| glam::Vec3::from(v).as_dvec3());
+            let rotation = glam::Quat::from_array(rotation).as_dquat();
+            LocalTransform::Placement(Placement { translation, rotation, scale })
         }
-        Transform::Decomposed { .. } => placement(node).unwrap_or_default().matrix(),
     }
-}
-
-/// Returns a node's own transform as translation, rotation and scale; none if the file has a matrix.
-pub(super) fn placement(node: &Node) -> Option<Placement> {
-    let Transform::Decomposed { translation, rotation, scale } = node.transform() else { return None };
-    let [translation, scale] = [translation, scale].map(|v| glam::Vec3::from(v).as_dvec3());
-    Some(Placement { translation, rotation: glam::Quat::from_array(rotation).as_dquat(), scale })
 }
 
 /// Returns the number of morph targets of a node's mesh: the greatest number of a primitive.

@@ -11,7 +11,7 @@ use ::gltf::{Document, Mesh, Primitive, Semantic};
 use super::accessor::List;
 use super::animated_vertices::{self, AnimatedVertices};
 use super::materials::Resolved;
-use super::notes::Notes;
+use super::notes::{Notes, counted, counts};
 use super::primitive_data::PrimitiveData;
 use super::rig_builder::NodeBinder;
 use crate::Budget;
@@ -33,18 +33,23 @@ use geometry::mesh::mesh_builder::{CornerRepairs, InputCorner, MeshBuilder, Stor
 pub(super) struct PrimitiveReader {
     import: Import,
     read: usize,
-    points: usize,
-    lines: usize,
-    positionless: usize,
+    left_out: LeftOut,
     repairs: VertexRepairs,
     /// What is wrong with attributes that a primitive can do without.
     pub notes: Notes,
-    /// Indices at the end of a list that don't make a whole triangle.
-    left_over: usize,
     /// Corners of triangles whose normal wasn't of unit length in the file.
     pub rescaled: u32,
     /// Triangles with a position that isn't finite or is too far away, and the primitive of the first one.
     unplaced: (usize, Option<String>),
+}
+
+counts! {
+    struct LeftOut {
+        left_over => "indices at the end of triangle lists that make no whole triangle, left out";
+        points => "primitives of points, left out";
+        lines => "primitives of lines, left out";
+        positionless => "primitives without positions, left out";
+    }
 }
 
 /// A primitive that is to be read, and where it goes.
@@ -125,11 +130,11 @@ impl PrimitiveReader {
     /// Returns whether a primitive consists of points or lines, or has no positions, and counts it if so.
     pub(super) fn skip(&mut self, primitive: &Primitive) -> bool {
         let count = match primitive.mode() {
-            Mode::Points => &mut self.points,
-            Mode::Lines | Mode::LineLoop | Mode::LineStrip => &mut self.lines,
+            Mode::Points => &mut self.left_out.points,
+            Mode::Lines | Mode::LineLoop | Mode::LineStrip => &mut self.left_out.lines,
             _ if primitive.get(&Semantic::Positions).is_none() => {
                 self.read += 1;
-                &mut self.positionless
+                &mut self.left_out.positionless
             }
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan => return false,
         };
@@ -153,7 +158,7 @@ impl PrimitiveReader {
         let moving = binder.map(|binder| AnimatedVertices::new(budget, &vertices, pose.instance, is_morphing, binder));
         let indices = Indices::new(&source, vertices.count)?;
         // The number and the marks of each vertex's corner, and a bit that says whether it is used.
-        budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(too_large)?;
+        budget.borrow(vertices.count as u64 * 5 + vertices.count as u64 / 8).map_err(GltfError::large_scene)?;
         let used = used(&indices, vertices.count).map_err(|reason| source.problem(reason))?;
         let kept = KeptVertices::from_used(&mut vertices, &used, moving, details, builder, budget)?;
         drop(used);
@@ -161,9 +166,11 @@ impl PrimitiveReader {
         self.repairs = vertices.repairs;
         self.read += 1;
         if mode == Mode::Triangles {
-            self.left_over += count % 3;
+            self.left_out.left_over += count % 3;
         }
-        builder.make_room_for_triangles(material.index, most_triangles(mode, count), budget).map_err(too_large)?;
+        builder
+            .make_room_for_triangles(material.index, most_triangles(mode, count), budget)
+            .map_err(GltfError::large_scene)?;
         let unplaced = self.add_triangles(mode, &indices, &kept, builder, material.index);
         if unplaced > 0 {
             self.unplaced.0 += unplaced;
@@ -199,27 +206,12 @@ impl PrimitiveReader {
 
     /// Returns what was left out or repaired, one sentence each, except for the mesh's own repairs.
     pub(super) fn warnings(&self) -> Vec<String> {
-        let VertexRepairs { without_normals, bad_uvs, missing_uvs, bad_colors, bad_tangents, bad_weights, .. } =
-            self.repairs;
-        let (without_normals, made) = self.import.lacking_normals(without_normals, "primitives without normals");
-        let sentences = [
-            (without_normals, made.as_str()),
-            (bad_uvs, "uvs that aren't finite, replaced by (0, 0)"),
-            (missing_uvs, "primitives without the texture coordinates of a map, which has (0, 0) there"),
-            (bad_colors, "colours of vertices that aren't finite, replaced by white"),
-            (bad_tangents, "tangents without a direction, replaced by ones that are computed"),
-            (bad_weights, "vertices with unusable joints or weights, left unskinned"),
-            (self.left_over, "indices at the end of triangle lists that make no whole triangle, left out"),
-            (self.points, "primitives of points, left out"),
-            (self.lines, "primitives of lines, left out"),
-            (self.positionless, "primitives without positions, left out"),
-        ];
-        let found = sentences.into_iter().filter(|(count, _)| *count > 0);
-        let mut found: Vec<_> = found.map(|(count, sentence)| format!("{sentence}: {count}.")).collect();
-        if without_normals > 0 && self.import.crease_angle > 0.0 {
-            // It is the first.
-            found[0].push_str(" glTF asks for flat ones, which a crease angle of 0 gives.");
+        let lacking = self.import.lacking_normals(self.repairs.without_normals, "primitives without normals");
+        let mut found: Vec<_> = counted([lacking]).collect();
+        if let Some(lacking) = found.first_mut().filter(|_| self.import.crease_angle > 0.0) {
+            lacking.push_str(" glTF asks for flat ones, which a crease angle of 0 gives.");
         }
+        found.extend(self.repairs.flaws.sentences().chain(self.left_out.sentences()));
         if self.repairs.cut_weights > 0 {
             let (count, percent) = (self.repairs.cut_weights, self.repairs.largest_cut * 100.0);
             let said = "vertices that more than four joints move, of which the four with the largest weights are kept";
@@ -231,7 +223,7 @@ impl PrimitiveReader {
 
     /// Returns what the document holds instead of triangles.
     pub(super) fn holds(&self, document: &Document) -> String {
-        match (document.meshes().len(), self.points, self.lines) {
+        match (document.meshes().len(), self.left_out.points, self.left_out.lines) {
             (0, ..) => "the document has no meshes".to_owned(),
             (_, 0, 0) if self.read == 0 => "no node of its scene has a mesh".to_owned(),
             (_, 0, 0) => {
@@ -324,10 +316,6 @@ impl KeptVertices {
     const RESCALED: u8 = 2 << CornerRepairs::BITS;
     const UNPLACED: u8 = 4 << CornerRepairs::BITS;
 
-    fn new(count: usize) -> Self {
-        Self { ids: Vec::with_capacity(count), marks: Vec::with_capacity(count) }
-    }
-
     /// Stores the corners of the vertices whose bit in `used` is set, with what moves them and their details.
     ///
     /// # Errors
@@ -340,7 +328,7 @@ impl KeptVertices {
         builder: &mut MeshBuilder,
         budget: &Budget,
     ) -> Result<Self, GltfError> {
-        let mut kept = Self::new(vertices.count);
+        let mut kept = Self { ids: Vec::with_capacity(vertices.count), marks: Vec::with_capacity(vertices.count) };
         // What moves a vertex gets its number in the order of the vertices, and its memory before that of later corners.
         let at_once = if moving.is_some() { BATCH } else { at_once(vertices.count) };
         for first in (0..vertices.count).step_by(at_once) {
@@ -352,7 +340,7 @@ impl KeptVertices {
                 }),
             };
             read.iter().for_each(|(_, repairs)| vertices.repairs.add(repairs));
-            kept.store(&read, used, details.as_deref_mut(), builder, budget).map_err(too_large)?;
+            kept.store(&read, used, details.as_deref_mut(), builder, budget).map_err(GltfError::large_scene)?;
         }
         Ok(kept)
     }
@@ -410,11 +398,6 @@ impl KeptVertices {
         let repairs = CornerRepairs(self.marks[i as usize] & (Self::MIRRORED - 1));
         StoredCorner { id: self.ids[i as usize], repairs }
     }
-}
-
-/// The error of a scene that takes too much memory.
-fn too_large(refused: MemoryRefused) -> GltfError {
-    GltfError::TooLarge { what: "the scene".to_owned(), reason: refused.into() }
 }
 
 /// Returns a bit for each vertex that says whether an index names it.

@@ -98,11 +98,7 @@ impl<'a> PrimitiveData<'a> {
         count: usize,
     ) -> Result<List<'a, [f32; N]>, GltfError> {
         let role = format!("{attribute} of {}", self.name);
-        self.accessors.check_sound(accessor)?;
-        if accessor.count() != count {
-            let reason = format!("has {} elements for {count} vertices", accessor.count());
-            return Err(GltfError::Accessor { accessor: accessor.index(), role, reason });
-        }
+        self.accessors.check_count(accessor, &role, count, "vertices")?;
         match self.unpacked.and_then(|unpacked| unpacked.attributes.get(attribute)) {
             Some(Ok(values)) if accessor.dimensions().multiplicity() == N => {
                 Ok(List::new(values.as_chunks().0, [0.0; N]))

@@ -22,9 +22,7 @@ const ROUNDING: f64 = 1e-3;
 /// # Errors
 /// [`GltfError::Document`] if what replaces broken parts would take too much memory.
 pub(super) fn before_check(root: &mut Map<String, Value>, budget: &Budget) -> Result<Vec<(usize, String)>, GltfError> {
-    let too_large =
-        |refused: MemoryRefused| GltfError::Document { pointer: "its JSON".to_owned(), reason: refused.into() };
-    hold_replacements(root, budget).map_err(too_large)?;
+    hold_replacements(root, budget).map_err(GltfError::large_json)?;
     for (_, mesh) in objects(root, "meshes") {
         for (_, primitive) in objects(mesh, "primitives").filter(|(_, primitive)| !is_drawn(primitive)) {
             let mode = primitive.remove("mode").filter(|mode| mode.as_u64().is_some_and(|mode| mode <= 6));

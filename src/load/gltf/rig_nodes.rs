@@ -3,16 +3,12 @@
 use ::gltf::Document;
 
 use super::nodes::{self, Placed};
-use crate::attachment::{LocalTransform, SceneNodes};
+use crate::attachment::SceneNodes;
 use geometry::mesh::rig::{Clip, Property};
 
 /// Describes the nodes of a document, with the morph targets of those that are shown. `also` are nodes that carry something beside
 /// meshes, if they are shown.
 pub(super) fn of(document: &Document, placed: &Placed, also: impl Iterator<Item = usize>) -> SceneNodes {
-    let local = |node| match nodes::placement(&node) {
-        Some(placement) => LocalTransform::Placement(placement),
-        None => LocalTransform::Matrix(nodes::local(&node)),
-    };
     let all: Vec<_> = document.nodes().collect();
     let morphed = placed.shown.iter().filter_map(|&index| {
         let node = all.get(index)?;
@@ -26,7 +22,7 @@ pub(super) fn of(document: &Document, placed: &Placed, also: impl Iterator<Item 
         order: placed.order.clone(),
         carries: carries_shown(document, placed, also),
         morphed: morphed.collect(),
-        local: all.iter().cloned().map(local).collect(),
+        local: all.iter().map(nodes::local).collect(),
         grown: Vec::new(),
     }
 }
@@ -57,11 +53,6 @@ fn carries_shown(document: &Document, placed: &Placed, also: impl Iterator<Item 
     }
     let is_shown = placed.is_shown();
     also.filter(|node| is_shown.get(*node) == Some(&true)).for_each(|node| carries[node] = true);
-    // Children before parents.
-    for &node in placed.order.iter().rev() {
-        if let Some(parent) = placed.parents[node].filter(|_| carries[node]) {
-            carries[parent] = true;
-        }
-    }
+    SceneNodes::include_parents(&mut carries, &placed.order, &placed.parents);
     carries
 }

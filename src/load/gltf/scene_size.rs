@@ -10,10 +10,10 @@ use super::nodes::Placed;
 use super::{Accessors, GltfError, instances, primitive};
 use crate::memory_budget::edge_bytes;
 use geometry::casts::to_usize;
+use geometry::mesh::borrowing;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::interner::Interner;
-use geometry::mesh::{MemoryRefused, borrowing};
 
 /// The greatest number of vertices, their displacements and indices, each counted as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
@@ -104,15 +104,12 @@ pub(crate) fn check(
     // All triangles are put into one list after the buffers have been freed.
     let finished = (all.corners * 4 + all.triangles * 2 * PER_TRIANGLE).saturating_sub(accessors.buffer_bytes());
     let finished = if all.primitives > 1 { finished } else { 0 };
-    let too_large = |refused: MemoryRefused| GltfError::TooLarge {
-        what: format!("the scene of {} triangles", all.triangles),
-        reason: refused.into(),
-    };
+    let scene = format!("the scene of {} triangles", all.triangles);
     let beside = moving.saturating_add(all.primitives.saturating_mul(PER_PRIMITIVE));
     let ahead = all.corners * PER_CORNER + all.zeros * PER_ZERO + details + read.max(finished);
     // What is borrowed is only checked: the builder takes the memory as it goes.
     let ahead_of = || borrowing(budget, || budget.borrow(ahead)).inspect_err(|_| budget.release(beside));
-    budget.hold(beside).and_then(|()| ahead_of()).map_err(too_large)?;
+    budget.hold(beside).and_then(|()| ahead_of()).map_err(GltfError::too_large(&scene))?;
     // By then the file's data has been freed.
     let edges = edge_bytes(all.corners, all.triangles) + if is_detailed { all.corners * PER_DETAIL } else { 0 };
     let bytes = ahead.max(edges.saturating_sub(accessors.buffer_bytes()));

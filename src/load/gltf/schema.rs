@@ -14,7 +14,6 @@ pub(super) struct Field {
 pub(super) enum MemberKind {
     /// An index into one of the document's lists.
     Index(&'static str),
-    Indices(&'static str),
     /// A whole number.
     Whole {
         least: u64,
@@ -32,20 +31,17 @@ pub(super) enum MemberKind {
     /// One of these words.
     Word(&'static [&'static str]),
     Object(&'static [Field]),
-    Objects(&'static [Field]),
+    /// A list of these.
+    List(&'static MemberKind),
     /// Objects, of which one that can't be read is replaced by this one.
     Parts(&'static [Field], &'static str),
     /// Indices of accessors by attribute name; the function says which names are read.
     Attributes(fn(&str) -> bool),
-    /// A list of morph targets, each like `Attributes`.
-    Targets(fn(&str) -> bool),
     /// Whole numbers of 32 bits by attribute name; the function says which names are read.
     Ids(fn(&str) -> bool),
 }
 
-use MemberKind::{
-    Attributes, Code, Flag, Ids, Index, Indices, Name, Numbers, Object, Objects, Parts, Targets, Text, Whole, Word,
-};
+use MemberKind::{Attributes, Code, Flag, Ids, Index, List, Name, Numbers, Object, Parts, Text, Whole, Word};
 
 const fn needed(name: &'static str, kind: MemberKind) -> Field {
     Field { name, kind, required: true }
@@ -79,17 +75,17 @@ pub(super) static DOCUMENT: &[Field] = &[
     may("nodes", Parts(NODE, "{}")),
     may("meshes", Parts(MESH, r#"{"primitives":[]}"#)),
     may("skins", Parts(SKIN, r#"{"joints":[]}"#)),
-    may("materials", Objects(&[])),
+    may("materials", List(&Object(&[]))),
     may("accessors", Parts(ACCESSOR, r#"{"componentType":5126,"count":0,"type":"SCALAR"}"#)),
     may("bufferViews", Parts(VIEW, r#"{"buffer":0,"byteLength":0}"#)),
     may("buffers", Parts(BUFFER, r#"{"byteLength":0}"#)),
     may("scene", Index("scenes")),
-    may("scenes", Parts(&[may("nodes", Indices("nodes"))], "{}")),
+    may("scenes", Parts(&[may("nodes", List(&Index("nodes")))], "{}")),
 ];
 
 static NODE: &[Field] = &[
     may("name", Name),
-    may("children", Indices("nodes")),
+    may("children", List(&Index("nodes"))),
     may("mesh", Index("meshes")),
     may("skin", Index("skins")),
     may("matrix", Numbers(Some(16))),
@@ -100,20 +96,21 @@ static NODE: &[Field] = &[
     may("extensions", Object(&[may(INSTANCING, Object(&[needed("attributes", Attributes(is_placement))]))])),
 ];
 
-static MESH: &[Field] = &[may("name", Name), needed("primitives", Objects(PRIMITIVE)), may("weights", Numbers(None))];
+static MESH: &[Field] =
+    &[may("name", Name), needed("primitives", List(&Object(PRIMITIVE))), may("weights", Numbers(None))];
 
 static PRIMITIVE: &[Field] = &[
     needed("attributes", Attributes(is_attribute)),
     may("indices", Index("accessors")),
     may("material", Index("materials")),
     may("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
-    may("targets", Targets(is_displacement)),
+    may("targets", List(&Attributes(is_displacement))),
     may("extensions", Object(&[may(DRACO, Object(PACKED))])),
 ];
 
 static PACKED: &[Field] = &[needed("bufferView", Index("bufferViews")), needed("attributes", Ids(is_attribute))];
 
-static SKIN: &[Field] = &[needed("joints", Indices("nodes")), may("inverseBindMatrices", Index("accessors"))];
+static SKIN: &[Field] = &[needed("joints", List(&Index("nodes"))), may("inverseBindMatrices", Index("accessors"))];
 
 static ACCESSOR: &[Field] = &[
     may("bufferView", Index("bufferViews")),

@@ -133,7 +133,6 @@ impl Checker {
         let fits = |is: bool, what: &str| if is { Ok(()) } else { path.should_be(what, value) };
         match kind {
             MemberKind::Index(list) => self.index(value, list, path),
-            MemberKind::Indices(list) => each(value, path, |value, path| self.index(value, list, path)),
             MemberKind::Whole { least, most } => whole(value, *least, *most, path),
             MemberKind::Numbers(count) => numbers(value, *count, path),
             MemberKind::Text | MemberKind::Name => fits(value.is_string(), "text"),
@@ -143,7 +142,7 @@ impl Checker {
             MemberKind::Word(words) if value.as_str().is_some_and(|own| words.contains(&own)) => Ok(()),
             MemberKind::Word(words) => path.should_be(&one_of(words), value),
             MemberKind::Object(fields) => self.fields(value, fields, path),
-            MemberKind::Objects(fields) => each(value, path, |value, path| self.fields(value, fields, path)),
+            MemberKind::List(kind) => each(value, path, |value, path| self.value(value, kind, path)),
             MemberKind::Parts(fields, empty) => each(value, path, |value, path| {
                 if let Err(fault) = self.fields(value, fields, path) {
                     self.keep(fault);
@@ -152,7 +151,6 @@ impl Checker {
                 Ok(())
             }),
             MemberKind::Attributes(is_read) => self.attributes(value, *is_read, path),
-            MemberKind::Targets(is_read) => each(value, path, |value, path| self.attributes(value, *is_read, path)),
             MemberKind::Ids(is_read) => ids(value, *is_read, path),
         }
     }
@@ -205,12 +203,8 @@ fn each(
 }
 
 fn whole(value: &Value, least: u64, most: u64, path: &JsonPointer) -> Result<(), Fault> {
-    match value.as_u64() {
-        Some(number) if (least..=most).contains(&number) => Ok(()),
-        Some(number) if number < least => path.fail(format!("is {number}, but must be at least {least}")),
-        Some(number) => path.fail(format!("is {number}, but must be at most {most}")),
-        None => path.should_be("a whole number", value),
-    }
+    let Some(number) = value.as_u64() else { return path.should_be("a whole number", value) };
+    within(value, (least, number < least), (most, number > most), path)
 }
 
 fn numbers(value: &mut Value, count: Option<usize>, path: &JsonPointer) -> Result<(), Fault> {
@@ -219,16 +213,19 @@ fn numbers(value: &mut Value, count: Option<usize>, path: &JsonPointer) -> Resul
     {
         return path.fail(format!("should have {count} numbers but has {}", values.len()));
     }
-    each(value, path, |value, path| match value.as_f64() {
-        Some(number) if number < f32::MIN.into() => {
-            path.fail(format!("is {value}, but must be at least {:?}", f32::MIN))
-        }
-        Some(number) if number > f32::MAX.into() => {
-            path.fail(format!("is {value}, but must be at most {:?}", f32::MAX))
-        }
-        Some(_) => Ok(()),
-        None => path.should_be("a number", value),
+    each(value, path, |value, path| {
+        let Some(number) = value.as_f64() else { return path.should_be("a number", value) };
+        within(value, (f32::MIN, number < f32::MIN.into()), (f32::MAX, number > f32::MAX.into()), path)
     })
+}
+
+/// Checks a number; each limit comes with whether the number is beyond it.
+fn within<T: fmt::Debug>(value: &Value, least: (T, bool), most: (T, bool), path: &JsonPointer) -> Result<(), Fault> {
+    match (least, most) {
+        ((least, true), _) => path.fail(format!("is {value}, but must be at least {least:?}")),
+        (_, (most, true)) => path.fail(format!("is {value}, but must be at most {most:?}")),
+        _ => Ok(()),
+    }
 }
 
 fn one_of<T: ToString>(choices: &[T]) -> String {

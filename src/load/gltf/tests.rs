@@ -15,6 +15,8 @@ use glam::{Vec2, Vec3};
 use serde_json::{Value, json};
 
 use super::*;
+use crate::Limits;
+use crate::selection::Selection;
 use geometry::cores::on_threads;
 use geometry::mesh::topology::Topology;
 use geometry::mesh::{Corner, Mesh, Repairs};
@@ -114,7 +116,7 @@ impl Draft {
 
 /// Reads a document that names no files.
 fn read_bytes(bytes: &[u8]) -> Result<LoadedMesh, GltfError> {
-    read(bytes.to_vec(), Path::new("nowhere"), "draft", Selection::default(), &Limits::default(), &Progress::new())
+    read(bytes.to_vec(), &ModelFile::from_test("draft", &Progress::new()))
 }
 
 const TRIANGLE: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];

@@ -39,7 +39,7 @@ impl<'a> VertexDetails<'a> {
             let list = needs.sets[set].then(|| source.detail(Semantic::TexCoords(to_u32(set)), count, notes));
             list.flatten()
         });
-        repairs.missing_uvs += usize::from((0..2).any(|set| needs.sets[set] && sets[set].is_none()));
+        repairs.flaws.missing_uvs += usize::from((0..2).any(|set| needs.sets[set] && sets[set].is_none()));
         let colors = colors(source, count, notes);
         let has_tangents = needs.tangents && source.has_normals(count);
         let tangents = has_tangents.then(|| source.detail(Semantic::Tangents, count, notes)).flatten();
@@ -52,7 +52,7 @@ impl<'a> VertexDetails<'a> {
         if uv.is_finite() {
             return uv;
         }
-        repairs.bad_uvs += 1;
+        repairs.flaws.bad_uvs += 1;
         Vec2::ZERO
     }
 
@@ -66,7 +66,7 @@ impl<'a> VertexDetails<'a> {
         if color.is_finite() {
             return color.clamp(Vec4::ZERO, Vec4::ONE);
         }
-        repairs.bad_colors += 1;
+        repairs.flaws.bad_colors += 1;
         Vec4::ONE
     }
 }

@@ -272,7 +272,7 @@ impl<'a> Vertices<'a> {
         }
         if !uv.is_finite() {
             uv = Vec2::ZERO;
-            findings.repairs.bad_uvs += 1;
+            findings.repairs.flaws.bad_uvs += 1;
         }
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
@@ -303,7 +303,7 @@ impl<'a> Vertices<'a> {
     fn detail(&self, i: usize, linear: &DMat3, repairs: &mut VertexRepairs) -> CornerDetail {
         let Some(details) = &self.details else { return CornerDetail::default() };
         let tangent = details.tangents.as_ref().map(|list| self.tangent(i, list.get(i), linear));
-        repairs.bad_tangents += usize::from(tangent == Some(None));
+        repairs.flaws.bad_tangents += usize::from(tangent == Some(None));
         let (tangent, bitangent_sign) = tangent.flatten().unwrap_or((Vec3::ZERO, 1.0));
         let uvs = [0, 1].map(|set| details.uv(set, i, repairs));
         CornerDetail { uvs, color: details.color(i, repairs), tangent, bitangent_sign }
@@ -344,7 +344,7 @@ impl<'a> Vertices<'a> {
         let Some(influences) = &self.influences else { return self.pose.global };
         let mut joints = found.take().unwrap_or_default();
         let Some(cut) = influences.of(i, self.pose.joints.len(), &mut joints) else {
-            repairs.bad_weights += 1;
+            repairs.flaws.bad_weights += 1;
             return DMat4::IDENTITY;
         };
         repairs.cut_weights += usize::from(cut > 0.0);

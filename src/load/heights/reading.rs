@@ -1,27 +1,27 @@
 //! Reads a height image: first its size, to check the memory that it takes, then its pixels row by row.
 
-use std::fs::File;
-use std::io::{self, BufReader, Read, Seek, SeekFrom};
+use std::io::Cursor;
 use std::path::Path;
 
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader};
 use png::{BitDepth, DecodingError};
 
 use super::{HeightError, MAX_SIZE};
-use crate::files::{file_reason, open_file};
-use crate::images::{decoding_bytes, metadata_limits};
+use crate::files::{FileError, Limits, file_reason, read_file};
+use crate::images::{decoding_bytes, metadata_limits, png_header};
 use crate::memory_budget::Budget;
+use crate::watched_bytes::watched;
 use crate::webp;
 use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::heights::HeightMap;
 use geometry::progress::{Cancelled, Progress};
 
-/// The bytes before a PNG image's width and height, which have 4 bytes each.
-const PNG_START: &[u8; 16] = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR";
+/// What is said of a file of another kind.
+const NO_IMAGE: &str = "choose a PNG, JPEG or WebP image";
 
-/// Reads a PNG, JPEG or WebP image. A PNG is read row by row, so that a large image takes no more memory than its map; a
-/// JPEG, a WebP, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `beside` is how many
+/// Reads a PNG, JPEG or WebP image. A PNG is decoded row by row, so that a large image takes no more memory than its file and its map;
+/// a JPEG, a WebP, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `beside` is how many
 /// bytes heights take beside their map.
 ///
 /// # Errors
@@ -32,21 +32,32 @@ pub(super) fn read_map(
     budget: &Budget,
     progress: &Progress,
 ) -> Result<HeightMap, HeightError> {
-    progress.check()?;
     let image = ImageFile { path, beside, budget, progress };
-    let unread = |error: io::Error| image.fail(file_reason(&error));
-    let no_file = || image.fail("it is not a file; choose a PNG, JPEG or WebP image".to_owned());
-    let (mut file, about) = open_file(path).map_err(unread)?.ok_or_else(no_file)?;
-    let size = png_size(&mut file).map_err(unread)?;
-    image.check(size.unwrap_or_default())?;
-    let length = about.len();
-    // If rows are read one by one, they set the progress, and the number of bytes read doesn't.
-    let told = size.is_none().then(|| progress.part(0.0, 0.6));
-    let mut reader = BufReader::new(ProgressReader { file, length, read: 0, progress, told });
-    if size.is_some() && !is_interlaced(&mut reader).map_err(unread)? {
-        return image.read_rows(reader, length);
+    let check = |start: &[u8]| {
+        image::guess_format(start).map_err(|_| image.fail(NO_IMAGE.to_owned()))?;
+        image.check(png_header(start).map_or([0; 2], |(size, _)| size)).map(|_| ())
+    };
+    // What the image takes is limited by its size in px.
+    let bytes = read_file(path, &Limits { file: u64::MAX, memory: 0 }, check, progress)?;
+    budget.allow(bytes.len() as u64);
+    match png_header(&bytes) {
+        Some((_, false)) => image.read_rows(&bytes),
+        _ => image.read_whole(&bytes),
     }
-    image.read_whole(reader, length)
+}
+
+impl From<FileError> for HeightError {
+    fn from(error: FileError) -> Self {
+        let (path, reason) = match error {
+            FileError::Cancelled(cancelled) => return cancelled.into(),
+            FileError::NotAFile { path } => (path, format!("it is not a file; {NO_IMAGE}")),
+            FileError::Io { path, source } => (path, file_reason(&source)),
+            FileError::Changed { path } | FileError::TooLarge { path, .. } => {
+                (path, "it changed while it was read; open it again once it is whole".to_owned())
+            }
+        };
+        Self::Image { path, reason }
+    }
 }
 
 /// Computes the brightness of pixels of 8 or 16 bits a channel, with the weights of Rec. 709 and no transfer function,
@@ -108,22 +119,16 @@ impl ImageFile<'_> {
         }
     }
 
-    /// Returns the cancellation if the job was cancelled, since that stops reading with some error; otherwise `error`.
-    fn stopped_or(&self, error: HeightError) -> HeightError {
-        self.progress.check().map_or_else(HeightError::from, |()| error)
-    }
-
     /// Reads a PNG image that isn't interlaced.
-    fn read_rows(&self, reader: BufReader<ProgressReader>, length: u64) -> Result<HeightMap, HeightError> {
-        let undecoded = |error: DecodingError| self.stopped_or(self.fail(error.to_string()));
-        let mut decoder = png::Decoder::new(reader);
+    fn read_rows(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        let undecoded = |error: DecodingError| self.fail(error.to_string());
+        let mut decoder = png::Decoder::new(Cursor::new(bytes));
         decoder.set_ignore_iccp_chunk(true);
         decoder.set_ignore_text_chunk(true);
         decoder.set_transformations(png::Transformations::EXPAND);
         let mut reader = decoder.read_info().map_err(undecoded)?;
         let size = self.check(reader.info().size().into())?;
-        self.budget.allow(length);
-        self.afford(size, length, 0, 0)?;
+        self.afford(size, bytes, 0, 0)?;
         let (color, depth) = reader.output_color_type();
         let line = reader.output_line_size(size[0]).ok_or_else(|| self.fail("its rows are too long".to_owned()))?;
         let mut line = vec![0; line];
@@ -135,15 +140,16 @@ impl ImageFile<'_> {
     }
 
     /// Reads any image by decoding all its pixels at once.
-    fn read_whole(&self, mut reader: BufReader<ProgressReader>, length: u64) -> Result<HeightMap, HeightError> {
-        let undecoded = |error: ImageError| match error {
-            ImageError::Unsupported(_) => self.fail("choose a PNG, JPEG or WebP image".to_owned()),
-            error => self.stopped_or(self.fail(error.to_string())),
+    fn read_whole(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        // Cancelling stops the decoder with some error.
+        let undecoded = |error: ImageError| match (self.progress.check(), error) {
+            (Err(cancelled), _) => cancelled.into(),
+            (_, ImageError::Unsupported(_)) => self.fail(NO_IMAGE.to_owned()),
+            (_, error) => self.fail(error.to_string()),
         };
-        let unread = |error: io::Error| self.stopped_or(self.fail(error.to_string()));
-        self.budget.allow(length);
-        webp::check(&mut reader, self.budget.allowed()).map_err(unread)?;
-        let mut reader = ImageReader::new(reader).with_guessed_format().map_err(unread)?;
+        webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
+        let watched = ImageReader::new(watched(bytes, self.progress.part(0.0, 0.6)));
+        let mut reader = watched.with_guessed_format().map_err(|error| undecoded(error.into()))?;
         let decoding = Borrowed::from(self.budget);
         if reader.format() == Some(ImageFormat::Png) {
             reader.limits(metadata_limits(self.budget));
@@ -151,72 +157,26 @@ impl ImageFile<'_> {
         let decoder = reader.into_decoder().map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
-        // What decoding takes is freed before a map is made from the pixels. A JPEG decoder also keeps the file's bytes.
-        self.afford(size, length, count, decoding_bytes(&decoder) - count)?;
-        let mut bytes = vec![0; to_usize(count)];
-        decoder.read_image(&mut bytes).map_err(undecoded)?;
+        // What decoding takes is freed before a map is made from the pixels.
+        self.afford(size, bytes, count, decoding_bytes(&decoder) - count)?;
+        let mut px = vec![0; to_usize(count)];
+        decoder.read_image(&mut px).map_err(undecoded)?;
         drop(decoding);
-        Ok(map_of_px(size, color, &bytes, &self.progress.part(0.6, 1.0))?)
+        Ok(map_of_px(size, color, &px, &self.progress.part(0.6, 1.0))?)
     }
 
     /// Checks that the budget has room for an image of this size: `px` bytes of decoded pixels, `decoding` bytes while
     /// it is decoded, and the map, which is held.
-    fn afford(&self, size: [u32; 2], length: u64, px: u64, decoding: u64) -> Result<(), HeightError> {
+    fn afford(&self, size: [u32; 2], bytes: &[u8], px: u64, decoding: u64) -> Result<(), HeightError> {
         let kept = HeightMap::bytes_to_build(size).saturating_add(self.beside);
         let too_much = |refused: MemoryRefused| HeightError::TooMuch {
             path: self.path.to_owned(),
             size,
             reason: refused.to_string(),
         };
-        // A decoder keeps the file's bytes too.
-        let all = px.saturating_add(kept.max(decoding)).saturating_add(length);
+        let all = px.saturating_add(kept.max(decoding)).saturating_add(bytes.len() as u64);
         borrowing(self.budget, || self.budget.borrow(all)).map_err(too_much)?;
         self.budget.hold(kept).map_err(too_much)
-    }
-}
-
-/// Returns the size in the header of a PNG image, or none for another file. Afterwards the file is at its start.
-fn png_size(file: &mut File) -> io::Result<Option<[u32; 2]>> {
-    let mut start = Vec::new();
-    file.by_ref().take(24).read_to_end(&mut start)?;
-    file.seek(SeekFrom::Start(0))?;
-    let numbers = start.strip_prefix(PNG_START).and_then(|rest| rest.as_chunks::<4>().0.first_chunk::<2>());
-    Ok(numbers.map(|numbers| numbers.map(u32::from_be_bytes)))
-}
-
-/// Returns whether the header of a PNG image says that it is interlaced. Afterwards the file is at its start.
-fn is_interlaced(file: &mut (impl Read + Seek)) -> io::Result<bool> {
-    let mut start = Vec::new();
-    file.by_ref().take(29).read_to_end(&mut start)?;
-    file.seek(SeekFrom::Start(0))?;
-    Ok(start.get(28).is_some_and(|&order| order != 0))
-}
-
-/// A file that stops reading once the job was cancelled, and reports how much of it was read if `told` is set.
-struct ProgressReader<'a> {
-    file: File,
-    length: u64,
-    read: u64,
-    progress: &'a Progress,
-    told: Option<Progress>,
-}
-
-impl Read for ProgressReader<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        self.progress.check().map_err(io::Error::other)?;
-        let count = self.file.read(buffer)?;
-        self.read += count as u64;
-        if let Some(told) = &self.told {
-            told.set(self.read as f32 / self.length.max(1) as f32);
-        }
-        Ok(count)
-    }
-}
-
-impl Seek for ProgressReader<'_> {
-    fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
-        self.read = self.file.seek(to)?;
-        Ok(self.read)
     }
 }
 
@@ -240,7 +200,7 @@ mod tests {
     }
 
     fn png(image: &DynamicImage) -> Vec<u8> {
-        let mut bytes = io::Cursor::new(Vec::new());
+        let mut bytes = Cursor::new(Vec::new());
         image.write_to(&mut bytes, image::ImageFormat::Png).expect("an image in memory");
         bytes.into_inner()
     }
@@ -272,7 +232,7 @@ mod tests {
     fn large_images_are_refused_with_name_size_and_limit() {
         // Only its header, 8 bits gray, 20000 x 20000. Since nothing follows, only the size can have caused the
         // refusal.
-        let mut header = PNG_START.to_vec();
+        let mut header = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR".to_vec();
         header.extend([20_000_u32, 20_000].map(u32::to_be_bytes).as_flattened());
         header.extend([8, 0, 0, 0, 0]);
         let folder = tempfile::tempdir().expect("a writable temporary folder");

@@ -2,6 +2,10 @@ use image::{DynamicImage, ImageBuffer, Luma, LumaA, Rgb, Rgba};
 
 use super::*;
 
+pub(crate) fn decode_texture(bytes: &[u8], budget: &Budget) -> Result<Texture, String> {
+    decode_halved(bytes, 0, MipFilter::Colors, budget)
+}
+
 fn encoded(image: &DynamicImage, format: ImageFormat) -> Vec<u8> {
     let mut bytes = Cursor::new(Vec::new());
     image.write_to(&mut bytes, format).expect("in memory");

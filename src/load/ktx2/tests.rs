@@ -1,7 +1,7 @@
 //! KTX2 files: those of the reference encoder of Basis Universal, and such as are put together here.
 
 use super::*;
-use crate::images::decode_texture;
+use crate::images::tests::decode_texture;
 use crate::memory_budget::Budget;
 
 /// Files that `basisu` 2.1 made: four squares of one colour each, whose right half has an alpha of 64 in those with alpha; and

@@ -4,6 +4,7 @@ use super::pieces::Piece;
 use super::vertices::group;
 use super::{Statement, each_statement};
 use crate::face_builder::MAX_CORNERS;
+use crate::notes::counts;
 use crate::read_error::ReadError;
 use crate::recent_corners::VertexNumbers;
 use crate::text_lines::{parsed, shown, words};
@@ -41,32 +42,17 @@ pub(super) enum Found {
     Material(Box<[u8]>),
 }
 
-/// Numbers of statements that don't make triangles, and of flaws; for points, the number of points.
-#[derive(Clone, Copy, Default)]
-pub(super) struct StatementCounts {
-    pub points: usize,
-    pub lines: usize,
-    pub surfaces: usize,
-    /// Of other files and of programs.
-    pub calls: usize,
-    pub unknown: usize,
-    /// Corners of faces with more than three numbers.
-    pub long_corners: usize,
-    /// Corners whose texture coordinates, or whose normal, aren't in the file.
-    pub absent_uvs: usize,
-    pub absent_normals: usize,
-}
-
-impl StatementCounts {
-    pub(super) fn add(&mut self, other: Self) {
-        self.points += other.points;
-        self.lines += other.lines;
-        self.surfaces += other.surfaces;
-        self.calls += other.calls;
-        self.unknown += other.unknown;
-        self.long_corners += other.long_corners;
-        self.absent_uvs += other.absent_uvs;
-        self.absent_normals += other.absent_normals;
+counts! {
+    /// Numbers of statements that don't make triangles, and of flaws; for points, the number of points.
+    pub(super) struct StatementCounts {
+        long_corners => "corners with more than three numbers, of which the first three are read";
+        absent_normals => "corners with the number of a normal that isn't in the file, left out";
+        absent_uvs => "corners with the number of texture coordinates that aren't in the file, replaced by (0, 0)";
+        points => "points (p), left out";
+        lines => "lines (l), left out";
+        surfaces => "free-form curves and surfaces (curv, curv2, surf), which aren't read";
+        calls => "calls of other files and of programs (call, csh), left out";
+        unknown => "statements that OBJ doesn't have, left out";
     }
 }
 

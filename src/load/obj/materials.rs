@@ -7,8 +7,9 @@ use glam::Vec2;
 
 use super::mtl::{self, MtlMap, MtlMaterial, MtlTexture};
 use super::textures::{Giving, TextureUser, are_normals};
-use crate::face_builder::{FaceBuilder, counted};
+use crate::face_builder::FaceBuilder;
 use crate::images::decoded_bytes;
+use crate::notes::counts;
 use crate::read_error::ReadError;
 use crate::text_lines::{shown, words};
 use crate::texture_room::{ReadImage, read_images};
@@ -44,13 +45,18 @@ pub(super) struct Materials<'a> {
     textures: Vec<TextureFile>,
     numbers: HashMap<String, usize>,
     problems: Vec<String>,
-    bad_statements: usize,
-    libraries_left_out: usize,
-    undescribed: usize,
-    /// Materials in use that have heights.
-    bumped: usize,
-    /// Materials in use whose bump map was taken for a normal map.
-    with_normals_as_bumps: usize,
+    found: Counts,
+}
+
+counts! {
+    struct Counts {
+        bad_statements => "numbers in material files that can't be read, left out";
+        libraries_left_out => "material files beyond the first 64, left out";
+        undescribed => "materials that no material file describes, shown white";
+        bumped => "materials with a bump map (map_Bump, bump), whose heights aren't drawn; norm names a normal map";
+        with_normals_as_bumps =>
+            "materials with a bump map (map_Bump, bump) that is an image of normals, drawn as a normal map";
+    }
 }
 
 impl<'a> Materials<'a> {
@@ -66,11 +72,7 @@ impl<'a> Materials<'a> {
             textures: Vec::new(),
             numbers: HashMap::new(),
             problems: Vec::new(),
-            bad_statements: 0,
-            libraries_left_out: 0,
-            undescribed: 0,
-            bumped: 0,
-            with_normals_as_bumps: 0,
+            found: Counts::default(),
         }
     }
 
@@ -97,12 +99,12 @@ impl<'a> Materials<'a> {
             return;
         }
         if self.libraries.len() == MAX_LIBRARIES {
-            self.libraries_left_out += 1;
+            self.found.libraries_left_out += 1;
             return;
         }
         match borrowing(self.files.budget, || self.files.read_path(&name).and_then(|bytes| mtl::read(&bytes))) {
             Ok((materials, bad)) => {
-                self.bad_statements += bad;
+                self.found.bad_statements += bad;
                 // Of several materials with one name the first counts, as in most programs.
                 materials.into_iter().for_each(|material| {
                     self.described.entry(material.name.clone()).or_insert(material);
@@ -177,13 +179,13 @@ impl<'a> Materials<'a> {
         }
         let shown = String::from_utf8_lossy(&self.name).into_owned();
         let Some(described) = self.described.get(&self.name) else {
-            self.undescribed += 1;
+            self.found.undescribed += 1;
             return (Material::plain(&shown, [1.0; 4]), Vec::new());
         };
         let &MtlMaterial { color: [r, g, b], emissive, alpha, transparency, roughness, metallic, .. } = described;
         // Programs write both, or one of them.
         let alpha = if alpha == 1.0 { 1.0 - transparency } else { alpha };
-        self.bumped += usize::from(described.textures.contains_key(&MtlMap::Bump));
+        self.found.bumped += usize::from(described.textures.contains_key(&MtlMap::Bump));
         let with_factor = |(map, texture): (_, &MtlTexture)| (map, described.factor(map, texture), texture.clone());
         let textures: Vec<_> = described.maps().map(with_factor).collect();
         let is_clamped = textures.first().is_some_and(|(.., texture)| texture.is_clamped);
@@ -222,8 +224,8 @@ impl<'a> Materials<'a> {
             let (bumps, mut users): (Vec<_>, Vec<_>) =
                 file.users.into_iter().partition(|user| user.map == MtlMap::Bump);
             if !bumps.is_empty() && texture.as_ref().is_some_and(|texture| are_normals(texture)) {
-                self.bumped -= bumps.len();
-                self.with_normals_as_bumps += bumps.len();
+                self.found.bumped -= bumps.len();
+                self.found.with_normals_as_bumps += bumps.len();
                 users.extend(bumps);
             }
             if users.is_empty() {
@@ -242,21 +244,7 @@ impl<'a> Materials<'a> {
 
     /// Returns what is missing or broken, one sentence each.
     pub(super) fn warnings(&mut self) -> Vec<String> {
-        let mut warnings = std::mem::take(&mut self.problems);
-        warnings.extend(counted([
-            (self.bad_statements, "numbers in material files that can't be read, left out"),
-            (self.libraries_left_out, "material files beyond the first 64, left out"),
-            (self.undescribed, "materials that no material file describes, shown white"),
-            (
-                self.bumped,
-                "materials with a bump map (map_Bump, bump), whose heights aren't drawn; norm names a normal map",
-            ),
-            (
-                self.with_normals_as_bumps,
-                "materials with a bump map (map_Bump, bump) that is an image of normals, drawn as a normal map",
-            ),
-        ]));
-        warnings
+        std::mem::take(&mut self.problems).into_iter().chain(self.found.sentences()).collect()
     }
 }
 

@@ -35,8 +35,7 @@ pub(super) struct Piece<'a> {
 impl<'a> Piece<'a> {
     /// Divides a text. No statement begins in one piece and is continued in the next.
     pub(super) fn all(text: &'a [u8]) -> Vec<Self> {
-        let whole = Lines::new(text);
-        let (mut rest, end) = (whole.rest(), whole.end());
+        let Lines { mut rest, end, .. } = Lines::new(text);
         let mut pieces = Vec::new();
         while !rest.is_empty() {
             let (bytes, others) = rest.split_at(length(rest, end));
@@ -55,7 +54,7 @@ impl<'a> Piece<'a> {
 
     /// Returns its lines.
     pub(super) fn lines(&self) -> Lines<'a> {
-        Lines::from_part(self.bytes, self.end, self.above)
+        Lines { rest: self.bytes, end: self.end, count: self.above, is_open: false }
     }
 }
 

@@ -41,7 +41,7 @@ impl Giving {
     /// Gives an image to a material of this index.
     pub(super) fn give(&mut self, faces: &mut FaceBuilder, user: &TextureUser, texture: &Arc<Texture>) {
         let &TextureUser { material: index, map, factor } = user;
-        let (material, texture) = (faces.material_mut(index), texture.clone());
+        let (material, texture) = (faces.builder.material_mut(index), texture.clone());
         match map {
             MtlMap::BaseColor => material.texture = Some(texture),
             MtlMap::Emissive => {
@@ -81,7 +81,7 @@ impl Giving {
             join().map(|texture| known.entry(key).or_insert(Arc::new(texture)).clone())
         };
         for (index, Parts { opacity, roughness, metalness }) in &self.0 {
-            let material = faces.material_mut(*index);
+            let material = faces.builder.material_mut(*index);
             let mut warn = |what: &str, reason: String| {
                 problems.push(format!("{what} of material \"{}\" is left out: {reason}.", material.name));
             };

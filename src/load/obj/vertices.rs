@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3};
 use super::pieces::Piece;
 use super::{Statement, each_statement};
 use crate::memory_budget::Budget;
+use crate::notes::counts;
 use crate::read_error::ReadError;
 use crate::text_lines::{first_word, has_comma, number_or_nan, parsed, words};
 use geometry::casts::to_byte;
@@ -23,10 +24,14 @@ pub(super) struct Vertices {
     pub colors: ChunkedVec<[u8; 4]>,
     /// Whether any faces are in a smoothing group.
     pub is_smoothed: bool,
-    /// Statements whose numbers have a comma instead of a point.
-    pub with_commas: usize,
-    /// Positions of two numbers.
-    pub flat: usize,
+    pub flaws: VertexFlaws,
+}
+
+counts! {
+    pub(super) struct VertexFlaws {
+        with_commas => "statements with a comma in a number, which was taken for its point";
+        flat => "positions of two numbers, which are placed at z = 0";
+    }
 }
 
 impl Vertices {
@@ -51,8 +56,7 @@ impl Vertices {
             }
         }
         self.is_smoothed |= more.is_smoothed;
-        self.with_commas += more.with_commas;
-        self.flat += more.flat;
+        self.flaws += more.flaws;
         Ok(())
     }
 
@@ -78,8 +82,7 @@ pub(super) struct VertexPiece {
     normals: Vec<Vec3>,
     colors: Vec<[u8; 4]>,
     is_smoothed: bool,
-    with_commas: usize,
-    flat: usize,
+    flaws: VertexFlaws,
     /// The names of material files that it asks for, one statement each.
     pub libraries: Vec<Vec<u8>>,
     /// Why the piece couldn't be read to its end.
@@ -103,7 +106,7 @@ impl VertexPiece {
                 let rest = self.numbers_of(statement);
                 let (numbers, count) = numbers::<NUMBERS>(rest);
                 let [x, y, z, ..] = numbers;
-                self.flat += usize::from(count == 2);
+                self.flaws.flat += usize::from(count == 2);
                 self.positions.push(Vec3::new(x, y, if count == 2 { 0.0 } else { z }));
                 // With four numbers the last one is a weight, and with seven the first three are followed by one.
                 if matches!(count, 6 | 7) {
@@ -131,7 +134,7 @@ impl VertexPiece {
     /// Returns what follows the first word of a statement of numbers, and counts commas.
     fn numbers_of<'a>(&mut self, statement: &Statement<'a>) -> &'a [u8] {
         let rest = statement.rest();
-        self.with_commas += usize::from(has_comma(rest));
+        self.flaws.with_commas += usize::from(has_comma(rest));
         rest
     }
 }

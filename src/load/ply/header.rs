@@ -136,7 +136,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
             Some(_) => other_lines += 1,
         }
     }
-    Err(FilePosition::Line(lines.count()).error("the file ends within its header"))
+    Err(FilePosition::Line(lines.count).error("the file ends within its header"))
 }
 
 fn format(word: Option<&[u8]>) -> Result<Encoding, String> {

@@ -23,7 +23,7 @@ pub(super) fn named(comment: &[u8]) -> Option<&[u8]> {
 
 /// The images of a file.
 pub(super) struct Textures<'a> {
-    names: &'a [&'a [u8]],
+    pub names: &'a [&'a [u8]],
     /// The material of each that is used.
     materials: Vec<Option<usize>>,
 }
@@ -32,10 +32,6 @@ impl<'a> Textures<'a> {
     pub(super) fn new(names: &'a [&'a [u8]]) -> Self {
         let names = &names[..names.len().min(MAX_IMAGES)];
         Self { names, materials: vec![None; names.len()] }
-    }
-
-    pub(super) fn len(&self) -> usize {
-        self.names.len()
     }
 
     /// Returns the index of the material that shows an image; none if there is no such image.
@@ -68,7 +64,7 @@ impl<'a> Textures<'a> {
         for ((name, material), image) in used.into_iter().zip(images) {
             problems.extend(image.said.map(|said| format!("the texture {} {said}", shown(name))));
             if let Some(material) = material.filter(|_| image.texture.is_some()) {
-                faces.material_mut(material).texture = image.texture;
+                faces.builder.material_mut(material).texture = image.texture;
             }
         }
         Ok(problems)

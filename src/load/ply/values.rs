@@ -43,17 +43,8 @@ pub(super) struct FaceRow {
 impl<'a> Values<'a> {
     pub(super) fn new(header: &Header<'a>, size: usize) -> Self {
         let lines = header.lines.clone();
-        let line = Line { text: &[], number: lines.count() };
-        Self {
-            encoding: header.encoding,
-            bytes: lines.rest(),
-            lines,
-            line,
-            left: &[],
-            size,
-            ends: false,
-            long_lines: 0,
-        }
+        let line = Line { text: &[], number: lines.count };
+        Self { encoding: header.encoding, bytes: lines.rest, lines, line, left: &[], size, ends: false, long_lines: 0 }
     }
 
     /// Returns the position of the next value, for messages.
@@ -66,7 +57,7 @@ impl<'a> Values<'a> {
 
     /// Returns how much of the file has been read, 0 to 1.
     pub(super) fn fraction(&self) -> f32 {
-        let left = if self.encoding == Encoding::Text { self.lines.rest() } else { self.bytes };
+        let left = if self.encoding == Encoding::Text { self.lines.rest } else { self.bytes };
         1.0 - left.len() as f32 / self.size as f32
     }
 
@@ -95,7 +86,7 @@ impl<'a> Values<'a> {
     fn room(&self, element: &Element) -> (usize, u64) {
         match self.encoding {
             // A digit and a separator, which the last value may lack.
-            Encoding::Text => (self.lines.rest().len() + 1, 2 * element.properties.len() as u64),
+            Encoding::Text => (self.lines.rest.len() + 1, 2 * element.properties.len() as u64),
             _ => (self.bytes.len(), element.least().0),
         }
     }
@@ -166,7 +157,7 @@ impl<'a> Values<'a> {
         while let Some(line) = self.lines.next()? {
             (self.line, self.left) = (line, line.text.trim_ascii());
             // If more should follow, the file may have been cut within this line's last number.
-            let is_cut = self.lines.is_open() && i + 1 < element.count;
+            let is_cut = self.lines.is_open && i + 1 < element.count;
             if !self.left.is_empty() && !is_cut {
                 return Ok(());
             }
@@ -309,7 +300,7 @@ impl<'a> Values<'a> {
 
     /// Whether nothing follows the present line of a text file. In a binary file whatever is missing would follow.
     fn is_last(&self) -> bool {
-        self.encoding != Encoding::Text || self.lines.rest().trim_ascii().is_empty()
+        self.encoding != Encoding::Text || self.lines.rest.trim_ascii().is_empty()
     }
 
     fn word(&mut self) -> Result<f64, ReadError> {
@@ -327,7 +318,7 @@ impl<'a> Values<'a> {
     /// Returns how many bytes follow the last element.
     pub(super) fn left_over(&self) -> usize {
         match self.encoding {
-            Encoding::Text => self.lines.rest().trim_ascii().len(),
+            Encoding::Text => self.lines.rest.trim_ascii().len(),
             _ => self.bytes.len(),
         }
     }

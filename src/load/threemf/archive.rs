@@ -84,13 +84,8 @@ impl<'a> Archive<'a> {
         Ok(Self { bytes, entries, most: budget.allowed(), unpacked, wrong_sums })
     }
 
-    /// The number of files.
-    pub(super) fn len(&self) -> usize {
-        self.entries.len()
-    }
-
     /// The names of the files, in the archive's order.
-    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+    pub(super) fn names(&self) -> impl ExactSizeIterator<Item = &str> {
         self.entries.iter().map(|entry| entry.name.as_str())
     }
 
@@ -236,7 +231,7 @@ fn directory(bytes: &[u8]) -> Option<&[u8]> {
 pub(super) struct Unpacked<'a> {
     packed: Packed<'a>,
     /// How many bytes are missing, by what the archive says.
-    left: u64,
+    pub left: u64,
     crc: Crc,
     /// The checksum that the archive says.
     sum: u32,
@@ -246,13 +241,6 @@ pub(super) struct Unpacked<'a> {
 enum Packed<'a> {
     Stored(&'a [u8]),
     Deflated(Box<DeflateDecoder<&'a [u8]>>),
-}
-
-impl Unpacked<'_> {
-    /// How many bytes are missing, by what the archive says.
-    pub(super) fn left(&self) -> u64 {
-        self.left
-    }
 }
 
 impl Read for Unpacked<'_> {

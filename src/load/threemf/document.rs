@@ -36,9 +36,6 @@ pub(super) type ObjectAt = (usize, u32);
 
 impl Document {
     /// Reads the model, and the parts that it names (production extension). The budget holds its memory.
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub(super) fn read(
         archive: &Archive,
         budget: &Budget,
@@ -173,5 +170,5 @@ fn root(archive: &Archive, notes: &mut Notes) -> Result<String, ReadError> {
     }
     let known = archive.names().find(|name| Format::from_name(Path::new(name)).is_some());
     let first = known.or(archive.names().find(|name| !name.ends_with('/'))).unwrap_or("none");
-    Err(ReadError::NoModel { count: archive.len(), first: shown(first) })
+    Err(ReadError::NoModel { count: archive.names().len(), first: shown(first) })
 }

@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use super::archive::Archive;
 use super::document::Document;
-use super::looks::Textured;
 use super::properties::Group;
 use crate::face_builder::FaceBuilder;
 use crate::memory_budget::Budget;
@@ -18,17 +17,12 @@ use geometry::mesh::{Alpha, Texture};
 use geometry::names::shown;
 use geometry::progress::{Cancelled, Progress};
 
-/// The images of all textures that a group of coordinates names, packed as PNG or JPEG.
-pub(super) struct Images {
-    /// An image's bytes by its name in the archive, or why it isn't there, as a clause.
-    bytes: HashMap<String, Result<Vec<u8>, String>>,
-}
+/// The images of all textures that a group of coordinates names, packed as PNG or JPEG: the bytes of each by its name in the archive, or
+/// why it isn't there, as a clause.
+pub(super) struct Images(HashMap<String, Result<Vec<u8>, String>>);
 
 impl Images {
     /// Unpacks the images. The budget holds their bytes.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn unpack(
         archive: &Archive,
         document: &Document,
@@ -50,28 +44,28 @@ impl Images {
                 }
             }
         }
-        Ok(Self { bytes })
+        Ok(Self(bytes))
     }
 
-    /// Decodes the images that materials show, and scales the largest down until all fit. `freed` is the memory that is freed before the
+    /// Decodes the images that materials show, each given by a material's index and an image's name, and scales the largest down until all fit. `freed` is the memory that is freed before the
     /// mesh is finished, in bytes. What is wrong with an image costs a note.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
     pub(super) fn give(
         self,
-        textured: &[Textured],
+        textured: &[(usize, String)],
         faces: &mut FaceBuilder,
         freed: u64,
         budget: &Budget,
         progress: &Progress,
     ) -> Result<(), Cancelled> {
         let mut users: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
-        textured.iter().for_each(|shows| users.entry(&shows.path).or_default().push(shows.material));
-        let packed = self.held();
+        textured.iter().for_each(|(material, path)| users.entry(path).or_default().push(*material));
+        let packed = self.0.values().flatten().map(|bytes| bytes.len() as u64).sum();
         let reserved = faces.bytes_to_finish().saturating_sub(freed + packed);
         let paths: Vec<_> = users.keys().copied().collect();
-        let bytes = |path| Ok((Cow::Borrowed(self.of(path)?), MipFilter::Colors));
+        let bytes = |path| {
+            let bytes = self.0.get(path).ok_or("it isn't in the file")?;
+            Ok((Cow::Borrowed(bytes.as_deref().map_err(Clone::clone)?), MipFilter::Colors))
+        };
         let images = read_images(&paths, bytes, reserved, budget, progress)?;
         for ((path, materials), ReadImage { texture, said }) in users.iter().zip(images) {
             faces.notes.extend(said.map(|said| format!("the texture \"{}\" {said}", shown(path))));
@@ -80,16 +74,6 @@ impl Images {
         }
         budget.release(packed);
         Ok(())
-    }
-
-    fn of(&self, path: &str) -> Result<&[u8], String> {
-        let bytes = self.bytes.get(path).ok_or("it isn't in the file")?;
-        bytes.as_deref().map_err(Clone::clone)
-    }
-
-    /// How many bytes the budget holds for the images.
-    fn held(&self) -> u64 {
-        self.bytes.values().flatten().map(|bytes| bytes.len() as u64).sum()
     }
 }
 
@@ -100,7 +84,7 @@ fn unpacked(archive: &Archive, path: &str, budget: &Budget) -> Result<Vec<u8>, S
         other => other.to_string(),
     })?;
     let mut part = part.ok_or("it isn't in the archive")?;
-    let size = part.left();
+    let size = part.left;
     budget.hold(size).map_err(|refused| format!("unpacking it {refused}"))?;
     // A part that is longer or shorter than it says is an error.
     let mut bytes = Vec::with_capacity(usize::try_from(size).unwrap_or(usize::MAX));
@@ -113,7 +97,7 @@ fn unpacked(archive: &Archive, path: &str, budget: &Budget) -> Result<Vec<u8>, S
 
 /// Shows an image on a material, which blends if the image has transparent texels.
 fn show(faces: &mut FaceBuilder, material: usize, texture: &Arc<Texture>) {
-    let material = faces.material_mut(material);
+    let material = faces.builder.material_mut(material);
     if texture.rgba.iter().skip(3).step_by(4).any(|alpha| *alpha < 255) {
         material.look.alpha = Alpha::Blend;
     }

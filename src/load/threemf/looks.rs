@@ -7,7 +7,8 @@ use glam::{Vec2, Vec4};
 use super::document::Document;
 use super::model::{Object, TriangleLook};
 use super::properties::{Group, Texture2d, material_color};
-use crate::face_builder::{FaceBuilder, counted, linear_color};
+use crate::face_builder::{FaceBuilder, linear_color};
+use crate::notes::counted;
 use crate::read_error::ReadError;
 use geometry::mesh::{Alpha, Look, Material};
 use geometry::names::shown;
@@ -48,14 +49,6 @@ impl Faults {
     }
 }
 
-/// A material that shows an image of the archive.
-pub(super) struct Textured {
-    /// Its index in the face builder.
-    pub material: usize,
-    /// The image's name in the archive.
-    pub path: String,
-}
-
 /// What tells materials apart.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum MaterialKey {
@@ -71,7 +64,8 @@ enum MaterialKey {
 pub(super) struct Looks<'d> {
     document: &'d Document,
     materials: HashMap<MaterialKey, usize>,
-    textured: Vec<Textured>,
+    /// Which materials show images, by their indices in the face builder, and the images' names in the archive.
+    pub textured: Vec<(usize, String)>,
 }
 
 impl<'d> Looks<'d> {
@@ -79,15 +73,7 @@ impl<'d> Looks<'d> {
         Self { document, materials: HashMap::new(), textured: Vec::new() }
     }
 
-    /// Which materials show images.
-    pub(super) fn into_textured(self) -> Vec<Textured> {
-        self.textured
-    }
-
     /// Finds a triangle's material and colours (core specification, section 4.1.4.1).
-    ///
-    /// # Errors
-    /// [`ReadError`].
     pub(super) fn resolve(
         &mut self,
         faces: &mut FaceBuilder,
@@ -180,7 +166,7 @@ impl<'d> Looks<'d> {
         let make = || Material { sampling: texture.sampling, ..Material::plain(&name(), [1.0; 4]) };
         let resolved = self.material(faces, MaterialKey::Textured(part, id), make)?;
         if self.materials.len() > known {
-            self.textured.push(Textured { material: resolved.material, path: texture.path.clone() });
+            self.textured.push((resolved.material, texture.path.clone()));
         }
         let fault = uvs.iter().any(|uv| texture.leaves(*uv)).then_some(Fault::Beyond);
         Ok(Resolved { uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), fault, ..resolved })

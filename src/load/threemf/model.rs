@@ -12,7 +12,7 @@ use super::broken;
 use super::properties::{Group, Texture2d};
 use super::xml::{Element, Step};
 use crate::memory_budget::Budget;
-use crate::notes::Notes;
+use crate::notes::{Notes, counts};
 use crate::read_error::ReadError;
 use crate::text_lines::{number, parsed, shown, words};
 use geometry::casts::to_u32;
@@ -138,11 +138,11 @@ pub(super) struct Placed {
     pub transform: DAffine3,
 }
 
-/// Numbers of what was repaired or left out.
-#[derive(Default)]
-struct Counts {
-    repeated: usize,
-    bad_colors: usize,
+counts! {
+    struct Counts {
+        repeated => "objects with the id of another, left out";
+        bad_colors => "colours that aren't #RRGGBB or #RRGGBBAA, replaced by white";
+    }
 }
 
 /// Collects what a part has from its tags.
@@ -427,11 +427,7 @@ impl<'a> ModelReader<'a> {
         if !self.is_model {
             return Err(self.broken("it isn't a 3MF model: its first element isn't called \"model\""));
         }
-        let Counts { repeated, bad_colors } = self.found;
-        self.notes.extend(crate::face_builder::counted([
-            (repeated, "objects with the id of another, left out"),
-            (bad_colors, "colours that aren't #RRGGBB or #RRGGBBAA, replaced by white"),
-        ]));
+        self.notes.extend(self.found.sentences());
         Ok(self.part)
     }
 }

@@ -6,13 +6,13 @@ use glam::{DAffine3, DMat3, DVec3};
 
 use super::broken;
 use super::document::{Document, ObjectAt};
-use super::looks::{Faults, Looks, Resolved, Textured};
+use super::looks::{Faults, Looks, Resolved};
 use super::model::{Object, Placed, Triangle, UNREAD};
 use super::properties::Group;
-use crate::face_builder::{FaceBuilder, NumberedCorner, counted};
+use crate::face_builder::{FaceBuilder, NumberedCorner};
 use crate::import::Import;
 use crate::memory_budget::{Budget, edge_bytes};
-use crate::notes::Notes;
+use crate::notes::{Notes, counted};
 use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
 use geometry::mesh::build_limits::MAX_TRIANGLES;
@@ -25,16 +25,13 @@ const MAX_NESTING: usize = 64;
 /// How many triangles are placed before the job asks whether it was cancelled.
 const TRIANGLES: u64 = 4096;
 
-/// Places everything that the build has, or all objects if it has nothing. Returns which materials show images.
-///
-/// # Errors
-/// [`ReadError`].
+/// Places everything that the build has, or all objects if it has nothing. Returns which materials show images, and their names.
 pub(super) fn place(
     document: &Document,
     faces: &mut FaceBuilder,
     budget: &Budget,
     progress: &Progress,
-) -> Result<Vec<Textured>, ReadError> {
+) -> Result<Vec<(usize, String)>, ReadError> {
     let items = items(document, &mut faces.notes);
     let mut counter = Counter { document, counted: HashMap::new(), missing: 0 };
     let mut total = 0_u64;
@@ -49,7 +46,7 @@ pub(super) fn place(
     faces.expect(usize::try_from(total).unwrap_or(usize::MAX), document.geometry.vertices.len());
     let colors = |group: &Group| matches!(group, Group::Colors(colors) if !colors.is_empty());
     if document.parts.iter().any(|part| part.groups.values().any(colors)) {
-        faces.color();
+        faces.color()?;
     }
     let root = of_file(document, &faces.import);
     let mut placer = Placer {
@@ -70,7 +67,7 @@ pub(super) fn place(
     faces.notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
     faces.notes.extend(unread(document, &counter.counted));
     faces.notes.extend(found.warnings());
-    Ok(looks.into_textured())
+    Ok(looks.textured)
 }
 
 /// Turns axes so that Y points up in place of Z, and scales the file's unit to metres, unless another axis or unit was chosen.

@@ -6,7 +6,7 @@ use crate::parts::Part;
 /// Reads what is selected of a document.
 fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfError> {
     let bytes = draft.document().to_string().into_bytes();
-    read(bytes, Path::new("nowhere"), "draft", selected, &Limits::default(), &Progress::new())
+    read(bytes, &ModelFile { selected, ..ModelFile::from_test("draft", &Progress::new()) })
 }
 
 fn part(name: &str, triangles: u32, is_hidden: bool) -> Part {

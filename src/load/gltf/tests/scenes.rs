@@ -8,7 +8,7 @@ use geometry::tessellate::deform;
 fn selected(draft: &Draft, scene: Option<&str>) -> LoadedMesh {
     let bytes = draft.document().to_string().into_bytes();
     let selected = Selection { scene, ..Selection::default() };
-    read(bytes, Path::new("nowhere"), "draft", selected, &Limits::default(), &Progress::new()).expect("triangles")
+    read(bytes, &ModelFile { selected, ..ModelFile::from_test("draft", &Progress::new()) }).expect("triangles")
 }
 
 /// A document with several scenes, instances that are animated, a hidden node, and vertices that eight joints move.
@@ -82,7 +82,7 @@ fn a_scene_that_is_not_there_is_an_error_with_the_names() {
     };
     assert_eq!(load(Source::File(path.clone()), "hall").expect("a scene").scene, Some(0));
     let error = load(Source::File(path), "3").expect_err("another scene");
-    assert!(matches!(error, LoadError::NoScene { .. }));
+    assert!(matches!(error, LoadError::Absent { what: "scene", .. }));
     let said = error.to_string();
     assert!(said.ends_with("three.gltf has no scene 3; choose one of hall, scene 1, 0"), "{said}");
     let said = load("shape:torus".parse().expect("a shape"), "0").expect_err("it has none").to_string();
@@ -101,7 +101,8 @@ fn what_the_scene_does_not_use_is_not_read() {
     assert_eq!(selected(&draft, None).warnings.len(), 0);
     let bytes = draft.document().to_string().into_bytes();
     let hall = Selection { scene: Some("hall"), ..Selection::default() };
-    let hall = read(bytes, Path::new("nowhere"), "draft", hall, &Limits::default(), &Progress::new()).expect("a mesh");
+    let hall =
+        read(bytes, &ModelFile { selected: hall, ..ModelFile::from_test("draft", &Progress::new()) }).expect("a mesh");
     assert!(hall.warnings[0].contains("has 2 elements for 3 vertices"), "{:?}", hall.warnings);
 }
 
@@ -139,7 +140,7 @@ fn hidden_nodes_are_not_shown_and_still_move_others() {
     draft.root["nodes"][2]["extensions"]["KHR_node_visibility"]["visible"] = json!(false);
     let selected = Selection { import: Import { show_hidden: true, ..Import::default() }, ..Selection::default() };
     let bytes = draft.document().to_string().into_bytes();
-    let all = read(bytes, Path::new("nowhere"), "draft", selected, &Limits::default(), &Progress::new());
+    let all = read(bytes, &ModelFile { selected, ..ModelFile::from_test("draft", &Progress::new()) });
     let all = all.expect("two triangles");
     assert_eq!((all.triangles.len(), all.warnings.len()), (2, 0), "{:?}", all.warnings);
     // A node that is shown, below one that is hidden.

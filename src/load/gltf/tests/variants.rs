@@ -24,11 +24,10 @@ fn loaded(draft: &Draft, variant: Option<&str>) -> LoadedMesh {
     let bytes = draft.document().to_string().into_bytes();
     read(
         bytes,
-        Path::new("nowhere"),
-        "draft",
-        Selection { variant, ..Selection::default() },
-        &Limits::default(),
-        &Progress::new(),
+        &ModelFile {
+            selected: Selection { variant, ..Selection::default() },
+            ..ModelFile::from_test("draft", &Progress::new())
+        },
     )
     .expect("triangles")
 }
@@ -80,7 +79,7 @@ fn a_variant_that_is_not_there_is_an_error_with_the_names() {
     };
     assert_eq!(load(Source::File(path.clone()), "night").expect("a variant").mesh.materials.len(), 2);
     let error = load(Source::File(path), "Night").expect_err("another name");
-    assert!(matches!(error, LoadError::NoVariant { .. }));
+    assert!(matches!(error, LoadError::Absent { what: "material variant", .. }));
     let said = error.to_string();
     assert!(said.ends_with("lamp.gltf has no material variant Night; choose one of day, night, variant 2"), "{said}");
     for source in [Source::Vase, "shape:torus".parse().expect("a shape")] {
