@@ -377,3 +377,60 @@ fn a_finding_leads_from_its_worst_place_to_the_next_and_to_the_one_before() {
     click(&mut harness, "Previous place");
     harness.get_by_label("12/12");
 }
+
+/// A tetrahedron whose faces have normals of their own, so that all of its edges are split.
+const FACETED: &str = "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nvn 1 1 -1\nvn 1 -1 1\nvn -1 1 1\nvn -1 -1 -1\n\
+                       f 1//1 4//1 3//1\nf 1//2 2//2 4//2\nf 1//3 3//3 2//3\nf 2//4 3//4 4//4\n";
+
+#[test]
+fn normals_are_made_anew_with_a_click_where_all_edges_are_split() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let mut harness = opened(&folder, FACETED);
+    let split = |harness: &Harness<App>| harness.state().loaded().map(|loaded| loaded.topology.edge_counts().split);
+    assert_eq!(split(&harness), Some(6));
+    click(&mut harness, "All 6 edges are split");
+    // The faces meet at more than 60 degrees: what is smooth is chosen below.
+    harness.get_by_role_and_label(Role::Slider, "Crease angle").set_value_accesskit(180.0);
+    settle(&mut harness);
+    assert_eq!(split(&harness), Some(0));
+    assert!(harness.query_by_label_contains("edges are split").is_none());
+    press(&mut harness, Key::W);
+    choose(&mut harness, "LOD", "Uniform");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
+    settle(&mut harness);
+    harness.get_by_label_contains("Wires too dense: ");
+}
+
+#[test]
+fn colours_have_a_number_under_the_pointer_while_it_rests() {
+    let mut harness = crate::uniform(Some(Source::Shape(Shape::Icosphere)));
+    let place = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center();
+    harness.hover_at(place);
+    settle(&mut harness);
+    assert!(harness.query_by_label_contains("Factors ").is_none(), "the material has no numbers");
+    choose(&mut harness, "Colours", "Factors");
+    harness.hover_at(place);
+    settle(&mut harness);
+    harness.get_by_label("Factors 8.00, 8.00, 8.00");
+    choose(&mut harness, "Colours", "Triangle size");
+    harness.hover_at(place);
+    settle(&mut harness);
+    let px = last_label(&harness, |text| text.ends_with(" px") && text.split(' ').count() == 2);
+    assert!(px.is_some_and(|text| text.trim_end_matches(" px").parse::<f64>().is_ok_and(|px| px > 1.0 && px < 60.0)));
+    choose(&mut harness, "Colours", "Deviation");
+    choose(&mut harness, "Surface", "Flat");
+    harness.hover_at(place);
+    settle(&mut harness);
+    let largest = harness.state().deviation(inspect::settings::SplitSide::Right).expect("measured");
+    let found = last_label(&harness, |text| text.ends_with(" units") && text.split(' ').count() == 2);
+    let found: f64 = found.and_then(|text| text.trim_end_matches(" units").parse().ok()).expect("a distance");
+    assert!(found <= 1.001 * largest, "{found} of {largest}");
+    harness.hover_at(egui::pos2(2.0, 2.0));
+    settle(&mut harness);
+}
+
+/// The last label that looks like this: tooltips come after all else.
+fn last_label(harness: &Harness<App>, looks: impl Fn(&str) -> bool) -> Option<String> {
+    let texts = harness.query_all_by_role(Role::Label).filter_map(|node| node.accesskit_node().value());
+    texts.filter(|text| looks(text)).last()
+}

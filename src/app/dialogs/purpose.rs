@@ -10,24 +10,85 @@ use load::format::{extensions, known_extensions};
 /// A kind of file: its name, and how names of such files end.
 type Kind = (&'static str, Vec<&'static str>);
 
-pub(super) fn title(purpose: Purpose) -> &'static str {
-    match purpose {
-        Purpose::Open => "Open path",
-        Purpose::Heights => "Height image path",
-        Purpose::CompanionFile(CompanionFile::ReferenceShape) => "Reference surface path",
-        Purpose::CompanionFile(CompanionFile::LeftMesh) => "Left mesh path",
-        Purpose::CompanionFile(CompanionFile::Factors) => "Factors path",
-        Purpose::CompanionFile(CompanionFile::LodShader) => "LOD shader path",
-        Purpose::CompanionFile(CompanionFile::SurfaceShader) => "Surface shader path",
-        Purpose::CompanionFile(CompanionFile::Matcap) => "Matcap path",
-        Purpose::CompanionFile(CompanionFile::Environment) => "Environment path",
-        Purpose::Write(Written::Chart) => "Save chart",
-        Purpose::Write(Written::Picture) => "Save picture",
-        Purpose::Write(Written::Folder | Written::Gif) => "Save turntable",
-        Purpose::Write(Written::Factors) => "Save factors",
-        Purpose::Write(Written::Adjacency) => "Save adjacency",
-        Purpose::Write(Written::Stats) => "Save stats",
-        Purpose::Write(Written::Mesh) => "Export mesh",
+/// What is said about a file that is asked for.
+pub(super) struct AskedFile {
+    /// The title of the window in which a path is typed.
+    pub title: &'static str,
+    /// The files that can be typed, in a sentence.
+    pub takes: String,
+    /// The kinds of file that a dialog offers.
+    pub kinds: Vec<Kind>,
+    /// What the name of a file to write ends with, after the mesh's.
+    ending: &'static str,
+}
+
+impl AskedFile {
+    pub(super) fn new(purpose: Purpose) -> Self {
+        let of = |title, takes: &str, kinds: &[(&'static str, &[&'static str])], ending| Self {
+            title,
+            takes: takes.to_owned(),
+            kinds: kinds.iter().map(|(name, endings)| (*name, endings.to_vec())).collect(),
+            ending,
+        };
+        let beside = |title, takes: &str, kind, endings: &[&'static str]| of(title, takes, &[(kind, endings)], "");
+        // A mesh is told by its content, so it may have any name.
+        let meshes = || vec![("Meshes", extensions()), ("All files", vec!["*"])];
+        let mesh = |title, more: &str| Self {
+            takes: format!("A {} file, {more}", known_extensions()),
+            kinds: meshes(),
+            ..of(title, "", &[], "")
+        };
+        let images: &[_] = &["png", "jpg", "jpeg", "webp"];
+        match purpose {
+            Purpose::Open => {
+                mesh("Open path", "shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)")
+            }
+            Purpose::CompanionFile(CompanionFile::ReferenceShape) => mesh("Reference surface path", "or shape:NAME"),
+            Purpose::CompanionFile(CompanionFile::LeftMesh) => mesh("Left mesh path", "or shape:NAME"),
+            Purpose::Heights => beside("Height image path", "A .png, .jpg or .webp image", "Images", images),
+            Purpose::CompanionFile(CompanionFile::Matcap) => {
+                beside("Matcap path", "A .png, .jpg or .webp image", "Images", images)
+            }
+            Purpose::CompanionFile(CompanionFile::Factors) => {
+                beside("Factors path", "A .csv file with the factors of every triangle", "CSV table", &["csv"])
+            }
+            Purpose::CompanionFile(CompanionFile::LodShader) => {
+                beside("LOD shader path", "A .wgsl file with the function edge_factor", "WGSL", &["wgsl"])
+            }
+            Purpose::CompanionFile(CompanionFile::SurfaceShader) => {
+                beside("Surface shader path", "A .wgsl file with the function edge_points", "WGSL", &["wgsl"])
+            }
+            Purpose::CompanionFile(CompanionFile::Environment) => {
+                beside("Environment path", "A .hdr or .exr panorama", "Panoramas of light", &ENVIRONMENT_EXTENSIONS)
+            }
+            Purpose::Write(Written::Chart) => {
+                let kinds: &[(_, &[_])] =
+                    &[("SVG picture", &["svg"]), ("PNG picture", &["png"]), ("CSV table", &["csv"])];
+                of("Save chart", "A new .svg, .png or .csv file", kinds, "")
+            }
+            Purpose::Write(Written::Picture) => {
+                let kinds: &[(_, &[_])] = &[("PNG picture", &["png"]), ("Report as a page", &["html"])];
+                of("Save picture", "A new .png file, or .html for a report on the picture", kinds, "-view.png")
+            }
+            Purpose::Write(Written::Folder) => of("Save turntable", "A new folder", &[], "-turntable"),
+            Purpose::Write(Written::Gif) => {
+                of("Save turntable", "A new .gif file", &[("Animated GIF", &["gif"])], "-turntable.gif")
+            }
+            Purpose::Write(Written::Factors) => {
+                of("Save factors", "A new .csv file", &[("CSV table", &["csv"])], "-factors.csv")
+            }
+            Purpose::Write(Written::Adjacency) => {
+                let kinds: &[(_, &[_])] = &[("JSON", &["json"]), ("Bare indices", &["bin"])];
+                of("Save adjacency", "A new .json or .bin file", kinds, "-adjacency.json")
+            }
+            Purpose::Write(Written::Stats) => {
+                of("Save stats", "A new .json file", &[("JSON", &["json"])], "-stats.json")
+            }
+            Purpose::Write(Written::Mesh) => {
+                let kinds: &[(_, &[_])] = &[("glTF binary", &["glb"]), ("Wavefront OBJ", &["obj"])];
+                of("Export mesh", "A new .glb or .obj file", kinds, "-tessellated.glb")
+            }
+        }
     }
 }
 
@@ -43,79 +104,14 @@ pub(super) fn is_written(purpose: Purpose) -> bool {
     matches!(purpose, Purpose::Write(_))
 }
 
-/// The files that can be typed, in a sentence.
-pub(super) fn takes(purpose: Purpose) -> String {
-    let text = match purpose {
-        Purpose::Open => {
-            let kinds = known_extensions();
-            return format!(
-                "A {kinds} file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)"
-            );
-        }
-        Purpose::CompanionFile(CompanionFile::ReferenceShape | CompanionFile::LeftMesh) => {
-            return format!("A {} file, or shape:NAME", known_extensions());
-        }
-        Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => "A .png, .jpg or .webp image",
-        Purpose::CompanionFile(CompanionFile::Factors) => "A .csv file with the factors of every triangle",
-        Purpose::CompanionFile(CompanionFile::LodShader) => "A .wgsl file with the function edge_factor",
-        Purpose::CompanionFile(CompanionFile::SurfaceShader) => "A .wgsl file with the function edge_points",
-        Purpose::CompanionFile(CompanionFile::Environment) => "A .hdr or .exr panorama",
-        Purpose::Write(Written::Chart) => "A new .svg, .png or .csv file",
-        Purpose::Write(Written::Picture) => "A new .png file, or .html for a report on the picture",
-        Purpose::Write(Written::Folder) => "A new folder",
-        Purpose::Write(Written::Gif) => "A new .gif file",
-        Purpose::Write(Written::Factors) => "A new .csv file",
-        Purpose::Write(Written::Adjacency) => "A new .json or .bin file",
-        Purpose::Write(Written::Stats) => "A new .json file",
-        Purpose::Write(Written::Mesh) => "A new .glb or .obj file",
-    };
-    text.to_owned()
-}
-
-/// The kinds of file that a dialog offers.
-pub(super) fn kinds(purpose: Purpose) -> Vec<Kind> {
-    match purpose {
-        // A mesh is told by its content, so it may have any name.
-        Purpose::Open | Purpose::CompanionFile(CompanionFile::ReferenceShape | CompanionFile::LeftMesh) => {
-            vec![("Meshes", extensions()), ("All files", vec!["*"])]
-        }
-        Purpose::Heights | Purpose::CompanionFile(CompanionFile::Matcap) => {
-            vec![("Images", vec!["png", "jpg", "jpeg", "webp"])]
-        }
-        Purpose::CompanionFile(CompanionFile::LodShader | CompanionFile::SurfaceShader) => vec![("WGSL", vec!["wgsl"])],
-        Purpose::CompanionFile(CompanionFile::Environment) => {
-            vec![("Panoramas of light", ENVIRONMENT_EXTENSIONS.to_vec())]
-        }
-        Purpose::Write(Written::Chart) => {
-            vec![("SVG picture", vec!["svg"]), ("PNG picture", vec!["png"]), ("CSV table", vec!["csv"])]
-        }
-        Purpose::Write(Written::Picture) => vec![("PNG picture", vec!["png"]), ("Report as a page", vec!["html"])],
-        Purpose::Write(Written::Folder) => Vec::new(),
-        Purpose::Write(Written::Gif) => vec![("Animated GIF", vec!["gif"])],
-        Purpose::CompanionFile(CompanionFile::Factors) | Purpose::Write(Written::Factors) => {
-            vec![("CSV table", vec!["csv"])]
-        }
-        Purpose::Write(Written::Adjacency) => vec![("JSON", vec!["json"]), ("Bare indices", vec!["bin"])],
-        Purpose::Write(Written::Stats) => vec![("JSON", vec!["json"])],
-        Purpose::Write(Written::Mesh) => vec![("glTF binary", vec!["glb"]), ("Wavefront OBJ", vec!["obj"])],
-    }
-}
-
 /// The proposed name of a file to write, after that of the mesh; none of a file to read.
 pub(super) fn proposed_name(purpose: Purpose, open: Option<&Source>) -> Option<String> {
-    let Purpose::Write(written) = purpose else { return None };
     let title = open.map_or_else(|| "mesh".to_owned(), Source::title);
-    let ending = match written {
-        Written::Chart => return Some("chart.svg".to_owned()),
-        Written::Picture => "-view.png",
-        Written::Folder => "-turntable",
-        Written::Gif => "-turntable.gif",
-        Written::Factors => "-factors.csv",
-        Written::Adjacency => "-adjacency.json",
-        Written::Stats => "-stats.json",
-        Written::Mesh => "-tessellated.glb",
-    };
-    Some(name_beside(&title, ending))
+    match purpose {
+        Purpose::Write(Written::Chart) => Some("chart.svg".to_owned()),
+        Purpose::Write(_) => Some(name_beside(&title, AskedFile::new(purpose).ending)),
+        _ => None,
+    }
 }
 
 /// The path that the text field starts with. `folder` is where a file was written last.

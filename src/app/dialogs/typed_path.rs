@@ -6,7 +6,7 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Event, Id, Key, TextEdit};
 
 use super::desktop_dialog::{Asked, ask};
-use super::purpose::{self, is_written, kinds, proposed, proposed_name};
+use super::purpose::{self, AskedFile, is_written, proposed, proposed_name};
 use super::typed_text::{Completion, completion, path_of};
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
@@ -55,7 +55,7 @@ enum Answer {
 
 impl TypedPath {
     fn show(&mut self, context: &egui::Context) -> Option<Answer> {
-        let window = egui::Window::new(purpose::title(self.purpose)).resizable(false).collapsible(false);
+        let window = egui::Window::new(AskedFile::new(self.purpose).title).resizable(false).collapsible(false);
         let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         window.show(context, |ui| self.rows(ui)).and_then(|shown| shown.inner).flatten()
     }
@@ -64,7 +64,7 @@ impl TypedPath {
         if let Some(why) = self.why {
             ui.label(why);
         }
-        let label = ui.label(purpose::takes(self.purpose));
+        let label = ui.label(AskedFile::new(self.purpose).takes);
         self.complete(ui);
         let takes_tab = self.takes_tab();
         let edit = TextEdit::singleline(&mut self.path).id(field()).desired_width(420.0);
@@ -145,7 +145,7 @@ impl TypedPath {
 impl App {
     /// The title of the window in which a path is typed, and why it is shown if a dialog was asked for.
     pub fn path_asked_for(&self) -> Option<(&'static str, Option<&'static str>)> {
-        self.dialogs.typed_path.as_ref().map(|typed| (purpose::title(typed.purpose), typed.why))
+        self.dialogs.typed_path.as_ref().map(|typed| (AskedFile::new(typed.purpose).title, typed.why))
     }
 
     /// Opens the window in which a path is typed, with a proposed path.
@@ -249,8 +249,9 @@ impl App {
         }
         let name = proposed_name(purpose, self.source());
         let choose = move || {
-            let dialog = rfd::FileDialog::new().set_title(purpose::title(purpose).trim_end_matches(" path"));
-            let kinds = kinds(purpose).into_iter();
+            let AskedFile { title, kinds, .. } = AskedFile::new(purpose);
+            let dialog = rfd::FileDialog::new().set_title(title.trim_end_matches(" path"));
+            let kinds = kinds.into_iter();
             let dialog = kinds.fold(dialog, |dialog, (name, endings)| dialog.add_filter(name, &endings));
             match name {
                 Some(name) => dialog.set_file_name(name).save_file(),
