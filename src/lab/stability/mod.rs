@@ -171,14 +171,7 @@ impl Quantity {
             Self::Factors => Some(GateKind::Factors),
             Self::Leaks => Some(GateKind::Leaks),
             Self::Folds => Some(GateKind::Folds),
-            Self::Normals
-            | Self::NotFinite
-            | Self::Missing
-            | Self::Segment
-            | Self::TJunctions
-            | Self::OpenEdges
-            | Self::Jump
-            | Self::Pop => None,
+            _ => None,
         }
     }
 
