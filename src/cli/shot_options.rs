@@ -123,7 +123,7 @@ impl ShotOptions {
         }
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
-        let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
+        let (given, factors_file) = given.unzip();
         let subject = Subject {
             moment: self.surface.animation.moment(&loaded)?,
             given: given.map(Given::from).or(user_lod),
@@ -155,9 +155,9 @@ impl ShotOptions {
         }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
-            camera: self.surface.view.camera(&self.surface, mesh, subject.moment, &scene.bounds)?,
+            camera: self.surface.view.camera(&self.surface, (mesh, subject.moment, &scene.bounds))?,
             lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds)?,
-            size: self.surface.size.0,
+            size: self.surface.size,
             transparent: self.transparent,
             legend: self.legend,
         };
