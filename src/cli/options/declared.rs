@@ -192,8 +192,8 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
     }
 }
 
-/// Reads a value as `parser` does, without the blanks around it, which people write after the commas of a list. Help texts list these
-/// names, though there may be more values than they.
+/// Reads a value as `parser` does, without the blanks around it, which people write after the commas of a list. Help texts
+/// list these names, though there may be more values than they.
 pub(crate) fn listed<P: TypedValueParser>(
     parser: P,
     names: Vec<PossibleValue>,

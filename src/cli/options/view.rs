@@ -71,7 +71,8 @@ impl Default for ViewOptions {
     }
 }
 
-/// Parses the numbers of a matrix. They may be separated by commas, blanks and lines, and be in brackets, as programs print arrays.
+/// Parses the numbers of a matrix. They may be separated by commas, blanks and lines, and be in brackets, as programs print
+/// arrays.
 fn matrix_numbers(text: &str) -> Result<[f64; 16], String> {
     let is_between = |c: char| c.is_whitespace() || matches!(c, ',' | ';' | '[' | ']' | '(' | ')' | '{' | '}');
     let words = text.split(is_between).filter(|word| !word.is_empty());

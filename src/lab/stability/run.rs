@@ -72,7 +72,8 @@ impl Worst {
     }
 }
 
-/// A tessellation that is to be tried, and further cameras that leaks are counted from, if factors and clipping don't depend on the camera.
+/// A tessellation that is to be tried, and further cameras that leaks are counted from, if factors and clipping don't depend on the
+/// camera.
 type Trial = (Tried, Vec<Camera>);
 
 /// A case that is being run: its mesh, and the same mesh on the device.
