@@ -8,15 +8,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
-
 use super::interrupt::stop_on_interrupt;
-use super::options::{CameraOption, Size, whole_from};
+use super::options::{CameraOption, whole_from};
 use super::{
     AdapterOption, CliError, ProgressPrinter, SurfaceOptions, WeldOption, file_error, file_of, keep_apart, load_apart,
     make_folder, options, refuse, write_text,
 };
-use geometry::progress::Progress;
 use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
 use inspect::engine::{Engine, Loaded};
 use inspect::export::ending;
@@ -74,14 +71,14 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = AccuracyOptions::default().samples, value_parser = options::whole(100..=10_000_000_usize))]
     pub samples: usize,
     /// Width and height of the view, in px
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    pub size: Size,
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = options::size)]
+    pub size: [u32; 2],
     /// Where the camera is: degrees from the front to the right, degrees upwards, and the distance from the centre in
     /// bounding radii (by default far enough to show everything)
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
     pub camera: CameraOption,
     /// Picture to write, an SVG or PNG file, with a diagram for each mesh
-    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = picture(), required_unless_present_any = ["csv", "report"])]
+    #[arg(short, long, value_name = "OUT.svg|OUT.png", value_parser = options::ending_in(&["svg", "png"], "charts are SVG or PNG files: name it .svg or .png"), required_unless_present_any = ["csv", "report"])]
     pub output: Option<PathBuf>,
     /// Table to write (- for standard output); each line is written as soon as its setting is done
     #[arg(long, value_name = "OUT.csv")]
@@ -92,17 +89,6 @@ pub struct Args {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub adapter: AdapterOption,
-}
-
-/// Parses the path of a picture, whose ending gives its format.
-fn picture() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(|path| {
-        let path = PathBuf::from(path);
-        match ending(&path).as_str() {
-            "svg" | "png" => Ok(path),
-            _ => Err("charts are SVG or PNG files: name it .svg or .png"),
-        }
-    })
 }
 
 impl Args {
@@ -146,19 +132,12 @@ impl Args {
         let Some(source) = asked.filter(|_| exact.is_none()) else {
             return Ok(exact.map(|exact| (exact, "the exact surface".to_owned())));
         };
-        let none = || CliError::NoReferenceShape { file: source.to_string() };
-        let reference_shape =
-            ReferenceShape::load(source, self.weld.import.0, &self.weld.limit.limits(), &Progress::new())?
-                .ok_or_else(none)?;
-        Ok(Some((reference_shape, source.title())))
+        Ok(Some((self.weld.reference_shape(source)?, source.title())))
     }
 }
 
-/// A mesh to be charted.
-struct Loading {
-    loaded: Loaded,
-    reference_shape: Option<(ReferenceShape, String)>,
-}
+/// A mesh to be charted, and its reference surface with a name.
+type Loading = (Loaded, Option<(ReferenceShape, String)>);
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let settings = args.settings()?;
@@ -167,7 +146,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let load_one = |source: &Source| {
         let written = [args.output.as_deref(), args.csv.as_deref()];
         let loaded = load_apart(source, &args.weld.preparation(), &written)?;
-        Ok(Loading { reference_shape: args.reference_shape_of(source)?, loaded })
+        Ok((loaded, args.reference_shape_of(source)?))
     };
     let sources = args.meshes();
     let meshes: Vec<Loading> = sources.iter().map(load_one).collect::<Result<_, CliError>>()?;
@@ -176,7 +155,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let engine = Engine::chosen(&args.adapter.choice())?;
     let tables = args.csv.iter().cloned().chain(args.report.as_ref().map(|folder| folder.join(TABLE)));
     let mut session = Session {
-        target: Target::new(&engine.gpu, args.size.0)?,
+        target: Target::new(&engine.gpu, args.size)?,
         engine,
         tables: tables.map(|path| Table::new(&path)).collect::<Result<_, CliError>>()?,
         stop: stop_on_interrupt("setting"),
@@ -187,7 +166,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let mut parts = Vec::new();
     for (mesh, picture) in meshes.iter().zip(report::pictures(&sources)) {
         let (subject, left_out) = session.subject(args, mesh, &settings)?;
-        let topology = &mesh.loaded.topology;
+        let topology = &mesh.0.topology;
         let (patches, split_edges) = (topology.patches.len() as u64, topology.edge_counts().split.into());
         let part = Part { subject, patches, split_edges, picture, left_out };
         parts.extend((!part.subject.rows.is_empty()).then_some(part));
@@ -218,7 +197,7 @@ struct Session {
 impl Session {
     /// Tries all settings on a mesh, until Ctrl-C is pressed.
     fn subject(&mut self, args: &Args, mesh: &Loading, settings: &[Setting]) -> Result<(Subject, LeftOut), CliError> {
-        let Loading { loaded, reference_shape } = mesh;
+        let (loaded, reference_shape) = mesh;
         let title = loaded.source.title();
         let scene = self.engine.scene(loaded, ARENA_BYTES)?;
         let mut view = SurfaceOptions { size: args.size, ..SurfaceOptions::default() };
@@ -226,7 +205,7 @@ impl Session {
         let mut bench = Bench {
             engine: &self.engine,
             mesh: loaded.source.to_string(),
-            camera: view.view.camera(&view, &loaded.mesh, None, &scene.bounds)?,
+            camera: view.view.camera(&view, (&loaded.mesh, None, &scene.bounds))?,
             scene,
             target: &self.target,
             reference_shape: reference_shape.as_ref().map(|(reference_shape, _)| reference_shape),
@@ -266,7 +245,7 @@ impl Session {
         }
         let reference_shape = reference_shape.as_ref().map(|(_, words)| words.clone());
         let adapter = self.engine.gpu.info.name.clone();
-        Ok((Subject { title, reference_shape, adapter, size: args.size.0, rows }, left_out))
+        Ok((Subject { title, reference_shape, adapter, size: args.size, rows }, left_out))
     }
 }
 

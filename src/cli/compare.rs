@@ -108,8 +108,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if topology.patches.is_empty() {
         return Err(CliError::NothingToCompare { file: args.mesh.to_string() });
     }
-    let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|given| given.factors);
-    let camera = args.surface.view.camera(&args.surface, mesh, own.moment, &own.bounds)?;
+    let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|(factors, _)| factors);
+    let camera = args.surface.view.camera(&args.surface, (mesh, own.moment, &own.bounds))?;
     let inputs = own.inputs(own.lod_view(&camera))?;
     let tessellated = own.tessellated(&inputs, given.as_deref(), |_, triangles| match triangles > MOST {
         true => Err(CliError::TooFine { file: args.mesh.to_string(), triangles, most: MOST }),
@@ -126,7 +126,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         tessellated: &tessellated,
     };
     let exactness = Tolerances { within, resolution };
-    let comparison = compare(&ours, &theirs, exactness, &Progress::new())?;
+    let comparison = compare(&ours, &theirs, exactness);
     let name = shown_path(&args.theirs);
     let report =
         Report { theirs: &name, mesh: &args.mesh.to_string(), ours: &ours, comparison: &comparison, exactness };

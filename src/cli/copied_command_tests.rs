@@ -114,7 +114,7 @@ fn options_with_other_values_are_written() {
     let heights = Some(HeightSource::File("./material".into()));
     assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
     assert_eq!((args.shot.select, args.shot.surface.view.orthographic), (Some(7), true));
-    assert_eq!(args.shot.surface.view.target.map(|place| place.0), Some(camera.target));
+    assert_eq!(args.shot.surface.view.target, Some(camera.target));
     assert_eq!((args.shot.surface.view.field_of_view, args.shot.surface.view.roll), (25.5, -12.25));
     assert_eq!(args.shot.surface.tessellation().height_scale, -0.5);
     let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
@@ -189,7 +189,7 @@ fn a_turn_is_written_as_a_turntable() {
     let words = gif.split(' ').map(str::to_owned);
     let Ok(Some(Command::Turntable(args))) = Cli::try_parse_from(words).map(|cli| cli.command) else { panic!("{gif}") };
     assert_eq!((args.frames, args.fps, &*args.output), (12, 20, Path::new("torus-turntable.gif")));
-    assert_eq!(args.shot.surface.size.0, [640, 480]);
+    assert_eq!(args.shot.surface.size, [640, 480]);
 }
 
 #[test]
@@ -213,8 +213,8 @@ fn a_frozen_lod_camera_is_written_unless_it_is_the_pictures() {
     let args = parsed(&with(Some((&frozen, [320, 200]))));
     let Some(camera) = args.shot.lod.lod_camera else { panic!("it has an LOD camera") };
     assert_eq!((camera.azimuth, camera.elevation, camera.distance), (-7.5, own.elevation, Some(1.5)));
-    assert_eq!(args.shot.lod.lod_target.map(|place| place.0), Some(own.target));
-    assert_eq!((args.shot.lod.lod_size.map(|size| size.0), args.shot.lod.lod_orthographic), (Some([320, 200]), true));
+    assert_eq!(args.shot.lod.lod_target, Some(own.target));
+    assert_eq!((args.shot.lod.lod_size, args.shot.lod.lod_orthographic), (Some([320, 200]), true));
     let args = parsed(&with(Some((&frozen, [640, 480]))));
     assert!(args.shot.lod.lod_camera.is_some() && args.shot.lod.lod_size.is_none(), "its view has the picture's size");
     assert_eq!(with(Some((&own, [640, 480]))), with(None));

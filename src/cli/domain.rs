@@ -89,13 +89,9 @@ fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &FactorSet) -> Doma
 }
 
 fn write_pattern(out: &mut impl Write, prefix: &str, pattern: &DomainPattern) -> std::io::Result<()> {
-    for (index, [u, v]) in pattern.points.iter().enumerate() {
-        writeln!(out, "{prefix}point,{index},{u},{v}")?;
-    }
-    for [a, b, c] in &pattern.triangles {
-        writeln!(out, "{prefix}triangle,{a},{b},{c}")?;
-    }
-    Ok(())
+    let mut points = pattern.points.iter().enumerate();
+    points.try_for_each(|(index, [u, v])| writeln!(out, "{prefix}point,{index},{u},{v}"))?;
+    pattern.triangles.iter().try_for_each(|[a, b, c]| writeln!(out, "{prefix}triangle,{a},{b},{c}"))
 }
 
 fn comma_set(text: &str) -> Result<FactorSet, String> {

@@ -21,12 +21,8 @@ pub struct FactorsOption {
     pub given: Option<PathBuf>,
 }
 
-/// Factors from a file, checked against the mesh.
-pub struct Given {
-    /// One for each patch.
-    pub factors: Vec<HullFactors>,
-    pub stats: FactorsFile,
-}
+/// Factors from a file, checked against the mesh: one for each patch, and what was found about them.
+type Given = (Vec<HullFactors>, FactorsFile);
 
 impl FactorsOption {
     /// Reads the file, if one was named, and reports on standard error where its factors disagree.
@@ -41,7 +37,7 @@ impl FactorsOption {
         let factors = read_factors(path, mesh, topology, tessellation.partitioning)?;
         let agreement = Agreement::new(topology, &factors, convention);
         said(topology, &agreement, convention).iter().for_each(|line| note(line));
-        let stats = FactorsFile::new(path, topology, &agreement, convention);
-        Ok(Some(Given { factors, stats }))
+        let about = FactorsFile::new(path, topology, &agreement, convention);
+        Ok(Some((factors, about)))
     }
 }

@@ -48,18 +48,12 @@ impl fmt::Display for LightInfo {
         let numbers = |numbers: [f32; 3]| numbers.map(exact).join(" ");
         let unit = if self.kind == "directional" { "lx" } else { "cd" };
         write!(f, "light         {}, {} {unit}", self.kind, numbers(self.intensity))?;
-        if let Some(place) = self.place {
-            write!(f, ", at {}", numbers(place))?;
-        }
-        if let Some(direction) = self.direction {
-            write!(f, ", towards {}", numbers(direction))?;
-        }
-        if let Some(range) = self.range {
-            write!(f, ", up to {}", exact(range))?;
-        }
-        if let Some([inner, outer]) = self.cone {
-            write!(f, ", cone {} to {} degrees", exact(inner), exact(outer))?;
-        }
-        writeln!(f)
+        let parts = [
+            self.place.map(|place| format!(", at {}", numbers(place))),
+            self.direction.map(|direction| format!(", towards {}", numbers(direction))),
+            self.range.map(|range| format!(", up to {}", exact(range))),
+            self.cone.map(|cone| format!(", cone {} degrees", cone.map(exact).join(" to "))),
+        ];
+        writeln!(f, "{}", parts.into_iter().flatten().collect::<String>())
     }
 }

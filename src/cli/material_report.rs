@@ -16,26 +16,13 @@ pub(super) struct MaterialInfo {
     pub texture: Option<[u32; 2]>,
     /// Linear RGBA.
     pub base_color: [f32; 4],
-    pub metallic: f32,
-    pub roughness: f32,
-    /// Linear RGB.
-    pub emissive: [f32; 3],
+    #[serde(flatten)]
+    pub look: Look,
     /// `opaque`, `mask` or `blend`.
     pub alpha: &'static str,
     /// Below this alpha there is no surface.
     pub alpha_cutoff: Option<f32>,
     pub double_sided: bool,
-    pub unlit: bool,
-    pub ior: f32,
-    pub specular: f32,
-    /// Linear RGB.
-    pub specular_color: [f32; 3],
-    pub clearcoat: f32,
-    pub clearcoat_roughness: f32,
-    pub transmission: f32,
-    /// Linear RGB.
-    pub sheen_color: [f32; 3],
-    pub sheen_roughness: f32,
     pub maps: Vec<MapInfo>,
 }
 
@@ -55,8 +42,6 @@ pub(super) struct MapInfo {
 
 impl MaterialInfo {
     pub(super) fn new(material: &Material) -> Self {
-        let Look { metallic, roughness, emissive, unlit, ior, specular, specular_color, .. } = material.look;
-        let Look { clearcoat, clearcoat_roughness, transmission, sheen_color, sheen_roughness, .. } = material.look;
         let (alpha, alpha_cutoff) = match material.look.alpha {
             Alpha::Opaque => ("opaque", None),
             Alpha::Mask(cutoff) => ("mask", Some(cutoff)),
@@ -68,44 +53,33 @@ impl MaterialInfo {
             triangles: material.triangles.len() as u32,
             texture: material.texture.as_ref().map(|texture| texture.size),
             base_color: material.base_color,
-            metallic,
-            roughness,
-            emissive,
+            look: material.look.clone(),
             alpha,
             alpha_cutoff,
             double_sided: material.double_sided,
-            unlit,
-            ior,
-            specular,
-            specular_color,
-            clearcoat,
-            clearcoat_roughness,
-            transmission,
-            sheen_color,
-            sheen_roughness,
             maps: Slot::ALL.into_iter().filter_map(map).collect(),
         }
     }
 
     /// What is told about all materials, and what differs from a plain one.
     fn parts(&self) -> Vec<String> {
-        let usual = Look::default();
-        let mut parts = vec![format!("metallic {}, roughness {}", self.metallic, self.roughness)];
+        let (look, usual) = (&self.look, Look::default());
+        let mut parts = vec![format!("metallic {}, roughness {}", look.metallic, look.roughness)];
         let mut add = |is_told: bool, part: String| parts.extend(is_told.then_some(part));
         add(self.base_color != [1.0; 4], format!("base colour {}", numbers(&self.base_color)));
-        add(self.emissive != usual.emissive, format!("emits {}", numbers(&self.emissive)));
-        add(self.ior != usual.ior, format!("index of refraction {}", self.ior));
-        add(self.specular != usual.specular, format!("specular {}", self.specular));
-        let color = self.specular_color;
+        add(look.emissive != usual.emissive, format!("emits {}", numbers(&look.emissive)));
+        add(look.ior != usual.ior, format!("index of refraction {}", look.ior));
+        add(look.specular != usual.specular, format!("specular {}", look.specular));
+        let color = look.specular_color;
         add(color != usual.specular_color, format!("specular colour {}", numbers(&color)));
-        add(self.clearcoat > 0.0, format!("clear coat {} of roughness {}", self.clearcoat, self.clearcoat_roughness));
-        add(self.transmission > 0.0, format!("transmission {}", self.transmission));
-        let sheen = numbers(&self.sheen_color);
-        add(self.sheen_color != usual.sheen_color, format!("sheen {sheen} of roughness {}", self.sheen_roughness));
+        add(look.clearcoat > 0.0, format!("clear coat {} of roughness {}", look.clearcoat, look.clearcoat_roughness));
+        add(look.transmission > 0.0, format!("transmission {}", look.transmission));
+        let sheen = numbers(&look.sheen_color);
+        add(look.sheen_color != usual.sheen_color, format!("sheen {sheen} of roughness {}", look.sheen_roughness));
         add(self.alpha == "blend", "blended".to_owned());
         let cutoff = self.alpha_cutoff;
         add(cutoff.is_some(), format!("cut out below alpha {}", cutoff.unwrap_or_default()));
-        add(self.unlit, "unlit".to_owned());
+        add(look.unlit, "unlit".to_owned());
         add(self.double_sided, "double-sided".to_owned());
         parts
     }

@@ -147,18 +147,10 @@ impl fmt::Display for Info {
         let [to_x, to_y, to_z] = self.bounds.max.map(exact);
         writeln!(f, "from          {x} {y} {z} (object units)")?;
         writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", exact(self.bounds.diagonal))?;
-        for material in &self.materials {
-            write!(f, "{material}")?;
-        }
-        for light in &self.lights {
-            write!(f, "{light}")?;
-        }
-        for camera in &self.cameras {
-            write!(f, "{camera}")?;
-        }
-        for variant in &self.variants {
-            writeln!(f, "variant       {}", shown(variant))?;
-        }
+        self.materials.iter().try_for_each(|material| write!(f, "{material}"))?;
+        self.lights.iter().try_for_each(|light| write!(f, "{light}"))?;
+        self.cameras.iter().try_for_each(|camera| write!(f, "{camera}"))?;
+        self.variants.iter().try_for_each(|variant| writeln!(f, "variant       {}", shown(variant)))?;
         // Most files have one scene, of which nothing is to be said.
         for (i, scene) in self.scenes.iter().enumerate().filter(|_| self.scenes.len() > 1) {
             let is_read = if Some(i) == self.scene { ", which is shown" } else { "" };
@@ -173,10 +165,7 @@ impl fmt::Display for Info {
             let name = shown(name);
             writeln!(f, "animation     {name}: {} s, moves {moved}", *duration as f32)?;
         }
-        for warning in &self.warnings {
-            writeln!(f, "warning       {}", on_one_line(warning))?;
-        }
-        Ok(())
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "warning       {}", on_one_line(warning)))
     }
 }
 
@@ -218,9 +207,7 @@ impl Info {
             f,
             "weld          (what each tolerance would join; tolerances are relative to the bounding diagonal)"
         )?;
-        for join in &self.joins {
-            writeln!(f, "  {:<14e}{join}", join.tolerance)?;
-        }
+        self.joins.iter().try_for_each(|join| writeln!(f, "  {:<14e}{join}", join.tolerance))?;
         writeln!(
             f,
             "T-junctions   {} (points on other triangles' open edges; no tessellation closes these gaps)",
@@ -252,12 +239,8 @@ fn t_junction(topology: &Topology, junction: &TJunction) -> TJunctionInfo {
 }
 
 fn animations(rig: &Rig) -> Vec<AnimationInfo> {
-    let animation = |clip: &Clip| AnimationInfo {
-        name: clip.name.clone(),
-        duration: clip.duration,
-        moved: rig.animated_counts(clip),
-    };
-    rig.clips.iter().map(animation).collect()
+    let own = |clip: &Clip| (clip.name.clone(), clip.duration, rig.animated_counts(clip));
+    rig.clips.iter().map(own).map(|(name, duration, moved)| AnimationInfo { name, duration, moved }).collect()
 }
 
 /// Points in use - edges + patches: 2 for a sphere, 0 for a torus.

@@ -14,15 +14,17 @@ use glam::Vec2;
 use super::{AnimationOption, CliError, note, refuse};
 use geometry::mesh::FileCamera;
 use geometry::mesh::crease_band::WIDEST;
+use geometry::progress::Progress;
 use geometry::tessellate::{Displacement, LodView, Surface, Tessellation, tolerance_within_budget};
 use gpu::Timing;
 use inspect::engine::{Engine, Preparation};
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
 use inspect::settings::options::TOLERANCE_RANGE;
 use inspect::settings::{ARENA_BYTES, Settings};
 use load::files::Limits;
 use load::format::known_extensions;
-use load::{HeightSource, ShownParts};
+use load::{HeightSource, ShownParts, Source};
 
 pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
 use declared::GivenTessellation;
@@ -32,9 +34,9 @@ pub(crate) use declared::{
 pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
-    CameraOption, Position, Size, model, picture, picture_or_page, source, whole, whole_from, within,
+    CameraOption, ending_in, model, picture, picture_or_page, size, source, whole, whole_from, within,
 };
-pub(crate) use view::ViewOptions;
+pub(crate) use view::{MeshAt, ViewOptions};
 
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
@@ -56,8 +58,8 @@ pub struct SurfaceOptions {
     #[command(flatten)]
     pub animation: AnimationOption,
     /// Width and height of the view, in px
-    #[arg(long, value_name = "WxH", default_value = "1280x720")]
-    pub size: Size,
+    #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
+    pub size: [u32; 2],
     #[command(flatten)]
     pub view: ViewOptions,
 }
@@ -181,7 +183,7 @@ impl SurfaceOptions {
 
     /// Width and height in px.
     pub fn viewport(&self) -> Vec2 {
-        Vec2::new(self.size.0[0] as f32, self.size.0[1] as f32)
+        Vec2::from(self.size.map(|side| side as f32))
     }
 }
 
@@ -213,12 +215,8 @@ pub struct WeldOption {
     /// Show this scene of a glTF file instead of its default scene, by name, or by number from 0; `info` lists the scenes
     #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
     pub scene: Option<String>,
-    /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
-    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
-    pub hide_part: Vec<String>,
-    /// Show only the part of the file that has this name, and others that are given so
-    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
-    pub show_part: Vec<String>,
+    #[command(flatten)]
+    pub parts: PartOptions,
     #[command(flatten)]
     pub import: ImportOptions,
     #[command(flatten)]
@@ -233,10 +231,33 @@ impl WeldOption {
             heights: None,
             variant: self.variant.clone(),
             scene: self.scene.clone(),
-            parts: ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() },
+            parts: self.parts.shown(),
             import: self.import.0,
             limits: self.limit.limits(),
         }
+    }
+
+    /// Loads a reference surface.
+    pub(crate) fn reference_shape(&self, source: &Source) -> Result<ReferenceShape, CliError> {
+        let found = ReferenceShape::load(source, self.import.0, &self.limit.limits(), &Progress::new())?;
+        found.ok_or_else(|| CliError::NoReferenceShape { file: source.to_string() })
+    }
+}
+
+/// Which parts of a file are read.
+#[derive(Clone, Debug, Default, Args)]
+pub struct PartOptions {
+    /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    hide_part: Vec<String>,
+    /// Show only the part of the file that has this name, and others that are given so
+    #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
+    show_part: Vec<String>,
+}
+
+impl PartOptions {
+    pub fn shown(&self) -> ShownParts {
+        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() }
     }
 }
 

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::{CliError, SurfaceOptions, options, refuse};
-use geometry::progress::Progress;
 use inspect::engine::Loaded;
 use inspect::reference_shape::ReferenceShape;
 use inspect::shot::ReferenceSurface;
@@ -33,10 +32,7 @@ impl ReferenceSurfaceOption {
                 moves,
                 "--reference-surface can't be combined with --animation: the reference surface doesn't move",
             )?;
-            let none = || CliError::NoReferenceShape { file: source.to_string() };
-            let reference_shape =
-                ReferenceShape::load(source, surface.weld.import.0, &surface.weld.limit.limits(), &Progress::new())?
-                    .ok_or_else(none)?;
+            let reference_shape = surface.weld.reference_shape(source)?;
             return Ok(Some(ReferenceSurface::ReferenceShape(source.to_string(), Arc::new(reference_shape))));
         }
         if !is_shown {

@@ -58,8 +58,7 @@ pub fn preview(
     surface.tessellation.0.tessellation = settings.tessellation;
     surface.weld.limit = limit;
     surface.weld.import.0 = opening.import(surface.weld.import.0);
-    let parts = opening.parts();
-    (surface.weld.hide_part, surface.weld.show_part) = (parts.hidden, parts.only);
+    surface.weld.parts = opening.parts.clone();
     let args = Args {
         file: source.unwrap_or_default(),
         output: output.to_owned(),
@@ -98,7 +97,7 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
     let mut shot = args.shot.shot(engine()?, subject)?;
     let cameras = views.iter().map(|view| args.camera(view, &shot)).collect::<Result<Vec<_>, _>>()?;
     files.make_folder()?;
-    let mut all = Vec::new();
+    let mut found = Found::default();
     for (((index, view), camera), reference) in views.iter().enumerate().zip(cameras).zip(references) {
         if let Some(camera) = camera {
             shot.look_from(camera)?;
@@ -106,23 +105,14 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
         if index == 0 {
             shot.report_user_shaders()?;
         }
-        let mut drawn = draw(args, line, &mut shot, view, reference.as_ref())?;
-        if let Some(own) = &mut drawn.stats {
-            own.factors_file.clone_from(&factors_file);
-        }
-        all.push(drawn);
+        draw(args, line, &mut shot, view, reference.as_ref(), &mut found)?;
     }
-    conclude(args, all)
+    found.stats.iter_mut().for_each(|own| own.factors_file.clone_from(&factors_file));
+    conclude(args, found)
 }
 
 /// Writes the stats of all pictures, and says which gates failed and which pictures differ from their references.
-fn conclude(args: &Args, all: Vec<Drawn>) -> Result<(), CliError> {
-    let (mut stats, mut judgements, mut failed) = (Vec::new(), Vec::new(), Vec::new());
-    for drawn in all {
-        stats.extend(drawn.stats);
-        judgements.extend(drawn.judgement);
-        failed.extend(drawn.failed);
-    }
+fn conclude(args: &Args, Found { stats, judgements, mut failed }: Found) -> Result<(), CliError> {
     if let Some(path) = args.stats.as_deref() {
         let text = match &stats[..] {
             [own] if args.cameras.cameras.is_none() => to_json(own)?,
@@ -138,10 +128,11 @@ fn conclude(args: &Args, all: Vec<Drawn>) -> Result<(), CliError> {
     Err(CliError::Gates(failed))
 }
 
-/// What came of a picture.
-struct Drawn {
-    stats: Option<Stats>,
-    judgement: Option<Result<String, ShotError>>,
+/// What came of the pictures.
+#[derive(Default)]
+struct Found {
+    stats: Vec<Stats>,
+    judgements: Vec<Result<String, ShotError>>,
     /// A sentence for each gate that failed.
     failed: Vec<String>,
 }
@@ -152,8 +143,7 @@ impl Args {
         if view.named.is_none() {
             return Ok(None);
         }
-        let (mesh, moment, bounds) = shot.place();
-        let camera = view.camera(&self.shot.surface, mesh, moment, bounds)?;
+        let camera = view.camera(&self.shot.surface, shot.place())?;
         self.shot.check_camera(&camera)?;
         Ok(Some(camera))
     }
@@ -179,7 +169,8 @@ fn draw(
     shot: &mut Shot,
     view: &View,
     reference: Option<&Reference>,
-) -> Result<Drawn, CliError> {
+    found: &mut Found,
+) -> Result<(), CliError> {
     let wanted = args.stats.as_ref().map(|_| StatsWanted { error: args.measure_error });
     let drawn = shot.picture(wanted, &Progress::new())?;
     match ending(&view.file).as_str() {
@@ -190,11 +181,14 @@ fn draw(
     let gates = shot.judge(&args.gates.gates.fail_on, tolerance_px, &Progress::new())?;
     let mut stats = wanted.is_some().then(|| shot.stats()).transpose()?.flatten();
     let judged = reference.map(|reference| reference.judge(&view.file, &drawn, shot.adapter())).transpose()?;
-    let (compared, judgement) = judged.map(|judged| (judged.stats, judged.said)).unzip();
+    let (compared, said) = judged.map(|judged| (judged.stats, judged.said)).unzip();
     if let Some(stats) = &mut stats {
         stats.view = view.named.as_ref().map(|named| named.name.clone());
         stats.reference = compared;
     }
     args.gates.write_evidence(shot, &gates, &view.file)?;
-    Ok(Drawn { stats, judgement, failed: failures(&view.name_of(&args.file), &gates) })
+    found.stats.extend(stats);
+    found.judgements.extend(said);
+    found.failed.extend(failures(&view.name_of(&args.file), &gates));
+    Ok(())
 }

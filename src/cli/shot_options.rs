@@ -134,7 +134,7 @@ impl ShotOptions {
         let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
-        let (given, factors_file) = given.map(|given| (given.factors, given.stats)).unzip();
+        let (given, factors_file) = given.unzip();
         let subject = Subject {
             left,
             moment: self.surface.animation.moment(&loaded)?,
@@ -167,9 +167,9 @@ impl ShotOptions {
         }
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
-            camera: self.surface.view.camera(&self.surface, mesh, subject.moment, &scene.bounds)?,
+            camera: self.surface.view.camera(&self.surface, (mesh, subject.moment, &scene.bounds))?,
             lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds)?,
-            size: self.surface.size.0,
+            size: self.surface.size,
             transparent: self.transparent,
             legend: self.legend,
         };

@@ -81,7 +81,7 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
     let ready = Ready { args, mesh: Posed::load(&args.surface, &args.file, &written)? };
     let Loaded { mesh, topology, .. } = &ready.mesh.posed;
     let given = args.given.read(mesh, topology, &args.surface.tessellation())?;
-    let given = given.map(|given| given.factors);
+    let given = given.map(|(factors, _)| factors);
     let views = views.iter().map(|view| Ok((view, ready.mesh.camera(view)?))).collect::<Result<Vec<_>, CliError>>()?;
     let failed = match args.device {
         Device::Cpu => ready.on_cpu(&views, given.as_deref())?,
@@ -102,9 +102,7 @@ impl Args {
         refuse(
             self.gates.gates.has(GateKind::Deviation),
             "--fail-on deviation needs a reference surface, which render and check take",
-        )?;
-        Exported::check_ending(&self.output)?;
-        Ok(())
+        )
     }
 }
 
@@ -181,7 +179,7 @@ impl Ready<'_> {
 
     /// What gates judge, seen from `camera`.
     fn shot(&self, engine: Engine, scene: Scene, subject: Subject, camera: Camera) -> Result<Shot, CliError> {
-        let size = self.args.surface.size.0;
+        let size = self.args.surface.size;
         let view = ShotView { camera, lod_camera: None, size, transparent: false, legend: false };
         Ok(Shot::new(engine, scene, subject, view)?)
     }

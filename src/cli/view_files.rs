@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::options::{CamerasOption, NamedView, SurfaceOptions};
+use super::options::{CamerasOption, MeshAt, NamedView, SurfaceOptions};
 use super::{CliError, make_folder, refuse};
-use geometry::mesh::{Bounds, Mesh, Moment};
 use geometry::names::shown;
 use inspect::export::ending;
 use inspect::render::Camera;
@@ -96,19 +95,11 @@ impl View {
         }
     }
 
-    /// The view's camera, for a mesh with these bounds at a moment of one of its clips.
-    pub(super) fn camera(
-        &self,
-        surface: &SurfaceOptions,
-        mesh: &Mesh,
-        moment: Option<Moment>,
-        bounds: &Bounds,
-    ) -> Result<Camera, CliError> {
-        let Some(NamedView { name, view }) = &self.named else {
-            return surface.view.camera(surface, mesh, moment, bounds);
-        };
+    /// The view's camera.
+    pub(super) fn camera(&self, surface: &SurfaceOptions, mesh: MeshAt) -> Result<Camera, CliError> {
+        let Some(NamedView { name, view }) = &self.named else { return surface.view.camera(surface, mesh) };
         let of_view = |error: CliError| CliError::View { view: shown(name), error: Box::new(error) };
-        view.camera(surface, mesh, moment, bounds).map_err(of_view)
+        view.camera(surface, mesh).map_err(of_view)
     }
 }
 

@@ -35,6 +35,18 @@ pub fn shown(name: &str) -> String {
     shortened(&on_one_line(name), MAX_LENGTH)
 }
 
+/// Breaks a text between words into lines of at most `most` characters.
+pub fn wrapped(text: &str, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= most => *line += &format!(" {word}"),
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
 /// Returns a path for display: on one line, with at most 200 characters. A longer path loses its start, since its end
 /// names the file.
 pub fn shown_path(path: &Path) -> String {

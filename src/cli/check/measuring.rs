@@ -23,12 +23,8 @@ use load::files::file_reason;
 /// The most px along a side of a picture on the page.
 const MOST_PX: u32 = 704;
 
-/// What was read of an asset.
-struct Read {
-    files: Vec<PathBuf>,
-    /// The parts that are to be left out and that it doesn't have.
-    absent: Vec<String>,
-}
+/// The files that were read of an asset, and the parts that are to be left out and that it doesn't have.
+type Read = (Vec<PathBuf>, Vec<String>);
 
 /// What is found about an asset, and which parts that are to be left out it doesn't have, if that is known. An asset that can't be checked
 /// has the reason; so has one at which the program panics.
@@ -41,17 +37,11 @@ pub(super) fn measured(
     let (start, begun) = (SystemTime::now(), Instant::now());
     let mut asset = Asset { path: job.name.clone(), ..Asset::default() };
     let ended = catch_unwind(AssertUnwindSafe(|| measure(job, engine, pictures, &mut asset)));
-    let (files, absent) = match ended {
-        Ok(Ok(Read { files, absent })) => (Some(files), Some(absent)),
-        Ok(Err(error)) => {
-            asset.error = Some(on_one_line(&error.to_string()));
-            (None, None)
-        }
-        Err(_) => {
-            asset.error = Some(format!("{}: checking it stopped unexpectedly, which is an error of pnaen", job.name));
-            (None, None)
-        }
+    let read = match ended {
+        Ok(read) => read.map_err(|error| on_one_line(&error.to_string())),
+        Err(_) => Err(format!("{}: checking it stopped unexpectedly, which is an error of pnaen", job.name)),
     };
+    let (files, absent) = read.map_err(|error| asset.error = Some(error)).ok().unzip();
     asset.seconds = begun.elapsed().as_secs_f64();
     if let Some((cache, files)) = cache.filter(|_| job.is_kept).zip(files)
         && let Err(error) = cache.put(job.inputs(), &files, start, &asset)
@@ -64,7 +54,7 @@ pub(super) fn measured(
 /// Fills in what is found. Returns what was read.
 fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Result<Read, CliError> {
     let progress = Progress::new();
-    let Some((_, first)) = job.views.first() else { return Ok(Read { files: Vec::new(), absent: Vec::new() }) };
+    let Some((_, first)) = job.views.first() else { return Ok(Read::default()) };
     let (loaded, absent) = load(job, first.surface.preparation(), &progress)?;
     asset.warnings.clone_from(&loaded.warnings);
     for (index, (name, options)) in job.views.iter().enumerate() {
@@ -97,7 +87,7 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
     }
     let own = file_of(&job.source).map(Path::to_owned);
     let files = own.into_iter().chain(loaded.files).chain(job.read.iter().cloned()).collect();
-    Ok(Read { files, absent })
+    Ok((files, absent))
 }
 
 /// Loads an asset. What the configuration hides may be parts of other assets: these are returned too.

@@ -45,7 +45,8 @@ pub(super) fn draw(
     comparison: &Comparison,
 ) -> Result<(), CliError> {
     let engine = Engine::chosen(&args.adapter.choice())?;
-    let Some(mesh) = their_mesh(theirs, comparison) else { return Err(CliError::NothingToDraw) };
+    let positions: Vec<_> = comparison.positions.iter().map(|position| position.as_vec3().to_array()).collect();
+    let mesh = mesh_of(&positions, &theirs.triangles).ok_or(CliError::NothingToDraw)?;
     let topology = Topology::new(&mesh);
     let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
     let shown = Loaded { read: mesh.clone(), mesh, topology, ..loaded.clone() };
@@ -64,7 +65,7 @@ pub(super) fn draw(
     };
     let scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
     let view =
-        ShotView { camera: *camera, lod_camera: None, size: args.surface.size.0, transparent: false, legend: true };
+        ShotView { camera: *camera, lod_camera: None, size: args.surface.size, transparent: false, legend: true };
     names.extend(subject.reference_surface.is_some().then_some((WORST_COLOR, "largest distance from ours")));
     let mut picture = Shot::new(engine, scene, subject, view)?.picture(None, &Progress::new())?;
     draw_key(&mut picture, "What differs", &names)?;
@@ -78,20 +79,16 @@ fn settings() -> Settings {
     Settings { overlays, ..Settings::from(tessellation) }
 }
 
-/// Their triangles, in our coordinates.
-fn their_mesh(theirs: &ForeignMesh, comparison: &Comparison) -> Option<Mesh> {
-    let positions: Vec<[f32; 3]> = comparison.positions.iter().map(|position| position.as_vec3().to_array()).collect();
-    let slices =
-        MeshSlices { positions: &positions, indices: theirs.triangles.as_flattened(), ..MeshSlices::default() };
+/// A mesh of these triangles.
+fn mesh_of(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> Option<Mesh> {
+    let slices = MeshSlices { positions, indices: triangles.as_flattened(), ..MeshSlices::default() };
     Mesh::from_slices(&slices).ok()
 }
 
 /// What we emit, as the surface that theirs is compared with.
 fn our_mesh(ours: &OurTessellation) -> Option<ReferenceShape> {
-    let out = ours.tessellated;
-    let positions: Vec<[f32; 3]> = out.vertices.iter().map(|vertex| vertex.position).collect();
-    let slices = MeshSlices { positions: &positions, indices: out.triangles.as_flattened(), ..MeshSlices::default() };
-    ReferenceShape::from_mesh(&Mesh::from_slices(&slices).ok()?)
+    let positions: Vec<[f32; 3]> = ours.tessellated.vertices.iter().map(|vertex| vertex.position).collect();
+    ReferenceShape::from_mesh(&mesh_of(&positions, &ours.tessellated.triangles)?)
 }
 
 /// What differs, as lines and dots: each kind with its colour and its name.

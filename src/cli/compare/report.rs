@@ -31,9 +31,7 @@ impl Report<'_> {
         if found.findings.is_empty() {
             let _ = writeln!(text, "{} is the same tessellation of {} as ours.", self.theirs, shown(self.mesh));
         }
-        for finding in &found.findings {
-            let _ = writeln!(text, "{}", finding.text());
-        }
+        text.extend(found.findings.iter().map(|finding| format!("{finding}\n")));
         let _ = writeln!(
             text,
             "\n{} and {} on {} of {} patches; ours are {}.",
@@ -102,7 +100,7 @@ impl Report<'_> {
             ours: farthest.ours.to_array(),
             distance: distance(farthest.distance),
         };
-        let finding = |finding: &Finding| JsonFinding { kind: finding.kind(), text: finding.text() };
+        let finding = |finding: &Finding| JsonFinding { kind: finding.kind(), text: finding.to_string() };
         let triangle = |patch: &u32| self.ours.topology.patches[*patch as usize].triangle;
         Json {
             theirs: self.theirs,

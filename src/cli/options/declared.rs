@@ -181,7 +181,8 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
     match &declaration.kind {
         Kind::Choice(all) | Kind::Several(all) => {
             let value = |name: String| declaration.kind.named(&name).map_or(Value::Unset, Value::Name);
-            ValueParser::new(Trimmed(PossibleValuesParser::new(all().into_iter().map(possible)).map(value)))
+            let names: Vec<_> = all().into_iter().map(possible).collect();
+            ValueParser::new(listed(PossibleValuesParser::new(names.clone()).map(value), names))
         }
         kind @ Kind::NameOrNumber { .. } => {
             let names = kind.descriptions().into_iter().map(possible).collect();
@@ -191,23 +192,8 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
     }
 }
 
-/// Reads a value without the blanks around it, which people write after the commas of a list.
-#[derive(Clone)]
-struct Trimmed<P>(P);
-
-impl<P: TypedValueParser> TypedValueParser for Trimmed<P> {
-    type Value = P::Value;
-
-    fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<P::Value, Error> {
-        self.0.parse_ref(command, arg, value.to_str().map_or(value, |text| OsStr::new(text.trim())))
-    }
-
-    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
-        self.0.possible_values()
-    }
-}
-
-/// Reads a value as `parser` does. Help texts list these names, though there are more values than they.
+/// Reads a value as `parser` does, without the blanks around it, which people write after the commas of a list. Help texts
+/// list these names, though there may be more values than they.
 pub(crate) fn listed<P: TypedValueParser>(
     parser: P,
     names: Vec<PossibleValue>,
@@ -225,7 +211,7 @@ impl<P: TypedValueParser> TypedValueParser for Listed<P> {
     type Value = P::Value;
 
     fn parse_ref(&self, command: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<P::Value, Error> {
-        self.parser.parse_ref(command, arg, value)
+        self.parser.parse_ref(command, arg, value.to_str().map_or(value, |text| OsStr::new(text.trim())))
     }
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {

@@ -1,10 +1,10 @@
 //! The options of the camera that LOD is computed for.
 
 use clap::Args;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
-use super::values::{angle, field_of_view};
-use super::{CameraOption, Position, Size, SurfaceOptions, ViewOptions, defaults};
+use super::values::{angle, field_of_view, position, size};
+use super::{CameraOption, SurfaceOptions, ViewOptions, defaults};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh};
 use inspect::render::Camera;
@@ -18,11 +18,11 @@ pub struct LodCameraOption {
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", allow_hyphen_values = true)]
     pub lod_camera: Option<CameraOption>,
     /// The point that the LOD camera looks at, in object units (by default the centre of everything that is shown)
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, requires = "lod_camera")]
-    pub lod_target: Option<Position>,
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = position, requires = "lod_camera")]
+    pub lod_target: Option<Vec3>,
     /// Width and height of the LOD camera's view, in px (by default those of --size)
-    #[arg(long, value_name = "WxH", requires = "lod_camera")]
-    pub lod_size: Option<Size>,
+    #[arg(long, value_name = "WxH", value_parser = size, requires = "lod_camera")]
+    pub lod_size: Option<[u32; 2]>,
     /// Orthographic projection for the LOD camera
     #[arg(long, requires = "lod_camera")]
     pub lod_orthographic: bool,
@@ -60,6 +60,6 @@ impl LodCameraOption {
             ..own.view.clone()
         };
         let options = SurfaceOptions { view, size: self.lod_size.unwrap_or(own.size), ..own.clone() };
-        Ok(Some((options.view.camera(&options, mesh, None, bounds)?, options.viewport())))
+        Ok(Some((options.view.camera(&options, (mesh, None, bounds))?, options.viewport())))
     }
 }

@@ -2,6 +2,7 @@
 
 use clap::{Arg, ArgMatches, Args, Error};
 
+use super::PartOptions;
 use super::declared::{Declared, Group, arg, given};
 use inspect::engine::Preparation;
 use inspect::settings::{Declaration, Settings, Value, options};
@@ -9,15 +10,12 @@ use load::{Import, ShownParts};
 
 /// How the window takes the mesh that it opens first. What isn't given is as the window was left, or as it was chosen for the file.
 #[derive(Clone, Debug, Default, Args)]
+#[command(mut_arg("hide_part", |arg| arg.requires("file")), mut_arg("show_part", |arg| arg.requires("file")))]
 pub struct OpeningOptions {
     #[command(flatten)]
     import: Declared<GivenImport>,
-    /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
-    #[arg(long, value_name = "NAME", allow_hyphen_values = true, requires = "file")]
-    hide_part: Vec<String>,
-    /// Show only the part of the file that has this name, and others that are given so
-    #[arg(long, value_name = "NAME", allow_hyphen_values = true, requires = "file")]
-    show_part: Vec<String>,
+    #[command(flatten)]
+    pub parts: PartOptions,
 }
 
 /// The options of [`options::IMPORT`] that were given, with their values.
@@ -27,13 +25,13 @@ struct GivenImport(Vec<(&'static Declaration, Value)>);
 impl OpeningOptions {
     /// Whether none was given.
     pub fn is_empty(&self) -> bool {
-        self.import.0.0.is_empty() && self.hide_part.is_empty() && self.show_part.is_empty()
+        self.import.0.0.is_empty() && self.parts.shown() == ShownParts::default()
     }
 
     /// Changes what the given options are about.
     pub fn change(&self, preparation: &mut Preparation) {
         preparation.import = self.import(preparation.import);
-        preparation.parts = self.parts();
+        preparation.parts = self.parts.shown();
     }
 
     /// How the geometry of a file is taken, which is `usual` without options.
@@ -43,11 +41,6 @@ impl OpeningOptions {
             declaration.set(&mut settings, value.clone());
         }
         settings.import
-    }
-
-    /// Which parts of the file are read.
-    pub fn parts(&self) -> ShownParts {
-        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() }
     }
 }
 

@@ -8,6 +8,7 @@ use std::str::FromStr;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
+use inspect::export::ending;
 use inspect::render::camera::FIELDS_OF_VIEW;
 use load::Source;
 use load::format::Format;
@@ -21,7 +22,7 @@ fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
     if path.as_os_str() == "-" {
         return Err("pictures aren't written to standard output: name a .png file".to_owned());
     }
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let ending = ending(&path);
     let is_mesh = Format::from_name(&path).is_some();
     let is_image = ["jpg", "jpeg", "webp", "bmp", "gif", "tif", "tiff", "svg", "hdr", "exr"].contains(&&*ending);
     let is_text = ["csv", "tsv", "json", "toml", "txt", "md", "html", "xml", "wgsl"].contains(&&*ending);
@@ -33,35 +34,34 @@ fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
 
 /// The same, or that of a report on a picture.
 pub(crate) fn picture_or_page() -> impl TypedValueParser<Value = PathBuf> {
-    let is_page = |path: &PathBuf| inspect::export::ending(path) == "html";
-    OsStringValueParser::new().try_map(move |path| {
-        let path = PathBuf::from(path);
-        if is_page(&path) { Ok(path) } else { picture_path(path) }
-    })
-}
-
-/// Parses the path of a mesh to write, whose ending gives its format.
-pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
     OsStringValueParser::new().try_map(|path| {
         let path = PathBuf::from(path);
-        let known = matches!(inspect::export::ending(&path).as_str(), "glb" | "obj");
-        if known { Ok(path) } else { Err("meshes are written as .glb or .obj files: name it one of these") }
+        if ending(&path) == "html" { Ok(path) } else { picture_path(path) }
     })
 }
 
-/// Width and height in px.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Size(pub [u32; 2]);
+/// Parses the path of a file to write, whose ending, one of these, gives its format. `wanted` says which there are.
+pub(crate) fn ending_in(
+    endings: &'static [&'static str],
+    wanted: &'static str,
+) -> impl TypedValueParser<Value = PathBuf> {
+    OsStringValueParser::new().try_map(move |path| {
+        let path = PathBuf::from(path);
+        if endings.contains(&ending(&path).as_str()) { Ok(path) } else { Err(wanted) }
+    })
+}
 
-impl FromStr for Size {
-    type Err = String;
+/// Parses the path of a mesh to write.
+pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
+    ending_in(&["glb", "obj"], "meshes are written as .glb or .obj files: name it one of these")
+}
 
-    fn from_str(text: &str) -> Result<Self, String> {
-        let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
-        // With a comma as a list of numbers in a configuration gives it.
-        let sides = text.split_once(['x', 'X', ',']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
-        sides.map(Self).ok_or_else(|| "expected WIDTHxHEIGHT in px, each from 1 to 16384, such as 1280x720".into())
-    }
+/// Parses a width and height in px.
+pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
+    // With a comma as a list of numbers in a configuration gives it.
+    let sides = text.split_once(['x', 'X', ',']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+    sides.ok_or_else(|| "expected WIDTHxHEIGHT in px, each from 1 to 16384, such as 1280x720".into())
 }
 
 /// The direction and distance of the camera.
@@ -101,17 +101,10 @@ pub(crate) fn angle(text: &str) -> Result<f32, String> {
     angle.ok_or_else(|| "expected a number of degrees".to_owned())
 }
 
-/// A position in object units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Position(pub Vec3);
-
-impl FromStr for Position {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let place = numbers(text).and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
-        place.map(|place| Self(place.into())).ok_or_else(|| "expected X,Y,Z in object units, such as 0,1.5,0".into())
-    }
+/// Parses a position in object units.
+pub(super) fn position(text: &str) -> Result<Vec3, String> {
+    let place = numbers(text).and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
+    place.map(Vec3::from).ok_or_else(|| "expected X,Y,Z in object units, such as 0,1.5,0".into())
 }
 
 /// Parses a mesh's source, whose path may be in any encoding.
@@ -194,9 +187,9 @@ mod tests {
 
     #[test]
     fn sizes_and_cameras_are_read_or_refused() {
-        assert_eq!(["640x480", "640,480"].map(str::parse), [const { Ok(Size([640, 480])) }; 2]);
+        assert_eq!(["640x480", "640,480"].map(size), [const { Ok([640, 480]) }; 2]);
         for bad in ["640", "0x10", "640x", "-1x5", "99999x5"] {
-            assert!(bad.parse::<Size>().is_err(), "{bad}");
+            assert!(size(bad).is_err(), "{bad}");
         }
         let camera = CameraOption { azimuth: -10.0, elevation: 5.5, distance: Some(2.0) };
         assert_eq!("-10, 5.5,2".parse(), Ok(camera));

@@ -1,18 +1,19 @@
 //! The options of a camera: ours, one of the file, or the matrix of an engine's frame.
 
-use std::str::FromStr;
-
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
-use glam::DMat4;
+use glam::{DMat4, Vec3};
 
-use super::values::{angle, field_of_view};
-use super::{CameraOption, Position, SurfaceOptions, defaults, file_camera, named};
+use super::values::{angle, field_of_view, position};
+use super::{CameraOption, SurfaceOptions, defaults, file_camera, named};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh, Moment};
 use inspect::render::Camera;
 use inspect::render::camera::FIELD_OF_VIEW;
 use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
+
+/// A mesh, a moment of one of its clips, and its bounds.
+pub(crate) type MeshAt<'a> = (&'a Mesh, Option<Moment>, &'a Bounds);
 
 /// Where the mesh is seen from.
 #[derive(Clone, Debug, PartialEq, Args)]
@@ -22,8 +23,8 @@ pub struct ViewOptions {
     #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", default_value = "30,20", allow_hyphen_values = true)]
     pub camera: CameraOption,
     /// The point that the camera looks at, in object units (by default the centre of everything that is shown)
-    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true)]
-    pub target: Option<Position>,
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = position)]
+    pub target: Option<Vec3>,
     /// Orthographic projection, without perspective
     #[arg(long)]
     pub orthographic: bool,
@@ -48,9 +49,10 @@ pub struct ViewOptions {
         long,
         value_name = "16 NUMBERS",
         allow_hyphen_values = true,
+        value_parser = matrix_numbers,
         conflicts_with_all = ["camera", "target", "orthographic", "field_of_view", "roll", "file_camera"]
     )]
-    pub view_projection: Option<MatrixNumbers>,
+    pub view_projection: Option<[f64; 16]>,
     /// How the 16 numbers are listed, of the matrix that multiplies column vectors (M * v). Engines with row vectors (v * M) that
     /// list rows have them column-major
     #[arg(long, value_enum, default_value_t = MatrixOrder::ColumnMajor, requires = "view_projection")]
@@ -69,25 +71,17 @@ impl Default for ViewOptions {
     }
 }
 
-/// The numbers of a matrix, in the order in which they are given.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MatrixNumbers(pub [f64; 16]);
-
-impl FromStr for MatrixNumbers {
-    type Err = String;
-
-    /// Numbers may be separated by commas, blanks and lines, and be in brackets, as programs print arrays.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let is_between = |c: char| c.is_whitespace() || matches!(c, ',' | ';' | '[' | ']' | '(' | ')' | '{' | '}');
-        let words = text.split(is_between).filter(|word| !word.is_empty());
-        let numbers = words.enumerate().map(|(index, word)| {
-            let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-            number.ok_or_else(|| format!("expected 16 numbers, and number {} is {word}", index + 1))
-        });
-        let numbers = numbers.collect::<Result<Vec<_>, _>>()?;
-        let found = numbers.len();
-        numbers.try_into().map(Self).map_err(|_| format!("expected 16 numbers, found {found}"))
-    }
+/// Parses the numbers of a matrix. They may be separated by commas, blanks and lines, and be in brackets, as programs print
+/// arrays.
+fn matrix_numbers(text: &str) -> Result<[f64; 16], String> {
+    let is_between = |c: char| c.is_whitespace() || matches!(c, ',' | ';' | '[' | ']' | '(' | ')' | '{' | '}');
+    let words = text.split(is_between).filter(|word| !word.is_empty());
+    let numbers = words.enumerate().map(|(index, word)| {
+        let number = word.parse().ok().filter(|number: &f64| number.is_finite());
+        number.ok_or_else(|| format!("expected 16 numbers, and number {} is {word}", index + 1))
+    });
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+    numbers.try_into().map_err(|found: Vec<f64>| format!("expected 16 numbers, found {}", found.len()))
 }
 
 /// How the 16 numbers of a matrix that multiplies column vectors are listed.
@@ -118,15 +112,8 @@ fn one_of<T: Copy + Send + Sync + 'static>(all: &'static [(&str, &str, T)]) -> i
 }
 
 impl ViewOptions {
-    /// Returns the camera of these options for a mesh with these bounds, at a moment of one of its clips. Without a distance it shows
-    /// everything that is drawn as `surface` says.
-    pub fn camera(
-        &self,
-        surface: &SurfaceOptions,
-        mesh: &Mesh,
-        moment: Option<Moment>,
-        bounds: &Bounds,
-    ) -> Result<Camera, CliError> {
+    /// Returns the camera of these options for a mesh. Without a distance it shows everything that is drawn as `surface` says.
+    pub fn camera(&self, surface: &SurfaceOptions, (mesh, moment, bounds): MeshAt) -> Result<Camera, CliError> {
         if let Some(matrix) = self.matrix() {
             return Ok(Camera::from_matrix(&matrix, bounds)?);
         }
@@ -140,14 +127,14 @@ impl ViewOptions {
         if let Some(radii) = self.camera.distance {
             camera.distance = radii * bounds.radius();
         }
-        camera.target = self.target.map_or(camera.target, |place| place.0);
+        camera.target = self.target.unwrap_or(camera.target);
         camera.orthographic = self.orthographic;
         Ok(camera)
     }
 
     /// The matrix of an engine's frame, if there is one.
     pub(in crate::cli) fn matrix(&self) -> Option<ViewProjection> {
-        let listed = DMat4::from_cols_array(&self.view_projection?.0);
+        let listed = DMat4::from_cols_array(&self.view_projection?);
         let clip_from_object = match self.matrix_order {
             MatrixOrder::ColumnMajor => listed,
             MatrixOrder::RowMajor => listed.transpose(),
@@ -163,11 +150,11 @@ mod tests {
     #[test]
     fn numbers_are_read_as_programs_print_them_and_others_are_refused() {
         let numbers: Vec<String> = (1..=16).map(|number| number.to_string()).collect();
-        let expected = MatrixNumbers([1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16].map(f64::from));
+        let expected = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16].map(f64::from);
         for text in [numbers.join(","), numbers.join(" "), format!("[\n  {}\n]", numbers.join(",\n  "))] {
-            assert_eq!(text.parse(), Ok(expected), "{text}");
+            assert_eq!(matrix_numbers(&text), Ok(expected), "{text}");
         }
-        let refused = |text: String| text.parse::<MatrixNumbers>().expect_err("no matrix");
+        let refused = |text: String| matrix_numbers(&text).expect_err("no matrix");
         assert_eq!(refused(numbers[1..].join(" ")), "expected 16 numbers, found 15");
         assert_eq!(refused(numbers.join(" ").replace("16", "NaN")), "expected 16 numbers, and number 16 is NaN");
         assert_eq!(refused(numbers.join(" ").replace("2 3", "2 x")), "expected 16 numbers, and number 3 is x");

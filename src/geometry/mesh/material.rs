@@ -3,6 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use serde::Serialize;
+
 /// The look of some of a mesh's patches.
 #[derive(Clone, Debug)]
 pub struct Material {
@@ -53,8 +55,8 @@ pub struct Texture {
     pub rgba: Vec<u8>,
 }
 
-/// How a material reflects and emits light.
-#[derive(Clone, Debug)]
+/// How a material reflects and emits light. As JSON it has the numbers that need no explanation.
+#[derive(Clone, Debug, Serialize)]
 pub struct Look {
     /// 0 for dielectrics, 1 for metals.
     pub metallic: f32,
@@ -63,10 +65,13 @@ pub struct Look {
     /// Linear RGB that the surface emits, its strength included.
     pub emissive: [f32; 3],
     /// Factor of the first two components of the normal map's normals.
+    #[serde(skip)]
     pub normal_scale: f32,
     /// How much of the occlusion map counts, 0 to 1.
+    #[serde(skip)]
     pub occlusion_strength: f32,
     /// What the base colour's alpha does.
+    #[serde(skip)]
     pub alpha: Alpha,
     /// Whether the base colour is shown as it is, without light (KHR_materials_unlit).
     pub unlit: bool,
@@ -81,6 +86,7 @@ pub struct Look {
     /// Perceptual roughness of the coat.
     pub clearcoat_roughness: f32,
     /// Factor of the first two components of the normals that the coat's own map has.
+    #[serde(skip)]
     pub clearcoat_normal_scale: f32,
     /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1. The surface is thin: it bends no light
     /// (KHR_materials_transmission).
@@ -90,6 +96,7 @@ pub struct Look {
     /// Perceptual roughness of the fibres, 0 (they stand upright) to 1.
     pub sheen_roughness: f32,
     /// The images beside that of the base colour, by [`Slot`].
+    #[serde(skip)]
     pub maps: [Option<Map>; Slot::COUNT],
 }
 

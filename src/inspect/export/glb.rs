@@ -14,7 +14,7 @@ use super::attributes::Attributes;
 use super::{ExportError, Exported};
 use geometry::mesh::CornerDetail;
 
-use materials::{Images, UvSet, UvSets};
+use materials::{UvSet, UvSets, Written};
 
 /// The most bytes of binary data. The length of a GLB file has 32 bits, and its JSON needs room as well.
 pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
@@ -41,16 +41,15 @@ pub(super) fn encode(mesh: &Exported, path: &str) -> Result<(Vec<u8>, Vec<String
     if bytes > MAX_BYTES {
         return Err(ExportError::TooLarge { path: path.to_owned(), triangles: triangles as u64 });
     }
-    let mut writer = Writer { bin: Vec::with_capacity(bytes as usize), ..Writer::default() };
+    let mut writer = Writer { path: path.to_owned(), bin: Vec::with_capacity(bytes as usize), ..Writer::default() };
     let accessors = writer.vertices(mesh, used);
     let mut primitives = Vec::new();
-    let mut images = Images::default();
     for (material, triangles) in mesh.mesh.materials.iter().zip(&mesh.triangles) {
         if triangles.is_empty() {
             continue;
         }
         let sets = UvSets::new(material);
-        let index = writer.material(material, &sets, &mut images, path)?;
+        let index = writer.material(material, &sets)?;
         primitives.push(writer.primitive(accessors.attributes(&sets), triangles, index));
     }
     writer.finish(mesh, primitives).map_err(|reason| ExportError::Texture { path: path.to_owned(), reason })
@@ -59,6 +58,8 @@ pub(super) fn encode(mesh: &Exported, path: &str) -> Result<(Vec<u8>, Vec<String
 /// A document that is being written, and its binary data.
 #[derive(Default)]
 struct Writer {
+    /// For messages.
+    path: String,
     bin: Vec<u8>,
     views: Vec<Value>,
     accessors: Vec<Value>,
@@ -68,6 +69,7 @@ struct Writer {
     materials: Vec<Value>,
     extensions: BTreeSet<&'static str>,
     warnings: Vec<String>,
+    written: Written,
 }
 
 /// Indices of the accessors of all vertices.

@@ -236,7 +236,8 @@ fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
         GateKind::Bytes => {
             let (vertices, triangles) = known(facts.emitted)?;
             let words = ["vertices and indices take # byte", "vertices and indices take # bytes"];
-            some(output_bytes(vertices, triangles), words, |_| None)
+            let bytes = vertices * size_of::<Vertex>() as u64 + triangles * size_of::<[u32; 3]>() as u64;
+            some(bytes, words, |_| None)
         }
     }
 }
@@ -298,11 +299,6 @@ fn warnings(all: &[String]) -> (u64, String) {
 /// A warning within a sentence.
 fn clause(warning: &str) -> String {
     shown(warning).trim_end_matches('.').to_owned()
-}
-
-/// The memory of emitted vertices and indices, in bytes.
-fn output_bytes(vertices: u64, triangles: u64) -> u64 {
-    vertices * size_of::<Vertex>() as u64 + triangles * size_of::<[u32; 3]>() as u64
 }
 
 /// A place on an edge of the mesh.
@@ -404,13 +400,23 @@ fn torn_at(facts: &Facts, leak: &Leak) -> Option<EdgePlace> {
     (crack.px <= most).then(|| EdgePlace::new(facts.topology, crack.edge, Some(crack.at)))
 }
 
+/// A place on a patch: its triangle and the position, after these words.
+fn on_patch(facts: &Facts, words: &str, patch: u32, at: Vec3) -> Place {
+    let triangle = facts.topology.patches[patch as usize].triangle;
+    on_triangle(words, triangle, facts.topology.patch_positions(patch), at)
+}
+
+/// The same for a triangle of the mesh, which has these corners.
+fn on_triangle(words: &str, triangle: u32, corners: [Vec3; 3], at: Vec3) -> Place {
+    let text = format!("{words} triangle {triangle} at {}", position(at));
+    Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) }
+}
+
 fn worst_fold(facts: &Facts) -> Option<Place> {
     // The largest area is the first.
     let fold = facts.measured?.folded.first()?;
-    let triangle = facts.topology.patches[fold.patch as usize].triangle;
-    let (folds, place) = (grouped(u64::from(fold.folds)), position(fold.place()));
-    let text = format!("the largest are {folds} of triangle {triangle} at {place}");
-    Some(Place { text, triangles: vec![triangle], spot: Spot::fold(fold) })
+    let words = format!("the largest are {} of", grouped(fold.folds.into()));
+    Some(Place { spot: Spot::fold(fold), ..on_patch(facts, &words, fold.patch, fold.place()) })
 }
 
 fn worst_junction(facts: &Facts) -> Option<Place> {
@@ -426,11 +432,9 @@ fn worst_junction(facts: &Facts) -> Option<Place> {
 fn worst_defect(defects: Defects, mesh: &Mesh, topology: &Topology) -> Option<Place> {
     let corners =
         |triangle: u32| mesh.triangles[triangle as usize].map(|corner| mesh.corners[corner as usize].position);
-    let on_triangle = |triangle: u32, words: &str| {
+    let in_middle = |words: &str, triangle: u32| {
         let corners = corners(triangle);
-        let at = corners.iter().sum::<Vec3>() / 3.0;
-        let text = format!("{words} triangle {triangle} at {}", position(at));
-        Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) }
+        on_triangle(words, triangle, corners, corners.iter().sum::<Vec3>() / 3.0)
     };
     Some(match defects {
         Defects::Edges(edges) => {
@@ -448,11 +452,11 @@ fn worst_defect(defects: Defects, mesh: &Mesh, topology: &Topology) -> Option<Pl
                 let [a, b, c] = corners(*triangle);
                 a.distance_squared(b).max(b.distance_squared(c)).max(c.distance_squared(a))
             };
-            on_triangle(triangles.into_iter().max_by(|a, b| longest(a).total_cmp(&longest(b)))?, "the longest is")
+            in_middle("the longest is", triangles.into_iter().max_by(|a, b| longest(a).total_cmp(&longest(b)))?)
         }
         Defects::Inflated(triangles) => {
             let (triangle, rise) = triangles.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-            on_triangle(triangle, &format!("most, by {} object units, rises", short(rise)))
+            in_middle(&format!("most, by {} object units, rises", short(rise)), triangle)
         }
     })
 }
@@ -469,29 +473,20 @@ fn worst_crossing(facts: &Facts) -> Option<Place> {
 
 fn worst_pop(facts: &Facts) -> Option<Place> {
     let Pop { patch, at, .. } = facts.pop?.ok()??;
-    let corners = facts.topology.patch_positions(patch);
-    let triangle = facts.topology.patches[patch as usize].triangle;
-    let text = format!("the farthest jump is of triangle {triangle} at {}", position(at));
-    Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
+    Some(on_patch(facts, "the farthest jump is of", patch, at))
 }
 
 fn worst_deviation(facts: &Facts) -> Option<Place> {
     let Deviation { worst, .. } = facts.deviation?.ok()?;
-    let corners = facts.topology.patch_positions(worst.patch);
-    let triangle = facts.topology.patches[worst.patch as usize].triangle;
-    let (at, reference_shape) = (worst.emitted.as_vec3(), worst.reference_shape.as_vec3());
-    let (at_words, other) = (position(at), position(reference_shape));
-    let text = format!("the farthest is of triangle {triangle} at {at_words}, and on the reference surface at {other}");
-    Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
+    let mut place = on_patch(facts, "the farthest is of", worst.patch, worst.emitted.as_vec3());
+    place.text += &format!(", and on the reference surface at {}", position(worst.reference_shape.as_vec3()));
+    Some(place)
 }
 
 fn worst_error(facts: &Facts) -> Option<Place> {
     let worst = facts.above?.worst?;
-    let corners = facts.topology.patch_positions(worst.patch);
-    let triangle = facts.topology.patches[worst.patch as usize].triangle;
-    let at = worst.emitted.as_vec3();
-    let text = format!("the farthest, {} px, is of triangle {triangle} at {}", hundredths(worst.px), position(at));
-    Some(Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) })
+    let words = format!("the farthest, {} px, is of", hundredths(worst.px));
+    Some(on_patch(facts, &words, worst.patch, worst.emitted.as_vec3()))
 }
 
 #[cfg(test)]

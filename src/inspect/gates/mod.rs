@@ -67,64 +67,55 @@ choices! {
 }
 
 impl GateKind {
-    /// What it judges.
-    pub const fn subject(self) -> GateSubject {
+    /// What it judges, and the overlays that show what it found, of which at most one colours the surface.
+    const fn declared(self) -> (GateSubject, &'static [Overlay]) {
+        use GateSubject::{Budget, Distance, Flight, Mesh, Survey, Tessellation};
+        use Overlay::{Adjacency, Normals, Patches, Wireframe};
         match self {
-            Self::TJunctions
-            | Self::Warnings
-            | Self::NonManifold
-            | Self::Boundary
-            | Self::Winding
-            | Self::NormalsAgainstFaces
-            | Self::Degenerate
-            | Self::Duplicates
-            | Self::NearSeam
-            | Self::HardEdges
-            | Self::Inflated => GateSubject::Mesh,
-            Self::Deviation => GateSubject::Distance,
-            Self::Pops => GateSubject::Flight,
-            Self::Cracks | Self::Factors | Self::Leaks | Self::Folds => GateSubject::Survey,
-            Self::AboveTolerance | Self::SelfIntersections => GateSubject::Tessellation,
-            Self::Triangles | Self::Bytes => GateSubject::Budget,
+            Self::Cracks => (Survey, &[Wireframe, Overlay::Cracks]),
+            Self::Factors => (Survey, &[Wireframe, Overlay::Factors]),
+            Self::Leaks => (Survey, &[Overlay::Cracks]),
+            Self::Folds => (Survey, &[Wireframe, Overlay::Folds]),
+            Self::TJunctions => (Mesh, &[Patches, Overlay::TJunctions]),
+            Self::NonManifold | Self::Boundary | Self::Winding | Self::NearSeam | Self::HardEdges => {
+                (Mesh, &[Wireframe, Adjacency])
+            }
+            Self::NormalsAgainstFaces | Self::Inflated => (Mesh, &[Patches, Normals]),
+            Self::Degenerate | Self::Duplicates => (Mesh, &[Patches]),
+            Self::Warnings => (Mesh, &[]),
+            Self::AboveTolerance | Self::SelfIntersections => (Tessellation, &[Wireframe, Patches]),
+            Self::Deviation => (Distance, &[Wireframe, Overlay::Deviation]),
+            Self::Pops => (Flight, &[Wireframe, Patches]),
+            Self::Triangles | Self::Bytes => (Budget, &[]),
         }
     }
 
-    /// The overlays that show what it found. At most one of them colours the surface.
+    pub const fn subject(self) -> GateSubject {
+        self.declared().0
+    }
+
     pub const fn overlays(self) -> &'static [Overlay] {
-        match self {
-            Self::Cracks => &[Overlay::Wireframe, Overlay::Cracks],
-            Self::Factors => &[Overlay::Wireframe, Overlay::Factors],
-            Self::Leaks => &[Overlay::Cracks],
-            Self::Folds => &[Overlay::Wireframe, Overlay::Folds],
-            Self::TJunctions => &[Overlay::Patches, Overlay::TJunctions],
-            Self::AboveTolerance => &[Overlay::Wireframe, Overlay::Patches],
-            Self::NonManifold | Self::Boundary | Self::Winding | Self::NearSeam | Self::HardEdges => {
-                &[Overlay::Wireframe, Overlay::Adjacency]
-            }
-            Self::NormalsAgainstFaces | Self::Inflated => &[Overlay::Patches, Overlay::Normals],
-            Self::Degenerate | Self::Duplicates => &[Overlay::Patches],
-            Self::SelfIntersections | Self::Pops => &[Overlay::Wireframe, Overlay::Patches],
-            Self::Deviation => &[Overlay::Wireframe, Overlay::Deviation],
-            Self::Warnings | Self::Triangles | Self::Bytes => &[],
+        self.declared().1
+    }
+
+    /// What stands for the limit on the command line; none if it may be left out, and then none of what it counts is allowed.
+    const fn limit_name(self) -> Option<&'static str> {
+        match self.subject() {
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation => None,
+            GateSubject::Budget => Some("N"),
+            GateSubject::Distance => Some("LENGTH"),
+            GateSubject::Flight => Some("LENGTHpx"),
         }
     }
 
     /// How it is written on the command line: its name, and that of the number that it needs.
     pub fn placeholder(self) -> String {
-        match self.subject() {
-            GateSubject::Budget => format!("{}:N", self.name()),
-            GateSubject::Distance => format!("{}:LENGTH", self.name()),
-            GateSubject::Flight => format!("{}:LENGTHpx", self.name()),
-            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation => self.name().to_owned(),
-        }
+        self.limit_name().map_or_else(|| self.name().to_owned(), |limit| format!("{}:{limit}", self.name()))
     }
 
     /// Whether it judges one tessellation from one camera, so that it says nothing of many.
     pub const fn is_of_one_tessellation(self) -> bool {
-        match self.subject() {
-            GateSubject::Tessellation | GateSubject::Budget | GateSubject::Distance | GateSubject::Flight => true,
-            GateSubject::Mesh | GateSubject::Survey => false,
-        }
+        !matches!(self.subject(), GateSubject::Mesh | GateSubject::Survey)
     }
 
     /// Whether it judges the mesh as it was loaded.
@@ -139,10 +130,7 @@ impl GateKind {
 
     /// The limit where none is given; none if one must be.
     fn usual_limit(self) -> Option<Limit> {
-        match self.subject() {
-            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation => Some(Limit::Count(0)),
-            GateSubject::Budget | GateSubject::Distance | GateSubject::Flight => None,
-        }
+        self.limit_name().is_none().then_some(Limit::Count(0))
     }
 
     /// Whether it is judged by what a survey of the emitted mesh finds.
@@ -209,10 +197,8 @@ impl FromStr for Gate {
 /// Writes the gate as the command line takes it.
 impl fmt::Display for Gate {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.kind.usual_limit() == Some(self.limit) {
-            true => f.write_str(self.kind.name()),
-            false => write!(f, "{}:{}", self.kind.name(), self.limit),
-        }
+        let name = self.kind.name();
+        if self.kind.usual_limit() == Some(self.limit) { f.write_str(name) } else { write!(f, "{name}:{}", self.limit) }
     }
 }
 

@@ -38,15 +38,13 @@ pub struct Place {
 /// What a camera is framed on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spot {
+    /// A place on an edge.
     Edge(EdgeSpot),
+    /// A place on a patch.
     Patch(PatchSpot),
     /// A leak of the judged picture: a px of it, from the picture's top left, how many px leak there, and the edge that is torn there
     /// if it is known.
-    Leak {
-        px: Vec2,
-        pixels: u32,
-        torn: Option<EdgeSpot>,
-    },
+    Leak { px: Vec2, pixels: u32, torn: Option<EdgeSpot> },
 }
 
 /// An edge: the positions of its ends, the direction that it faces, and the place on it.

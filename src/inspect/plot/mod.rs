@@ -15,20 +15,13 @@ use thiserror::Error;
 
 pub use contact_sheet::contact_sheet;
 
-/// The smallest and largest side of a chart, in px.
-pub const CHART_RANGE: std::ops::RangeInclusive<u32> = 320..=4096;
-
 #[derive(Clone, Debug, Error, PartialEq)]
-pub enum ChartError {
-    #[error("a chart of {0} x {1} px: each side must be {min} to {max} px", min = CHART_RANGE.start(), max = CHART_RANGE.end())]
-    Size(u32, u32),
-    #[error("the chart could not be drawn: {0}")]
-    Failed(String),
-}
+#[error("the chart could not be drawn: {0}")]
+pub struct ChartError(String);
 
 impl ChartError {
     pub fn failed(reason: &dyn Display) -> Self {
-        Self::Failed(reason.to_string())
+        Self(reason.to_string())
     }
 }
 

@@ -18,17 +18,13 @@ pub(super) fn without_dead_branches(lines: &[String], known: &Known) -> Vec<Stri
     let mut at = 0;
     while at < lines.len() {
         let line = &lines[at];
-        let Some(reference_shape) = condition(line).and_then(|condition| decided(condition, known)) else {
+        let holds = condition(line).and_then(|condition| decided(condition, known));
+        let Some((holds, block)) = holds.and_then(|holds| Some((holds, Block::at(lines, at)?))) else {
             kept.push(line.clone());
             at += 1;
             continue;
         };
-        let Some(block) = Block::at(lines, at) else {
-            kept.push(line.clone());
-            at += 1;
-            continue;
-        };
-        let taken = if reference_shape { &lines[at + 1..block.then_end] } else { block.otherwise(lines) };
+        let taken = if holds { &lines[at + 1..block.then_end] } else { block.otherwise(lines) };
         let taken: Vec<_> = taken.iter().map(|line| line.strip_prefix("    ").unwrap_or(line).to_owned()).collect();
         let taken = without_dead_branches(&taken, known);
         let returns =
@@ -89,12 +85,12 @@ fn decided(condition: &str, known: &Known) -> Option<bool> {
         return None;
     }
     let parts = condition.split(if is_all { " && " } else { " || " });
-    let reference_shapes: Vec<_> = parts.map(|part| comparison(part, known)).collect();
+    let compared: Vec<_> = parts.map(|part| comparison(part, known)).collect();
     // One that is false decides an `&&`, one that is true an `||`.
-    if reference_shapes.contains(&Some(!is_all)) {
+    if compared.contains(&Some(!is_all)) {
         return Some(!is_all);
     }
-    reference_shapes.iter().all(Option::is_some).then_some(is_all)
+    compared.iter().all(Option::is_some).then_some(is_all)
 }
 
 /// Returns whether `name == VALUE`, or `name != VALUE`, holds. Names of values that differ are different values.

@@ -3,6 +3,7 @@
 use super::displaced::Relief;
 use super::{Export, Language};
 use crate::settings::Choice;
+use geometry::names;
 use geometry::tessellate::{Displacement, Edges, Lod, Tessellation};
 
 /// The numbers of the constant buffer: offset in bytes, name, and what it is.
@@ -160,18 +161,9 @@ fn listed(constants: &[(u32, &'static str, String)]) -> Vec<String> {
     constants.iter().flat_map(of).collect()
 }
 
-/// Breaks a text into lines of at most 112 characters.
+/// Breaks a text into the lines of a comment.
 fn wrapped(text: &str) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split(' ') {
-        let last = lines.last_mut().filter(|line| line.len() + 1 + word.len() <= 112);
-        match last {
-            Some(line) if line.is_empty() => line.push_str(word),
-            Some(line) => *line += &format!(" {word}"),
-            None => lines.push(word.to_owned()),
-        }
-    }
-    lines
+    names::wrapped(text, 112)
 }
 
 /// Returns README.md.

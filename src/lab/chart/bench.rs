@@ -94,19 +94,7 @@ impl Bench<'_> {
 /// The settings that are measured in place of these: without clipping, culling, overlays and split, so that all of the
 /// surface is drawn, and nothing else, in the light of the camera.
 pub fn whole(settings: &Settings) -> Settings {
-    let plain = Settings::from(Tessellation::default());
-    let Settings { overlays, lighting, exposure, tone_curve, light_rotation, deviation_in, split, background, .. } =
-        plain;
-    Settings {
-        tessellation: Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation },
-        overlays,
-        lighting,
-        exposure,
-        tone_curve,
-        light_rotation,
-        deviation_in,
-        split,
-        background,
-        ..*settings
-    }
+    let tessellation = Tessellation { clip: Clip::Off, cull_back_faces: false, ..settings.tessellation };
+    let Settings { normals_at, normal_maps, import, .. } = *settings;
+    Settings { normals_at, normal_maps, import, ..tessellation.into() }
 }

@@ -9,11 +9,13 @@ use inspect::plot::INK;
 use inspect::settings::Choice;
 
 /// An entry of the legend: a sample and its name.
+#[derive(Clone)]
 pub(super) struct Entry {
     sample: Sample,
     name: String,
 }
 
+#[derive(Clone)]
 enum Sample {
     Marker(MethodStyle),
     Line(Option<[f64; 2]>),
@@ -74,12 +76,7 @@ pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
         add(&mut pairs, Sample::Marker(style), name);
     }
     let mut lines = vec![surfaces];
-    for mut entries in [lods, pairs] {
-        while !entries.is_empty() {
-            let rest = entries.split_off(entries.len().min(IN_A_LINE));
-            lines.push(std::mem::replace(&mut entries, rest));
-        }
-    }
+    lines.extend([lods, pairs].iter().flat_map(|entries| entries.chunks(IN_A_LINE)).map(<[_]>::to_vec));
     lines
 }
 

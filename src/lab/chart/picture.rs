@@ -11,6 +11,7 @@ use super::legend::{Entry, draw_legend, legend, method_styles};
 use super::method_style::Shape;
 use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, font, place_of, px, width};
 use super::{Cost, Method, Row, Subject};
+use geometry::names::wrapped;
 use inspect::plot::{self, ChartError, DENSITY, INK};
 
 /// The picture's width in px: that of pictures in a README.
@@ -67,7 +68,7 @@ const LETTERS: usize = 145;
 
 impl<'a> Layout<'a> {
     fn from_subjects(subjects: &'a [Subject]) -> Self {
-        let lines = |subject: &Subject| subject.sentences().iter().flat_map(|text| broken(text, LETTERS)).collect();
+        let lines = |subject: &Subject| subject.sentences().iter().flat_map(|text| wrapped(text, LETTERS)).collect();
         Self { subjects: subjects.iter().map(|subject| (subject, lines(subject))).collect(), legend: legend(subjects) }
     }
 
@@ -212,19 +213,4 @@ fn draw_labels<DB: DrawingBackend>(
         }
     }
     Ok(())
-}
-
-/// Breaks text between words into lines of at most `letters` letters.
-fn broken(text: &str, letters: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in text.split(' ') {
-        match lines.last_mut() {
-            Some(line) if line.chars().count() + 1 + word.chars().count() <= letters => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
 }

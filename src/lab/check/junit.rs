@@ -2,14 +2,11 @@
 
 use std::io;
 
-use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
+use quick_xml::writer::{ElementWriter, Writer};
 
-use super::report::{Asset, Report, Status, gate_title};
+use super::report::{Asset, OPENS, Report, Status, gate_title};
 use geometry::names::on_one_line;
-
-/// The case that says whether the asset could be checked at all.
-const OPENED: &str = "opens";
 
 /// Writes the report.
 pub fn junit(report: &Report) -> io::Result<String> {
@@ -17,13 +14,9 @@ pub fn junit(report: &Report) -> io::Result<String> {
     writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     let cases: usize = report.assets.iter().map(|asset| 1 + asset.gates().count()).sum();
     let failed: usize = report.assets.iter().map(failures).sum();
-    let suites = writer.create_element("testsuites").with_attributes([
-        ("name", "pnaen check"),
-        ("tests", cases.to_string().as_str()),
-        ("failures", failed.to_string().as_str()),
-        ("errors", report.count(Status::Broken).to_string().as_str()),
-        ("time", seconds(report.assets.iter().map(|asset| asset.seconds).sum()).as_str()),
-    ]);
+    let counts = [cases, failed, report.count(Status::Broken)];
+    let time = report.assets.iter().map(|asset| asset.seconds).sum();
+    let suites = suite_element(&mut writer, "testsuites", "pnaen check", counts, time);
     suites.write_inner_content(|writer| report.assets.iter().try_for_each(|asset| suite(writer, asset)))?;
     let mut text = String::from_utf8(writer.into_inner()).map_err(io::Error::other)?;
     text.push('\n');
@@ -31,20 +24,16 @@ pub fn junit(report: &Report) -> io::Result<String> {
 }
 
 type Out = Writer<Vec<u8>>;
+type Element<'a> = ElementWriter<'a, Vec<u8>>;
 
 fn suite(writer: &mut Out, asset: &Asset) -> io::Result<()> {
     let path = on_one_line(&asset.path);
-    let suite = writer.create_element("testsuite").with_attributes([
-        ("name", path.as_str()),
-        ("tests", (1 + asset.gates().count()).to_string().as_str()),
-        ("failures", failures(asset).to_string().as_str()),
-        ("errors", if asset.error.is_some() { "1" } else { "0" }),
-        ("time", seconds(asset.seconds).as_str()),
-    ]);
+    let counts = [1 + asset.gates().count(), failures(asset), usize::from(asset.error.is_some())];
+    let suite = suite_element(writer, "testsuite", &path, counts, asset.seconds);
     suite.write_inner_content(|writer| {
         let judging: f64 = asset.gates().map(|(_, gate)| gate.seconds).sum();
         let opened = asset.error.as_ref().map(|error| ("error", error.as_str()));
-        case(writer, &path, OPENED, asset.seconds - judging, opened)?;
+        case(writer, &path, OPENS[0], asset.seconds - judging, opened)?;
         for (view, gate) in asset.gates() {
             let outcome = (!gate.passed).then_some(("failure", gate.text.as_str()));
             case(writer, &path, &gate_title(view, &gate.name), gate.seconds, outcome)?;
@@ -55,6 +44,15 @@ fn suite(writer: &mut Out, asset: &Asset) -> io::Result<()> {
         Ok(())
     })?;
     Ok(())
+}
+
+/// An element with numbers of tests, failures and errors, and a time in s.
+fn suite_element<'a>(writer: &'a mut Out, kind: &'a str, name: &str, counts: [usize; 3], time: f64) -> Element<'a> {
+    let [tests, failures, errors] = counts.map(|count| count.to_string());
+    let (time, attributes) = (seconds(time), [("tests", tests), ("failures", failures), ("errors", errors)]);
+    let element = writer.create_element(kind).with_attribute(("name", name));
+    let element = element.with_attributes(attributes.iter().map(|(name, count)| (*name, count.as_str())));
+    element.with_attribute(("time", time.as_str()))
 }
 
 /// How many gates failed.

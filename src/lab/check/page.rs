@@ -86,15 +86,11 @@ fn section(asset: &Asset) -> String {
     let mut text = format!("<section class=\"asset\">\n<h2>{}</h2>\n", escaped(&asset.path));
     let unchanged = if asset.unchanged { " <span class=\"dim\">unchanged, not measured again</span>" } else { "" };
     let _ = writeln!(text, "<div class=\"status {status}\">{status}{unchanged}</div>");
-    if let Some(error) = &asset.error {
-        let _ = writeln!(text, "<p>{}</p>", escaped(error));
-    }
+    text.extend(asset.error.iter().map(|error| format!("<p>{}</p>\n", escaped(error))));
     asset.views.iter().for_each(|view| text += &of_view(asset, view));
     if !asset.warnings.is_empty() {
         let _ = writeln!(text, "<details><summary>{} of loading</summary>\n<ul>", warnings(asset.warnings.len()));
-        for warning in &asset.warnings {
-            let _ = writeln!(text, "<li>{}</li>", escaped(warning));
-        }
+        text.extend(asset.warnings.iter().map(|warning| format!("<li>{}</li>\n", escaped(warning))));
         text += "</ul></details>\n";
     }
     text + "</section>\n"

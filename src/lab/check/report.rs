@@ -71,6 +71,7 @@ pub struct GateResult {
 
 /// What is judged beside the gates, and what passing it means.
 pub const GOLDEN: [&str; 2] = ["golden", "The view is the same as its golden picture."];
+pub(super) const OPENS: [&str; 2] = ["opens", "The asset can be opened and measured."];
 
 /// The worst place of a gate that failed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

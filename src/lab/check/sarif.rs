@@ -5,18 +5,15 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use super::report::{Asset, GOLDEN, Report, gate_title};
+use super::report::{Asset, GOLDEN, OPENS, Report, gate_title};
 use inspect::gates::GateKind;
 use inspect::settings::Choice;
-
-/// The rule of assets that couldn't be checked.
-const BROKEN: &str = "opens";
 
 /// Writes the report.
 pub fn sarif(report: &Report) -> serde_json::Result<String> {
     let rule = |name: &str, text: &str| json!({ "id": name, "shortDescription": { "text": text } });
     let gates = GateKind::ALL.map(|kind| rule(kind.name(), kind.text()));
-    let others = [GOLDEN, [BROKEN, "The asset can be opened and measured."]].map(|[name, text]| rule(name, text));
+    let others = [GOLDEN, OPENS].map(|[name, text]| rule(name, text));
     let rules: Vec<Value> = gates.into_iter().chain(others).collect();
     let results: Vec<Value> = report.assets.iter().flat_map(results).collect();
     let sarif = json!({
@@ -44,7 +41,7 @@ fn results(asset: &Asset) -> Vec<Value> {
             "properties": properties,
         })
     };
-    let broken = asset.error.iter().map(|error| result(BROKEN, "", error.clone(), json!({})));
+    let broken = asset.error.iter().map(|error| result(OPENS[0], "", error.clone(), json!({})));
     let failed = asset.gates().filter(|(_, gate)| !gate.passed).map(|(view, gate)| {
         let message = format!("{}: {}", gate_title(view, &gate.name), gate.text);
         let properties = json!({ "view": view, "limit": gate.limit, "found": gate.found, "where": gate.place });

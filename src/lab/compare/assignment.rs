@@ -10,7 +10,6 @@ use super::patch_starts::patch_starts;
 use super::twins::Twins;
 use geometry::cores::in_ranges;
 use geometry::mesh::Topology;
-use geometry::progress::{Cancelled, Progress};
 
 /// Another program's mesh over our surface.
 pub(super) struct Overlaid<'a> {
@@ -58,26 +57,10 @@ const NOWHERE: Place = Place { patch: 0, weights: [0.0; 2], distance: f64::INFIN
 const WOUND: usize = 300;
 /// How many vertices or triangles are worth a thread.
 const LEAST: usize = 1 << 10;
-/// How many are done between two checks for cancellation.
-const STEP: usize = 1 << 12;
 
 /// Returns what `make` makes of the numbers below `count`, on all cores.
-pub(super) fn made_of_all<R: Send>(
-    count: usize,
-    progress: &Progress,
-    make: impl Fn(usize) -> R + Sync,
-) -> Result<Vec<R>, Cancelled> {
-    let parts = in_ranges(count, LEAST, |range| {
-        let mut made = Vec::with_capacity(range.len());
-        for index in range {
-            if made.len().is_multiple_of(STEP) {
-                progress.check()?;
-            }
-            made.push(make(index));
-        }
-        Ok(made)
-    });
-    Ok(parts.into_iter().collect::<Result<Vec<_>, Cancelled>>()?.into_iter().flatten().collect())
+pub(super) fn made_of_all<R: Send>(count: usize, make: impl Fn(usize) -> R + Sync) -> Vec<R> {
+    in_ranges(count, LEAST, |range| range.map(&make).collect::<Vec<_>>()).into_iter().flatten().collect()
 }
 
 impl<'a> Overlaid<'a> {
@@ -89,24 +72,18 @@ impl<'a> Overlaid<'a> {
         twins: Twins<'a>,
         positions: &'a [DVec3],
         fit: f64,
-        progress: &Progress,
-    ) -> Result<Self, Cancelled> {
+    ) -> Self {
         let nearest = |index: usize| locator.as_ref().and_then(|locator| locator.place(positions[index]));
         // Without a locator, triangles that aren't ours are too thin to be anywhere.
         let nowhere = if locator.is_some() { NOWHERE } else { Place { distance: 0.0, ..NOWHERE } };
         let place = |index: usize| twins.place_of(index).or_else(|| nearest(index)).unwrap_or(nowhere);
-        let places = made_of_all(positions.len(), progress, place)?;
-        Ok(Self { theirs, topology, locator, positions, twins, places, fit })
+        let places = made_of_all(positions.len(), place);
+        Self { theirs, topology, locator, positions, twins, places, fit }
     }
 
     /// The same vertices over another surface.
-    pub(super) fn over(
-        &self,
-        locator: Option<Locator<'a>>,
-        twins: Twins<'a>,
-        progress: &Progress,
-    ) -> Result<Self, Cancelled> {
-        Self::new(self.theirs, self.topology, locator, twins, self.positions, self.fit, progress)
+    pub(super) fn over(&self, locator: Option<Locator<'a>>, twins: Twins<'a>) -> Self {
+        Self::new(self.theirs, self.topology, locator, twins, self.positions, self.fit)
     }
 
     /// Their vertices that don't lie on the surface.
@@ -228,14 +205,14 @@ pub(super) fn domain_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
 impl<'a> Assignment<'a> {
     /// Assigns all triangles whose corners can be told apart: the twins of ours to the patches that emit these, and others to those that
     /// they lie on.
-    pub(super) fn new(overlaid: &'a Overlaid<'a>, progress: &Progress) -> Result<Self, Cancelled> {
+    pub(super) fn new(overlaid: &'a Overlaid<'a>) -> Self {
         let (triangles, twins) = (&overlaid.theirs.triangles, &overlaid.twins);
         let winding = if twins.are_all() { 1.0 } else { overlaid.winding() };
-        let patches = made_of_all(triangles.len(), progress, |index| match twins.corners(index as u32) {
+        let patches = made_of_all(triangles.len(), |index| match twins.corners(index as u32) {
             Some([vertex, ..]) => twins.place(vertex).patch,
             None if twins.is_thin(index as u32) => 0,
             None => overlaid.patch_of(triangles[index], winding),
-        })?;
+        });
         let seen = || (0..).zip(&patches).filter(|(triangle, _)| !twins.is_thin(*triangle));
         let starts = patch_starts(seen().map(|(_, patch)| *patch), overlaid.topology.patches.len());
         let mut order = vec![0; seen().count()];
@@ -244,7 +221,7 @@ impl<'a> Assignment<'a> {
             order[next[patch as usize] as usize] = triangle;
             next[patch as usize] += 1;
         }
-        Ok(Self { overlaid, order, starts })
+        Self { overlaid, order, starts }
     }
 
     /// The number of their triangles on a patch.
@@ -314,13 +291,11 @@ mod tests {
                 let theirs = ForeignMesh::new(&positions, out.triangles.iter().rev().copied());
                 let locator = Locator::from_surface(&mesh, &topology, &inputs.into(), FINE);
                 let own: Vec<DVec3> = theirs.positions.iter().map(|position| position.as_dvec3()).collect();
-                let progress = Progress::new();
                 // As if none of them were ours.
                 let twins = Twins::none(&theirs);
-                let overlaid =
-                    Overlaid::new(&theirs, &topology, locator, twins, &own, 1e-5, &progress).expect("nobody cancels");
+                let overlaid = Overlaid::new(&theirs, &topology, locator, twins, &own, 1e-5);
                 assert!(overlaid.strays().is_empty(), "{shape} {surface:?}");
-                let assignment = Assignment::new(&overlaid, &progress).expect("nobody cancels");
+                let assignment = Assignment::new(&overlaid);
                 let mut emitted = vec![0; topology.patches.len()];
                 for triangle in &out.triangles {
                     emitted[out.vertices[triangle[0] as usize].patch() as usize] += 1;

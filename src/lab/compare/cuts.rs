@@ -7,17 +7,6 @@ use geometry::tessellate::Partitioning;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Cut(Vec<f64>);
 
-/// Which lengths the segments of a side have.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Spacing {
-    /// All are equal: integer and power-of-two partitioning, and fractional ones at whole factors.
-    Even,
-    /// Two are shorter: fractional partitioning, of which the number of segments is odd or even.
-    TwoShorter,
-    /// Anything else.
-    Uneven,
-}
-
 impl Cut {
     /// How a side (0 to 2) is cut by points at these weights of corners 0 and 1. Points within `reach` of each other are one.
     pub(super) fn new(side: usize, weights: impl Iterator<Item = [f64; 2]>, reach: f64) -> Self {
@@ -58,25 +47,17 @@ impl Cut {
         self.0.windows(2).map(|ends| ends[1] - ends[0])
     }
 
-    /// Which lengths the segments have. Lengths within `reach` are equal.
-    pub(super) fn spacing(&self, reach: f64) -> Spacing {
+    /// Whether a side may be cut so under a partitioning. Lengths within `reach` are equal.
+    pub(super) fn suits(&self, partitioning: Partitioning, reach: f64) -> bool {
         let longest = self.lengths().fold(0.0, f64::max);
         let shorter: Vec<f64> = self.lengths().filter(|length| longest - length > 2.0 * reach).collect();
-        match shorter[..] {
-            [] => Spacing::Even,
-            [a, b] if (a - b).abs() <= 2.0 * reach => Spacing::TwoShorter,
-            _ => Spacing::Uneven,
-        }
-    }
-
-    /// Whether a side may be cut so under a partitioning.
-    pub(super) fn suits(&self, partitioning: Partitioning, reach: f64) -> bool {
-        let spacing = match self.spacing(reach) {
-            Spacing::Even => true,
-            Spacing::TwoShorter => partitioning.is_fractional(),
-            Spacing::Uneven => false,
+        let are_so = match shorter[..] {
+            // Also fractional partitioning at whole factors.
+            [] => true,
+            [a, b] => partitioning.is_fractional() && (a - b).abs() <= 2.0 * reach,
+            _ => false,
         };
-        spacing && partitioning.has_segments(self.segments() as u32)
+        are_so && partitioning.has_segments(self.segments() as u32)
     }
 }
 
@@ -103,14 +84,15 @@ mod tests {
 
     #[test]
     fn a_cut_tells_segments_factor_and_partitioning() {
-        for (partitioning, factor, segments, spacing, suited) in [
-            (Partitioning::Integer, 6.3, 7, Spacing::Even, 7.0),
-            (Partitioning::FractionalOdd, 6.3, 7, Spacing::TwoShorter, 6.3),
-            (Partitioning::FractionalEven, 6.3, 8, Spacing::TwoShorter, 6.3),
-            (Partitioning::FractionalEven, 8.0, 8, Spacing::Even, 8.0),
+        for (partitioning, factor, segments, is_even, suited) in [
+            (Partitioning::Integer, 6.3, 7, true, 7.0),
+            (Partitioning::FractionalOdd, 6.3, 7, false, 6.3),
+            (Partitioning::FractionalEven, 6.3, 8, false, 6.3),
+            (Partitioning::FractionalEven, 8.0, 8, true, 8.0),
         ] {
             let cut = cut(partitioning, factor);
-            assert_eq!((cut.segments(), cut.spacing(REACH)), (segments, spacing), "{partitioning:?}");
+            let suits_integer = cut.suits(Partitioning::Integer, REACH);
+            assert_eq!((cut.segments(), suits_integer), (segments, is_even), "{partitioning:?}");
             assert!((cut.factor() - suited).abs() < 0.01, "{partitioning:?}: {}", cut.factor());
             assert!(cut.suits(partitioning, REACH), "{partitioning:?}");
         }

@@ -2,15 +2,14 @@
 
 use std::collections::HashMap;
 
+use super::OurTessellation;
 use super::assignment::{Assignment, Part, domain_area};
 use super::cuts::cuts_of;
 use super::domain_points::{DomainPoints, pattern_points};
 use super::foreign::spread;
 use super::matching::Reach;
-use geometry::mesh::Mesh;
-use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{
-    Convention, HullFactors, Inputs, Partitioning, PatchFactors, Tessellation, domain_side, factor_side, hull_factors,
+    Convention, HullFactors, Inputs, Partitioning, PatchFactors, Tessellation, domain_side, factor_side,
 };
 
 /// A change of what the hull shader writes.
@@ -102,45 +101,35 @@ impl InsideRule {
 
 /// Seeks explanations.
 pub(super) struct Explainer<'a> {
-    pub mesh: &'a Mesh,
+    pub ours: &'a OurTessellation<'a>,
     pub assignment: &'a Assignment<'a>,
-    pub inputs: &'a Inputs,
     /// Our inputs with the surface that their vertices lie on, if it isn't ours.
     pub other: Option<&'a Inputs>,
-    /// Factors that were given in place of LOD's.
-    pub given: Option<&'a [HullFactors]>,
     /// How near points of each patch must be.
     pub reaches: &'a [Reach],
 }
 
-/// A patch of theirs that is looked at first.
-struct Sampled {
-    patch: u32,
-    part: Part,
-}
+/// A patch of theirs that is looked at first, and what they have there.
+type Sampled = (u32, Part);
 
 impl Explainer<'_> {
     /// Returns the simplest explanations, which all give their points. `different` are the patches whose points differ from ours.
-    pub(super) fn explain(&self, different: &[u32], progress: &Progress) -> Result<Vec<Explanation>, Cancelled> {
+    pub(super) fn explain(&self, different: &[u32]) -> Vec<Explanation> {
         let sample = self.sample(different);
-        let own = self.inputs.tessellation.partitioning;
         if sample.is_empty() {
-            return Ok(Vec::new());
+            return Vec::new();
         }
+        let own = self.ours.inputs.tessellation.partitioning;
         let uniform = self.uniform(&sample);
-        let same = vec![Explanation { partitioning: own, rule: Rule::Same }];
-        if let Some(other) = self.other {
-            // LOD of another surface has other factors, which are no mistake.
-            let groups = [same.clone()].into_iter().chain(self.groups(own, uniform));
-            let found = self.first(groups, other, &sample, different, progress)?;
-            if !found.is_empty() {
-                return Ok(found);
-            }
-        }
+        let first = |may_be_same: bool, inputs: &Inputs| {
+            let same = may_be_same.then(|| vec![Explanation { partitioning: own, rule: Rule::Same }]);
+            self.first(same.into_iter().chain(self.groups(own, uniform)), inputs, &sample, different)
+        };
+        // LOD of another surface has other factors, which are no mistake.
+        let of_other = self.other.map(|other| first(true, other)).filter(|found| !found.is_empty());
         // Where vertices are displaced, points of the same factors may seem to be others.
         let is_rough = !self.assignment.overlaid.fit.is_finite();
-        let groups = is_rough.then_some(same).into_iter().chain(self.groups(own, uniform));
-        self.first(groups, self.inputs, &sample, different, progress)
+        of_other.unwrap_or_else(|| first(is_rough, self.ours.inputs))
     }
 
     /// Returns the explanations of the first group that has one, where LOD has these inputs.
@@ -150,37 +139,28 @@ impl Explainer<'_> {
         inputs: &Inputs,
         sample: &[Sampled],
         different: &[u32],
-        progress: &Progress,
-    ) -> Result<Vec<Explanation>, Cancelled> {
+    ) -> Vec<Explanation> {
         let mut written: HashMap<Partitioning, Vec<HullFactors>> = HashMap::new();
-        for group in groups {
-            let mut found = Vec::new();
-            for explanation in group {
-                progress.check()?;
-                let Explanation { partitioning, .. } = explanation;
-                let factors = written.entry(partitioning).or_insert_with(|| self.written(inputs, partitioning));
-                if self.explains(explanation, factors, sample, different) {
-                    found.push(explanation);
-                }
-            }
-            if !found.is_empty() {
-                return Ok(found);
-            }
-        }
-        Ok(Vec::new())
+        let mut explains = |explanation: &Explanation| {
+            let Explanation { partitioning, .. } = *explanation;
+            let factors = written.entry(partitioning).or_insert_with(|| self.written(inputs, partitioning));
+            self.explains(*explanation, factors, sample, different)
+        };
+        let mut found = groups.map(|group| group.into_iter().filter(&mut explains).collect::<Vec<_>>());
+        found.find(|group| !group.is_empty()).unwrap_or_default()
     }
 
     /// Whether the last bits of LOD's factors decide between their points and ours: factors for a hair more or less detail give theirs.
     pub(super) fn are_last_bits(&self, different: &[u32]) -> bool {
-        let own = self.inputs.tessellation;
-        if self.given.is_some() || !own.used_lod().follows_view() {
+        let own = self.ours.inputs.tessellation;
+        if self.ours.given.is_some() || !own.used_lod().follows_view() {
             return false;
         }
         let hair = if own.used_lod().is_by_error() { HAIR_OF_ERRORS } else { HAIR };
         let written = [1.0 - hair, 1.0 + hair].map(|by| {
             let (pixels, tolerance, near, far) = (own.pixels * by, own.tolerance * by, own.near * by, own.far * by);
             let tessellation = Tessellation { pixels, tolerance, near, far, ..own };
-            self.written(&Inputs { tessellation, ..*self.inputs }, own.partitioning)
+            self.written(&Inputs { tessellation, ..*self.ours.inputs }, own.partitioning)
         });
         let same = Explanation { partitioning: own.partitioning, rule: Rule::Same };
         different.iter().all(|&patch| {
@@ -215,32 +195,25 @@ impl Explainer<'_> {
 
     /// What a hull shader would write with these inputs, but this partitioning.
     fn written(&self, inputs: &Inputs, partitioning: Partitioning) -> Vec<HullFactors> {
-        match self.given {
-            Some(given) => given.to_vec(),
-            None => {
-                let tessellation = Tessellation { partitioning, ..inputs.tessellation };
-                let inputs = Inputs::new(&tessellation, inputs.view);
-                hull_factors(self.mesh, self.assignment.overlaid.topology, &inputs)
-            }
-        }
+        let tessellation = Tessellation { partitioning, ..inputs.tessellation };
+        self.ours.written(&Inputs::new(&tessellation, inputs.view))
     }
 
     /// Patches of theirs without gaps: of those that differ, and a few others.
     fn sample(&self, different: &[u32]) -> Vec<Sampled> {
-        let all = 0..self.assignment.overlaid.topology.patches.len() as u32;
+        let all = 0..self.ours.topology.patches.len() as u32;
         let same: Vec<u32> = all.filter(|patch| different.binary_search(patch).is_err()).collect();
         let chosen =
             |list: &[u32], most: usize| -> Vec<u32> { spread(list.len(), most).map(|place| list[place]).collect() };
         let patches = [chosen(different, SAMPLE), chosen(&same, SAMPLE / 4)].concat();
         let sampled = patches.into_iter().filter(|patch| self.assignment.count(*patch) > 0);
-        let sampled = sampled.map(|patch| Sampled { patch, part: self.assignment.part(patch) });
-        sampled.filter(|sampled| is_whole(&sampled.part)).collect()
+        sampled.map(|patch| (patch, self.assignment.part(patch))).filter(|(_, part)| is_whole(part)).collect()
     }
 
     /// The one factor that all edges of these patches seem to have.
     fn uniform(&self, sample: &[Sampled]) -> Option<f32> {
         let mut factors = Vec::new();
-        for Sampled { patch, part } in sample {
+        for (patch, part) in sample {
             let Reach { domain, fit } = self.reaches[*patch as usize];
             factors.extend(cuts_of(part, [domain, fit]).map(|cut| cut.factor()));
         }
@@ -262,9 +235,9 @@ impl Explainer<'_> {
     ) -> bool {
         let fits = |patch: u32, part: &Part| {
             let factors = self.factors(explanation, written[patch as usize]);
-            has_points(part, factors, self.inputs.tessellation.convention, self.reaches[patch as usize])
+            has_points(part, factors, self.ours.inputs.tessellation.convention, self.reaches[patch as usize])
         };
-        let on_sample = sample.iter().filter(|sampled| fits(sampled.patch, &sampled.part)).count();
+        let on_sample = sample.iter().filter(|(patch, part)| fits(*patch, part)).count();
         if (on_sample as f64) < EXPLAINED * sample.len() as f64 {
             return false;
         }
@@ -280,8 +253,7 @@ impl Explainer<'_> {
             fitting as f64 >= EXPLAINED * whole as f64
         };
         // If few patches differ, our own factors explain nearly all of them, and nothing of what differs.
-        explained(&mut different.iter().copied())
-            && explained(&mut (0..self.assignment.overlaid.topology.patches.len() as u32))
+        explained(&mut different.iter().copied()) && explained(&mut (0..self.ours.topology.patches.len() as u32))
     }
 
     /// The factors of a patch under an explanation.
@@ -289,7 +261,7 @@ impl Explainer<'_> {
         if rule == Rule::Same || written.culls() {
             return written.rounded(partitioning).process(partitioning);
         }
-        let convention = self.inputs.tessellation.convention;
+        let convention = self.ours.inputs.tessellation.convention;
         let (sides, inside) = rule.apply(written.cutting(convention), written.inside);
         let edges = [0, 1, 2].map(|i| sides[domain_side(convention, i) as usize]);
         HullFactors { edges, inside }.rounded(partitioning).process(partitioning)

@@ -1,6 +1,7 @@
 //! What was found, as sentences: the most important first.
 
 use glam::DVec3;
+use thiserror::Error;
 
 use super::alignment::{Alignment, Frame};
 use super::corner_orders::CornerOrder;
@@ -12,111 +13,107 @@ use geometry::numbers::{exact, grouped, short};
 use geometry::tessellate::{Convention, Displacement, Partitioning, Tessellation};
 use inspect::settings::Choice;
 
-/// Something about another program's tessellation that isn't as ours.
-#[derive(Clone, Debug, PartialEq)]
+/// Something about another program's tessellation that isn't as ours, with what is said of it in a sentence or two.
+#[derive(Clone, Debug, PartialEq, Error)]
 pub enum Finding {
     /// Most of it isn't near the surface.
-    NotATessellation {
-        far: u64,
-        vertices: u64,
-        distance: f64,
-    },
+    #[error(
+        "It isn't a tessellation of this mesh: {} of {} vertices are farther than {} object units from the surface.",
+        grouped(*far),
+        grouped(*vertices),
+        short(*distance)
+    )]
+    NotATessellation { far: u64, vertices: u64, distance: f64 },
     /// All coordinates are turned, mirrored, scaled or moved, or in another space.
+    #[error("{}", frame_text(.0))]
     Aligned(Frame),
     /// Vertices lie on another of our surfaces.
-    OtherSurface {
-        ours: Tessellation,
-        theirs: Tessellation,
-        vertices: u64,
-        of: u64,
-    },
+    #[error("{}", surface_text(ours, theirs, *vertices, *of))]
+    OtherSurface { ours: Tessellation, theirs: Tessellation, vertices: u64, of: u64 },
     /// Vertices lie where a mistake in control points puts them.
-    OtherNets {
-        mistake: NetMistake,
-        vertices: u64,
-        of: u64,
-    },
+    #[error("{}", nets_text(*mistake, *vertices, *of))]
+    OtherNets { mistake: NetMistake, vertices: u64, of: u64 },
     /// All vertices are off the surface.
+    #[error("{}", displaced_text(.0))]
     Displaced(Displaced),
     /// A few vertices aren't where ours are.
-    Moved {
-        vertices: u64,
-        farthest: DVec3,
-        distance: f64,
-        triangle: u32,
-    },
+    #[error(
+        "{} moved, by up to {} object units: the farthest at {}, in triangle {triangle}.",
+        plural(*vertices, "vertex is", "vertices are"),
+        short(*distance),
+        point(*farthest)
+    )]
+    Moved { vertices: u64, farthest: DVec3, distance: f64, triangle: u32 },
     /// One change of the factors gives their points: the first of these, or any of the others.
-    Factors {
-        ours: Partitioning,
-        convention: Convention,
-        explanations: Vec<Explanation>,
-        patches: u64,
-        of: u64,
-    },
+    #[error("{}", factors_text(*ours, *convention, explanations, [*patches, *of]))]
+    Factors { ours: Partitioning, convention: Convention, explanations: Vec<Explanation>, patches: u64, of: u64 },
     /// No change that is known gives their points.
-    UnknownFactors {
-        patches: u64,
-        of: u64,
-        sides: u64,
-        inside: u64,
-        suits: Vec<Partitioning>,
-        ours: Partitioning,
-        /// Whether LOD gives other factors for another view.
-        is_of_view: bool,
-    },
+    #[error("{}", unknown_text(.0))]
+    UnknownFactors(UnknownFactors),
     /// Edges whose sides they cut differently.
-    Cracked {
-        edges: u64,
-        of: u64,
-    },
+    #[error(
+        "{} of {} edges between patches are cut differently by their sides, so the mesh cracks there.",
+        grouped(*edges),
+        grouped(*of)
+    )]
+    Cracked { edges: u64, of: u64 },
     /// Patches without triangles of theirs, though we emit some.
-    MissingPatches {
-        patches: u64,
-        of: u64,
-        triangles: Vec<u32>,
-    },
+    #[error(
+        "{} of {} patches {} no triangles: {}.",
+        grouped(*patches),
+        grouped(*of),
+        if *patches == 1 { "has" } else { "have" },
+        listed(triangles, *patches)
+    )]
+    MissingPatches { patches: u64, of: u64, triangles: Vec<u32> },
     /// Patches with triangles of theirs, though we emit none.
-    AdditionalPatches {
-        patches: u64,
-        triangles: Vec<u32>,
-    },
-    MissingTriangles {
-        count: u64,
-        patches: u64,
-    },
-    Doubled {
-        count: u64,
-        patches: u64,
-    },
-    Flipped {
-        count: u64,
-        of: u64,
-    },
+    #[error(
+        "{} triangles, though our tessellation leaves {} out: {}.",
+        plural(*patches, "patch has", "patches have"),
+        if *patches == 1 { "it" } else { "them" },
+        listed(triangles, *patches)
+    )]
+    AdditionalPatches { patches: u64, triangles: Vec<u32> },
+    #[error("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))]
+    MissingTriangles { count: u64, patches: u64 },
+    #[error("{} there more than once, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))]
+    Doubled { count: u64, patches: u64 },
+    #[error("{}", flipped_text(*count, *of))]
+    Flipped { count: u64, of: u64 },
     /// The same points, but other triangles between them.
-    OtherTriangles {
-        count: u64,
-        patches: u64,
-        order: Option<CornerOrder>,
-    },
-    NotFinite {
-        count: u64,
-    },
+    #[error("{}", triangles_text(*count, *patches, *order))]
+    OtherTriangles { count: u64, patches: u64, order: Option<CornerOrder> },
+    #[error(
+        "{} a coordinate that is NaN or infinite, and {} compared.",
+        plural(*count, "triangle has", "triangles have"),
+        if *count == 1 { "isn't" } else { "aren't" }
+    )]
+    NotFinite { count: u64 },
     /// Our pattern starts at another corner, which changes nothing but the last bits of points inside.
-    Convention {
-        ours: Convention,
-        theirs: Convention,
-    },
+    #[error(
+        "Everything agrees but the last bits of points inside of patches, which are those of --convention {}, and not of {}.",
+        theirs.name(),
+        ours.name()
+    )]
+    Convention { ours: Convention, theirs: Convention },
     /// Coordinates are rounded to 16-bit floating-point numbers, and so farther from ours than is allowed.
-    HalfFloats {
-        distance: f64,
-        ulps: f64,
-    },
+    #[error(
+        "Its coordinates are rounded to 16-bit floating-point numbers, so that vertices are up to {} object units ({} ULP) away. \
+         {}",
+        short(*distance),
+        short(*ulps),
+        allowance(*distance)
+    )]
+    HalfFloats { distance: f64, ulps: f64 },
     /// Nothing but distances that are larger than those allowed.
-    Rounding {
-        farthest: Farthest,
-        ulps: f64,
-        triangle: u32,
-    },
+    #[error(
+        "Everything agrees but the last digits: vertices differ by up to {} object units ({} ULP), at {} in triangle {triangle}. {}",
+        short(farthest.distance),
+        short(*ulps),
+        point(farthest.ours),
+        allowance(farthest.distance)
+    )]
+    Rounding { farthest: Farthest, ulps: f64, triangle: u32 },
 }
 
 /// How vertices lie off the surface.
@@ -133,6 +130,21 @@ pub struct Displaced {
     pub is_along_normals: bool,
     /// Our own displacement.
     pub ours: Displacement,
+}
+
+/// How many patches have other points than ours, and what is known of them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnknownFactors {
+    pub patches: u64,
+    pub of: u64,
+    /// How many sides are cut differently, and how many patches differ inside alone.
+    pub sides: u64,
+    pub inside: u64,
+    /// The partitionings that cut sides so.
+    pub suits: Vec<Partitioning>,
+    pub ours: Partitioning,
+    /// Whether LOD gives other factors for another view.
+    pub is_of_view: bool,
 }
 
 impl Finding {
@@ -155,7 +167,7 @@ impl Finding {
                 Some(first) if first.partitioning != *ours => "partitioning",
                 _ => "factors",
             },
-            Self::UnknownFactors { .. } => "factors",
+            Self::UnknownFactors(_) => "factors",
             Self::Cracked { .. } => "cracks",
             Self::MissingPatches { .. } => "missing_patches",
             Self::AdditionalPatches { .. } => "additional_patches",
@@ -168,129 +180,6 @@ impl Finding {
             Self::HalfFloats { .. } | Self::Rounding { .. } => "rounding",
         }
     }
-
-    /// Whether it only says how coordinates are meant.
-    pub(super) fn is_about_coordinates(&self) -> bool {
-        matches!(self, Self::Aligned(_))
-    }
-
-    /// What it is, in a sentence or two.
-    pub fn text(&self) -> String {
-        match self {
-            Self::NotATessellation { far, vertices, distance } => other_mesh_text(*far, *vertices, *distance),
-            Self::Aligned(Frame::Axes(alignment)) => alignment_text(alignment),
-            Self::Aligned(Frame::Space(space)) => space_text(space),
-            Self::OtherSurface { ours, theirs, vertices, of } => surface_text(ours, theirs, *vertices, *of),
-            Self::OtherNets { mistake, vertices, of } => nets_text(*mistake, *vertices, *of),
-            Self::Displaced(displaced) => displaced_text(displaced),
-            Self::Moved { vertices, farthest, distance, triangle } => {
-                moved_text(*vertices, *farthest, *distance, *triangle)
-            }
-            Self::Factors { ours, convention, explanations, patches, of } => {
-                factors_text(*ours, *convention, explanations, *patches, *of)
-            }
-            Self::UnknownFactors { patches, of, sides, inside, suits, ours, is_of_view } => {
-                let text = unknown_text([*patches, *of, *sides, *inside], suits, *ours);
-                let view = " LOD depends on the view: the camera and --size must be the other program's, too.";
-                text + if *is_of_view { view } else { "" }
-            }
-            Self::Cracked { edges, of } => cracked_text(*edges, *of),
-            Self::MissingPatches { patches, of, triangles } => missing_text(*patches, *of, triangles),
-            Self::AdditionalPatches { patches, triangles } => additional_text(*patches, triangles),
-            Self::MissingTriangles { count, patches } => {
-                format!("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))
-            }
-            Self::Doubled { count, patches } => {
-                format!("{} more than once, in {}.", plural(*count, "triangle is there", "triangles are there"), patches_text(*patches))
-            }
-            Self::Flipped { count, of } if count == of => {
-                "All triangles are wound the other way: exchange two corners of each, or turn the tessellator's output winding."
-                    .to_owned()
-            }
-            Self::Flipped { count, of } => {
-                format!("{} of {} triangles are wound the other way.", grouped(*count), grouped(*of))
-            }
-            Self::OtherTriangles { count, patches, order } => triangles_text(*count, *patches, *order),
-            Self::NotFinite { count } => format!(
-                "{} a coordinate that is NaN or infinite, and {} compared.",
-                plural(*count, "triangle has", "triangles have"),
-                if *count == 1 { "isn't" } else { "aren't" }
-            ),
-            Self::Convention { ours, theirs } => format!(
-                "Everything agrees but the last bits of points inside of patches, which are those of --convention {}, and not of {}.",
-                theirs.name(),
-                ours.name()
-            ),
-            Self::HalfFloats { distance, ulps } => half_floats_text(*distance, *ulps),
-            Self::Rounding { farthest, ulps, triangle } => rounding_text(farthest, *ulps, *triangle),
-        }
-    }
-}
-
-fn other_mesh_text(far: u64, vertices: u64, distance: f64) -> String {
-    format!(
-        "It isn't a tessellation of this mesh: {} of {} vertices are farther than {} object units from the surface.",
-        grouped(far),
-        grouped(vertices),
-        short(distance)
-    )
-}
-
-fn moved_text(vertices: u64, farthest: DVec3, distance: f64, triangle: u32) -> String {
-    format!(
-        "{} moved, by up to {} object units: the farthest at {}, in triangle {triangle}.",
-        plural(vertices, "vertex is", "vertices are"),
-        short(distance),
-        point(farthest)
-    )
-}
-
-fn cracked_text(edges: u64, of: u64) -> String {
-    format!(
-        "{} of {} edges between patches are cut differently by their sides, so the mesh cracks there.",
-        grouped(edges),
-        grouped(of)
-    )
-}
-
-fn missing_text(patches: u64, of: u64, triangles: &[u32]) -> String {
-    format!(
-        "{} of {} patches {} no triangles: {}.",
-        grouped(patches),
-        grouped(of),
-        if patches == 1 { "has" } else { "have" },
-        listed(triangles, patches)
-    )
-}
-
-fn additional_text(patches: u64, triangles: &[u32]) -> String {
-    format!(
-        "{} triangles, though our tessellation leaves {} out: {}.",
-        plural(patches, "patch has", "patches have"),
-        if patches == 1 { "it" } else { "them" },
-        listed(triangles, patches)
-    )
-}
-
-fn half_floats_text(distance: f64, ulps: f64) -> String {
-    format!(
-        "Its coordinates are rounded to 16-bit floating-point numbers, so that vertices are up to {} object units ({} ULP) away. \
-         If that is as it should be, allow it with --within {}.",
-        short(distance),
-        short(ulps),
-        rounded_up(distance)
-    )
-}
-
-fn rounding_text(farthest: &Farthest, ulps: f64, triangle: u32) -> String {
-    format!(
-        "Everything agrees but the last digits: vertices differ by up to {} object units ({} ULP), at {} in triangle {triangle}. \
-         If that is as it should be, allow it with --within {}.",
-        short(farthest.distance),
-        short(ulps),
-        point(farthest.ours),
-        rounded_up(farthest.distance)
-    )
 }
 
 /// A number and its noun.
@@ -307,33 +196,50 @@ pub fn point(place: DVec3) -> String {
     format!("({x}, {y}, {z})")
 }
 
-/// The least number of two digits that isn't smaller, so that it can be typed.
-fn rounded_up(number: f64) -> String {
-    let unit = 10.0_f64.powf(number.log10().floor() - 1.0);
-    format!("{:.1e}", (number / unit - 1e-6).ceil() * unit)
+/// How to allow a distance: with the least number of two digits that isn't smaller, so that it can be typed.
+fn allowance(distance: f64) -> String {
+    let unit = 10.0_f64.powf(distance.log10().floor() - 1.0);
+    let rounded_up = (distance / unit - 1e-6).ceil() * unit;
+    format!("If that is as it should be, allow it with --within {rounded_up:.1e}.")
 }
 
 /// Names triangles of the mesh, of which there are `count`.
 fn listed(triangles: &[u32], count: u64) -> String {
-    let names: Vec<String> = triangles.iter().map(u32::to_string).collect();
-    let more = count - triangles.len() as u64;
+    let names = triangles.iter().map(u32::to_string).collect::<Vec<_>>().join(", ");
     let noun = if count == 1 { "triangle" } else { "triangles" };
-    if more == 0 {
-        format!("{noun} {}", names.join(", "))
-    } else {
-        format!("{noun} {} and {more} more", names.join(", "))
+    match count - triangles.len() as u64 {
+        0 => format!("{noun} {names}"),
+        more => format!("{noun} {names} and {more} more"),
     }
+}
+
+fn flipped_text(count: u64, of: u64) -> String {
+    if count < of {
+        return format!("{} of {} triangles are wound the other way.", grouped(count), grouped(of));
+    }
+    "All triangles are wound the other way: exchange two corners of each, or turn the tessellator's output winding."
+        .into()
+}
+
+fn frame_text(frame: &Frame) -> String {
+    let (what, look) = match frame {
+        Frame::Axes(alignment) => (alignment_text(alignment), axes_hint(alignment).unwrap_or_default().to_owned()),
+        Frame::Space(space) => {
+            let (what, applied) = space_text(space);
+            (what, format!(" Look whether {applied} applied before they are written."))
+        }
+    };
+    format!("Its coordinates are {what}.{look} All that follows is in our coordinates.")
 }
 
 fn alignment_text(alignment: &Alignment) -> String {
     let Alignment { axes, scale, offset } = alignment;
     let mut parts = Vec::new();
     if alignment.turns() {
-        let axis = |(axis, is_turned): &(usize, bool)| {
-            format!("{}{}", if *is_turned { "-" } else { "" }, ["x", "y", "z"][*axis])
-        };
+        let axis =
+            |(axis, is_turned): (usize, bool)| format!("{}{}", if is_turned { "-" } else { "" }, ["x", "y", "z"][axis]);
         let doing = if alignment.mirrors() { "mirrored" } else { "turned" };
-        parts.push(format!("{doing} (its x, y, z are our {})", axes.iter().map(axis).collect::<Vec<_>>().join(", ")));
+        parts.push(format!("{doing} (its x, y, z are our {})", axes.map(axis).join(", ")));
     }
     if *scale != 1.0 {
         parts.push(format!("scaled ({} times ours)", exact(*scale as f32)));
@@ -341,49 +247,47 @@ fn alignment_text(alignment: &Alignment) -> String {
     if *offset != DVec3::ZERO {
         parts.push(format!("moved (by {})", point(*offset)));
     }
-    let look = axes_hint(alignment).map_or(String::new(), |hint| format!(" {hint}"));
-    format!("Its coordinates are {}.{look} All that follows is in our coordinates.", parts.join(" and "))
+    parts.join(" and ")
 }
 
-/// What usually turns or mirrors axes like this, in a sentence.
+/// What usually turns or mirrors axes like this, in a sentence after a blank.
 fn axes_hint(alignment: &Alignment) -> Option<&'static str> {
     let order = alignment.axes.map(|(axis, _)| axis);
     match (order, alignment.mirrors()) {
         _ if !alignment.turns() => None,
-        ([0, 2, 1], false) => Some("Look at the axis that points up: one of the two has Y up, and the other Z up."),
-        ([0, 2, 1], true) => Some("Look at the axis that points up and at the handedness: both differ."),
-        ([0, 1, 2], true) => {
-            Some("Look at the handedness: one of the two has left-handed coordinates, and the other right-handed ones.")
-        }
-        _ => Some("Look at the convention of axes with which the mesh is imported."),
+        ([0, 2, 1], false) => Some(" Look at the axis that points up: one of the two has Y up, and the other Z up."),
+        ([0, 2, 1], true) => Some(" Look at the axis that points up and at the handedness: both differ."),
+        ([0, 1, 2], true) => Some(
+            " Look at the handedness: one of the two has left-handed coordinates, and the other right-handed ones.",
+        ),
+        _ => Some(" Look at the convention of axes with which the mesh is imported."),
     }
 }
 
-fn space_text(space: &Space) -> String {
-    const WRITTEN: &str = "before they are written";
+/// What a space is, and what is applied to coordinates in it.
+fn space_text(space: &Space) -> (String, &'static str) {
     let by_camera = "in clip space, by this camera's matrix";
-    let (what, look) = match space.kind {
-        SpaceKind::View => ("in view space, seen from this camera".to_owned(), "the view matrix is applied"),
-        SpaceKind::Clip => (by_camera.to_owned(), "the view-projection matrix is applied"),
+    match space.kind {
+        SpaceKind::View => ("in view space, seen from this camera".to_owned(), "the view matrix is"),
+        SpaceKind::Clip => (by_camera.to_owned(), "the view-projection matrix is"),
         SpaceKind::DividedClip => {
-            (format!("{by_camera}, and divided by w"), "the view-projection matrix and the division by w are applied")
+            (format!("{by_camera}, and divided by w"), "the view-projection matrix and the division by w are")
         }
         SpaceKind::Turned { axis, degrees, scale, offset, is_mirrored } => {
-            (turned_text(axis, degrees, is_mirrored) + &moved_part(scale, offset), "a model matrix is applied")
+            (turned_text(axis, degrees, is_mirrored) + &moved_part(scale, offset), "a model matrix is")
         }
-    };
-    format!("Its coordinates are {what}. Look whether {look} {WRITTEN}. All that follows is in our coordinates.")
+    }
 }
 
 fn turned_text(axis: DVec3, degrees: f64, is_mirrored: bool) -> String {
-    let [x, y, z] = axis.to_array().map(plain);
     let mirrored = if is_mirrored { "mirrored at the origin and " } else { "" };
-    format!("{mirrored}turned by {} degrees about ({x}, {y}, {z})", short(degrees))
+    format!("{mirrored}turned by {} degrees about {}", short(degrees), rounded(axis))
 }
 
-/// A number without what rounding leaves of 0.
-fn plain(number: f64) -> String {
-    short((number * 1e6).round() / 1e6)
+/// Three numbers without what rounding leaves of 0.
+fn rounded(numbers: DVec3) -> String {
+    let [x, y, z] = numbers.to_array().map(|number| short((number * 1e6).round() / 1e6));
+    format!("({x}, {y}, {z})")
 }
 
 fn moved_part(scale: f64, offset: DVec3) -> String {
@@ -392,8 +296,7 @@ fn moved_part(scale: f64, offset: DVec3) -> String {
         text += &format!(", scaled ({} times ours)", short(scale));
     }
     if offset.length() > 1e-6 {
-        let [x, y, z] = offset.to_array().map(plain);
-        text += &format!(", moved by ({x}, {y}, {z})");
+        text += &format!(", moved by {}", rounded(offset));
     }
     text
 }
@@ -409,11 +312,8 @@ fn nets_text(mistake: NetMistake, vertices: u64, of: u64) -> String {
 
 /// The option that gives a surface.
 fn surface_option(tessellation: &Tessellation) -> String {
-    let name = tessellation.surface.name();
-    match tessellation.surface.is_phong() {
-        true => format!("--surface {name} --alpha {}", tessellation.alpha),
-        false => format!("--surface {name}"),
-    }
+    let option = format!("--surface {}", tessellation.surface.name());
+    if tessellation.surface.is_phong() { format!("{option} --alpha {}", tessellation.alpha) } else { option }
 }
 
 fn surface_text(ours: &Tessellation, theirs: &Tessellation, vertices: u64, of: u64) -> String {
@@ -450,22 +350,13 @@ fn displaced_text(displaced: &Displaced) -> String {
     )
 }
 
-fn factors_text(
-    ours: Partitioning,
-    convention: Convention,
-    explanations: &[Explanation],
-    patches: u64,
-    of: u64,
-) -> String {
-    let Some((first, others)) = explanations.split_first() else { return String::new() };
-    let count = format!("({} of {} patches have other points than ours.)", grouped(patches), grouped(of));
-    let mut text = format!("{} {count}", explanation_text(*first, ours, convention));
-    // More than two only happen where hardly anything tells them apart.
-    for other in others.iter().take(2) {
-        text +=
-            &format!(" The same points would come from this: {}", lowered(&explanation_text(*other, ours, convention)));
-    }
-    text
+fn factors_text(ours: Partitioning, convention: Convention, all: &[Explanation], patches: [u64; 2]) -> String {
+    let [patches, of] = patches.map(grouped);
+    let mut texts = all.iter().map(|explanation| explanation_text(*explanation, ours, convention));
+    let first = texts.next().unwrap_or_default();
+    // More than two others only happen where hardly anything tells them apart.
+    let others = texts.take(2).map(|other| format!(" The same points would come from this: {}", lowered(&other)));
+    format!("{first} ({patches} of {of} patches have other points than ours.){}", others.collect::<String>())
 }
 
 fn lowered(text: &str) -> String {
@@ -477,16 +368,15 @@ fn explanation_text(explanation: Explanation, ours: Partitioning, convention: Co
     let Explanation { partitioning, rule } = explanation;
     let cut = (partitioning != ours)
         .then(|| format!("Its partitioning is {}, and ours is {}", partitioning.name(), ours.name()));
+    let of_edges = |which: &str| format!("Its inside factors are the {which} of the edges' factors");
     let rule = match rule {
         Rule::Same => None,
         Rule::Sides(sides) => Some(order_text(rule, sides, convention)),
         Rule::Down => Some("Its factors are rounded down to whole numbers".to_owned()),
         Rule::Nearest => Some("Its factors are rounded to the nearest whole numbers".to_owned()),
-        Rule::Inside(InsideRule::Least) => Some("Its inside factors are the least of the edges' factors".to_owned()),
-        Rule::Inside(InsideRule::Mean) => Some("Its inside factors are the mean of the edges' factors".to_owned()),
-        Rule::Inside(InsideRule::Largest) => {
-            Some("Its inside factors are the largest of the edges' factors".to_owned())
-        }
+        Rule::Inside(InsideRule::Least) => Some(of_edges("least")),
+        Rule::Inside(InsideRule::Mean) => Some(of_edges("mean")),
+        Rule::Inside(InsideRule::Largest) => Some(of_edges("largest")),
         Rule::Inside(InsideRule::One) => Some("Its inside factors are 1".to_owned()),
         Rule::Times(times) => Some(format!("Its factors are {times} times ours")),
         Rule::AtMost(most) => Some(format!("Its factors are limited to {most}")),
@@ -507,25 +397,26 @@ fn order_text(rule: Rule, sides: [usize; 3], ours: Convention) -> String {
     format!("Edges have each other's factors: edges (0, 1), (1, 2), (2, 0) are cut with those of {order}{like}")
 }
 
-fn unknown_text([patches, of, sides, inside]: [u64; 4], suits: &[Partitioning], ours: Partitioning) -> String {
-    let start =
-        format!("Its factors are others: {} of {} patches have other points than ours", grouped(patches), grouped(of));
-    let where_ = match (sides, inside) {
-        (0, _) => format!(", inside {} and never on an edge", patches_text(inside)),
-        (_, 0) => format!(", with other cuts on {}", plural(sides, "side", "sides")),
-        _ => format!(
-            ", with other cuts on {}; {} inside alone",
-            plural(sides, "side", "sides"),
-            plural(inside, "patch differs", "patches differ")
-        ),
+fn unknown_text(found: &UnknownFactors) -> String {
+    let UnknownFactors { patches, of, sides, inside, suits, ours, is_of_view } = found;
+    let [patches, of] = [*patches, *of].map(grouped);
+    let where_ = match (*sides, *inside) {
+        (0, inside) => format!(", inside {} and never on an edge", patches_text(inside)),
+        (sides, 0) => format!(", with other cuts on {}", plural(sides, "side", "sides")),
+        (sides, inside) => {
+            let [sides, inside] = [plural(sides, "side", "sides"), plural(inside, "patch differs", "patches differ")];
+            format!(", with other cuts on {sides}; {inside} inside alone")
+        }
     };
     let names: Vec<&str> = suits.iter().map(|own| own.name()).collect();
     let suited = match names[..] {
         [] => "Its sides are cut as under none of our partitionings".to_owned(),
-        _ if suits.contains(&ours) => format!("The cuts of its sides suit our partitioning, {}", ours.name()),
+        _ if suits.contains(ours) => format!("The cuts of its sides suit our partitioning, {}", ours.name()),
         _ => format!("The cuts of its sides suit {}, but not our partitioning, {}", names.join(" and "), ours.name()),
     };
-    format!("{start}{where_}. {suited}.")
+    let view = " LOD depends on the view: the camera and --size must be the other program's, too.";
+    let view = if *is_of_view { view } else { "" };
+    format!("Its factors are others: {patches} of {of} patches have other points than ours{where_}. {suited}.{view}")
 }
 
 fn triangles_text(count: u64, patches: u64, order: Option<CornerOrder>) -> String {
@@ -534,15 +425,12 @@ fn triangles_text(count: u64, patches: u64, order: Option<CornerOrder>) -> Strin
         plural(count, "triangle joins", "triangles join"),
         patches_text(patches)
     );
-    match order {
-        Some(order) => match order.convention() {
-            Some(convention) => {
-                format!("{start}: the tessellator's pattern is turned, as under --convention {}.", convention.name())
-            }
-            None => format!(
-                "{start}: the tessellator's pattern is mirrored, as if two corners of each patch were exchanged."
-            ),
-        },
-        None => format!("{start}: diagonals are turned."),
-    }
+    let turned = match order.map(CornerOrder::convention) {
+        None => "diagonals are turned".to_owned(),
+        Some(Some(own)) => format!("the tessellator's pattern is turned, as under --convention {}", own.name()),
+        Some(None) => {
+            "the tessellator's pattern is mirrored, as if two corners of each patch were exchanged".to_owned()
+        }
+    };
+    format!("{start}: {turned}.")
 }

@@ -34,8 +34,9 @@ pub use patch_starts::patch_starts;
 
 use geometry::mesh::{Bounds, Mesh, Topology};
 use geometry::numbers::ulp_at;
-use geometry::progress::{Cancelled, Progress};
-use geometry::tessellate::{Convention, Displacement, HullFactors, Inputs, Tessellated, Tessellation, tessellate};
+use geometry::tessellate::{
+    Convention, Displacement, HullFactors, Inputs, Tessellated, Tessellation, hull_factors, tessellate,
+};
 use geometry::view::ulp;
 
 use alignment::{Alignment, Frame};
@@ -115,15 +116,10 @@ const FAR: f64 = 0.02;
 const MANY_FAR: f64 = 0.2;
 
 /// Compares another program's tessellation with ours.
-pub fn compare(
-    ours: &OurTessellation,
-    theirs: &ForeignMesh,
-    exactness: Tolerances,
-    progress: &Progress,
-) -> Result<Comparison, Cancelled> {
+pub fn compare(ours: &OurTessellation, theirs: &ForeignMesh, exactness: Tolerances) -> Comparison {
     let empty = Comparison::new(ours, theirs);
     if ours.topology.patches.is_empty() {
-        return Ok(empty);
+        return empty;
     }
     let asked = exactness.within;
     let halves = half_floats::resolution(theirs, ours);
@@ -145,10 +141,10 @@ pub fn compare(
         exactness.within = exactness.within.max(rounding_in(space, theirs));
     }
     let twins = |own: &[Vec3]| twins(own, &positions);
-    let on_own = Overlaid::new(theirs, ours.topology, own, our_twins, &positions, fit, progress)?;
-    let laid = Registered::new(ours, on_own, twins, progress)?;
-    let assignment = Assignment::new(&laid.overlaid, progress)?;
-    let outcomes = Outcomes::new(ours, &our_mesh, &assignment, exactness, progress)?;
+    let on_own = Overlaid::new(theirs, ours.topology, own, our_twins, &positions, fit);
+    let laid = Registered::new(ours, on_own, twins);
+    let assignment = Assignment::new(&laid.overlaid);
+    let outcomes = Outcomes::new(ours, &our_mesh, &assignment, exactness);
     let mut found = Comparison {
         from_surface: laid.overlaid.places.iter().map(|place| place.distance).fold(0.0, f64::max),
         farthest: outcomes.farthest(),
@@ -164,13 +160,12 @@ pub fn compare(
     match laid.other_mesh(found.diagonal).filter(|_| !outcomes.are_mostly_the_same()) {
         Some(other_mesh) => found.findings.push(other_mesh),
         None => {
-            let conventions = Conventions { ours, assignment: &assignment, exactness, progress };
-            found.name_differences(&laid, &outcomes, frame.as_ref(), &conventions)?;
+            found.name_differences(&laid, &outcomes, frame.as_ref(), exactness);
             found.findings.extend(halves.and_then(|_| found.rounded_to_halves(&laid, asked)));
         }
     }
     found.positions = positions;
-    Ok(found)
+    found
 }
 
 /// How far apart positions of ours are at most that can't be told apart, in object units: twice what theirs may be away from ours, if
@@ -203,23 +198,16 @@ struct Registered<'a> {
 
 impl<'a> Registered<'a> {
     /// Seeks their surface, from where they lie over ours.
-    fn new(
-        ours: &OurTessellation<'a>,
-        on_own: Overlaid<'a>,
-        twins: impl Fn(&[Vec3]) -> Twins<'a>,
-        progress: &Progress,
-    ) -> Result<Self, Cancelled> {
+    fn new(ours: &OurTessellation<'a>, on_own: Overlaid<'a>, twins: impl Fn(&[Vec3]) -> Twins<'a>) -> Self {
         let OurTessellation { mesh, topology, tessellated, .. } = *ours;
         let surface = |own: &OurSurface| Locator::from_surface(mesh, topology, own, FINE);
         let (fit, strays) = (on_own.fit, on_own.strays());
-        let other = match strays.is_empty() {
-            true => None,
-            false => Trial::new(ours.mesh, &on_own, ours.inputs, &strays).other_surface(progress)?,
-        };
+        let trial = (!strays.is_empty()).then(|| Trial::new(ours.mesh, &on_own, ours.inputs, &strays));
+        let other = trial.and_then(|trial| trial.other_surface());
         let overlaid = match &other {
             Some(other) => {
                 let own = other.positions(mesh, topology, &tessellated.vertices);
-                on_own.over(surface(other), twins(&own), progress)?
+                on_own.over(surface(other), twins(&own))
             }
             None => on_own,
         };
@@ -228,9 +216,9 @@ impl<'a> Registered<'a> {
         let overlaid = match is_fitted {
             true => overlaid,
             // Where they are displaced, every vertex counts as near its place.
-            false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), Twins::none(overlaid.theirs), progress)? },
+            false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), Twins::none(overlaid.theirs)) },
         };
-        Ok(Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit })
+        Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit }
     }
 
     /// Vertices off the surface; none where most are, since none is expected on it then.
@@ -268,6 +256,11 @@ impl OurTessellation<'_> {
     fn vertices(&self) -> Vec<Vec3> {
         self.tessellated.vertices.iter().map(|vertex| vertex.position.into()).collect()
     }
+
+    /// What a hull shader writes with these inputs, unless factors were given.
+    fn written(&self, inputs: &Inputs) -> Vec<HullFactors> {
+        self.given.map_or_else(|| hull_factors(self.mesh, self.topology, inputs), <[_]>::to_vec)
+    }
 }
 
 impl Comparison {
@@ -288,22 +281,21 @@ impl Comparison {
         laid: &Registered,
         outcomes: &Outcomes,
         frame: Option<&Frame>,
-        conventions: &Conventions,
-    ) -> Result<(), Cancelled> {
-        let Conventions { ours, progress, .. } = *conventions;
-        self.findings.extend(laid.other_surface(ours));
+        exactness: Tolerances,
+    ) {
+        self.findings.extend(laid.other_surface(outcomes.ours));
         if laid.is_fitted {
-            self.findings.extend(outcomes.moved(ours, &laid.strays()));
+            self.findings.extend(outcomes.moved(&laid.strays()));
         } else {
-            self.findings.push(Finding::Displaced(outcomes.displaced(ours, laid.fit)));
+            self.findings.push(Finding::Displaced(outcomes.displaced(laid.fit)));
         }
-        let explained = outcomes.explain(ours, laid.other.as_ref(), &mut self.findings, progress)?;
-        outcomes.judge_triangles(ours, frame.is_some_and(Frame::mirrors), &mut self.findings);
+        let explained = outcomes.explain(laid.other.as_ref(), &mut self.findings);
+        self.findings.extend(outcomes.judge_triangles(frame.is_some_and(Frame::mirrors)));
         if let Some(sides) = explained {
             (self.sides, self.different) = (sides, outcomes.different_at_all());
         }
-        self.leave_to_factors(conventions)?;
-        self.judge_distances(outcomes, conventions)
+        self.leave_to_factors(outcomes, exactness);
+        self.judge_distances(outcomes, exactness);
     }
 
     /// Says that their coordinates, which are numbers of 16 bits, are farther from ours than the distance that was asked for. Where
@@ -316,14 +308,14 @@ impl Comparison {
     }
 
     /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.
-    fn leave_to_factors(&mut self, conventions: &Conventions) -> Result<(), Cancelled> {
+    fn leave_to_factors(&mut self, outcomes: &Outcomes, exactness: Tolerances) {
         let is_known = self.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
         if !is_known || !self.findings.iter().any(Finding::is_about_few_points) {
-            return Ok(());
+            return;
         }
         let is_same = |turned: &Outcomes| turned.different_at_all().is_empty();
-        if conventions.other(|_| true, is_same)?.is_none() {
-            return Ok(());
+        if outcomes.other_convention(exactness, |_| true, is_same).is_none() {
+            return;
         }
         self.findings.retain(|finding| !finding.is_about_few_points());
         for finding in &mut self.findings {
@@ -331,60 +323,48 @@ impl Comparison {
                 *patches = self.different.len() as u64;
             }
         }
-        Ok(())
     }
 
     /// Says what distances between the same vertices mean, where nothing else was found but how coordinates are meant.
-    fn judge_distances(&mut self, outcomes: &Outcomes, conventions: &Conventions) -> Result<(), Cancelled> {
-        let Conventions { ours, exactness: Tolerances { within, .. }, .. } = *conventions;
-        let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return Ok(()) };
-        if !self.findings.iter().all(Finding::is_about_coordinates) {
-            return Ok(());
+    fn judge_distances(&mut self, outcomes: &Outcomes, exactness: Tolerances) {
+        let Tolerances { within, .. } = exactness;
+        let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return };
+        if !self.findings.iter().all(|finding| matches!(finding, Finding::Aligned(_))) {
+            return;
         }
         // A valid convention gives the same points but for their last bits.
-        let own = ours.inputs.tessellation.convention;
+        let own = outcomes.ours.inputs.tessellation.convention;
         let is_valid = |other: &Convention| own.is_consistent() && other.is_consistent();
         let is_near = |turned: &Outcomes| turned.farthest().is_some_and(|far| far.distance <= within);
-        let triangle = ours.topology.patches[farthest.patch as usize].triangle;
-        self.findings.push(match conventions.other(is_valid, is_near)? {
+        let triangle = outcomes.triangle(farthest.patch);
+        self.findings.push(match outcomes.other_convention(exactness, is_valid, is_near) {
             Some(theirs) => Finding::Convention { ours: own, theirs },
-            None if outcomes.are_within(within) => return Ok(()),
+            None if outcomes.are_within(within) => return,
             None => Finding::Rounding { farthest, ulps: farthest.distance / self.ulp, triangle },
         });
-        Ok(())
     }
 }
 
-/// What their triangles are held against to find their convention.
-struct Conventions<'a> {
-    ours: &'a OurTessellation<'a>,
-    assignment: &'a Assignment<'a>,
-    exactness: Tolerances,
-    progress: &'a Progress,
-}
-
-impl Conventions<'_> {
+impl Outcomes<'_> {
     /// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
-    fn other(
+    fn other_convention(
         &self,
+        exactness: Tolerances,
         among: impl Fn(&Convention) -> bool,
         suits: impl Fn(&Outcomes) -> bool,
-    ) -> Result<Option<Convention>, Cancelled> {
-        let Self { ours, assignment, exactness, progress } = *self;
-        let own = ours.inputs.tessellation.convention;
-        // Given factors are in the order of our convention.
-        let others = Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own);
-        for theirs in others.filter(among) {
-            let tessellation = Tessellation { convention: theirs, ..ours.inputs.tessellation };
-            let inputs = Inputs { tessellation, ..*ours.inputs };
+    ) -> Option<Convention> {
+        let Self { ours, assignment, .. } = self;
+        let own = ours.inputs.tessellation;
+        let is_suited = |theirs: &Convention| {
+            let inputs = Inputs { tessellation: Tessellation { convention: *theirs, ..own }, ..*ours.inputs };
             let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
-            let turned = OurTessellation { inputs: &inputs, tessellated: &tessellated, ..*ours };
+            let turned = OurTessellation { inputs: &inputs, tessellated: &tessellated, ..**ours };
             let our_mesh = OurMesh::new(&tessellated, apart(exactness.within, ulp(ours.topology)));
-            if suits(&Outcomes::new(&turned, &our_mesh, assignment, exactness, progress)?) {
-                return Ok(Some(theirs));
-            }
-        }
-        Ok(None)
+            suits(&Outcomes::new(&turned, &our_mesh, assignment, exactness))
+        };
+        // Given factors are in the order of our convention.
+        let others = Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own.convention);
+        others.filter(among).find(is_suited)
     }
 }
 

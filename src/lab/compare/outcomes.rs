@@ -1,25 +1,26 @@
 //! What came out for every patch, and what follows from all of them together.
 
+use glam::DVec3;
 use serde::Serialize;
 
 use super::assignment::{Assignment, made_of_all};
 use super::corner_orders::CornerOrder;
 use super::cuts::{Cut, cuts_of};
 use super::explanations::{Explainer, Explanation, Rule};
-use super::findings::{Displaced, Finding};
+use super::findings::{Displaced, Finding, UnknownFactors};
 use super::locator::OurSurface;
 use super::matching::{Farthest, LEAST_REACH, Match, Reach};
 use super::our_mesh::{OurMesh, OurPatch};
 use super::{OurTessellation, Tolerances};
 use geometry::mesh::EdgeKind;
-use geometry::progress::{Cancelled, Progress};
-use geometry::tessellate::{FACTOR_VALUE, Inputs, Partitioning, Tessellation, hull_factors, segments};
+use geometry::tessellate::{FACTOR_VALUE, Partitioning, Tessellation, segments};
 use geometry::view::ulp;
 
 /// How every patch came out.
 pub(super) struct Outcomes<'a> {
+    pub ours: &'a OurTessellation<'a>,
     our_mesh: &'a OurMesh<'a>,
-    assignment: &'a Assignment<'a>,
+    pub assignment: &'a Assignment<'a>,
     reaches: Vec<Reach>,
     all: Vec<Outcome>,
     /// Patches that we emit and they don't.
@@ -115,12 +116,11 @@ const SUITS: f64 = 0.97;
 impl<'a> Outcomes<'a> {
     /// Compares all patches.
     pub(super) fn new(
-        ours: &OurTessellation,
+        ours: &'a OurTessellation,
         our_mesh: &'a OurMesh<'a>,
         assignment: &'a Assignment<'a>,
         exactness: Tolerances,
-        progress: &Progress,
-    ) -> Result<Self, Cancelled> {
+    ) -> Self {
         let patches = 0..ours.topology.patches.len() as u32;
         let fit = assignment.overlaid.fit;
         let exact = exactness.within.max(exactness.resolution).max(8.0 * ulp(ours.topology));
@@ -139,7 +139,7 @@ impl<'a> Outcomes<'a> {
         let has_last_bits = ours.given.is_none() && lod.follows_view() && !lod.is_by_error();
         let theirs = |patch: &u32| assignment.count(*patch) > 0;
         let emitted = |patch: &u32| our_mesh.emits(*patch);
-        let all = made_of_all(patches.len(), progress, |patch| {
+        let all = made_of_all(patches.len(), |patch| {
             let patch = patch as u32;
             if !(theirs(&patch) && emitted(&patch)) {
                 return Outcome::default();
@@ -147,10 +147,10 @@ impl<'a> Outcomes<'a> {
             let own = our_mesh.patch(patch);
             let slack = if has_last_bits { LAST_BITS * own.stretch() } else { 0.0 };
             Outcome { slack, ..Outcome::new(assignment, &own, patch, reaches[patch as usize]) }
-        })?;
+        });
         let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();
         let additional = patches.filter(|patch| theirs(patch) && !emitted(patch)).collect();
-        Ok(Self { our_mesh, assignment, reaches, all, missing, additional })
+        Self { ours, our_mesh, assignment, reaches, all, missing, additional }
     }
 
     /// The number of patches that have triangles of theirs.
@@ -194,7 +194,7 @@ impl<'a> Outcomes<'a> {
     }
 
     /// Says how vertices are displaced, of which none is expected on the surface. What is nearer than `fit` isn't displaced.
-    pub(super) fn displaced(&self, ours: &OurTessellation, fit: f64) -> Displaced {
+    pub(super) fn displaced(&self, fit: f64) -> Displaced {
         let overlaid = self.assignment.overlaid;
         let distances = || overlaid.places.iter().map(|place| place.distance);
         let sum = self.all.iter().fold(Offsets::default(), |sum, outcome| sum.with(outcome.offsets));
@@ -205,66 +205,61 @@ impl<'a> Outcomes<'a> {
             outward: sum.outward,
             inward: sum.inward,
             is_along_normals: sum.vertices > 0 && sum.along_normals as f64 >= 0.9 * sum.vertices as f64,
-            ours: ours.inputs.tessellation.displacement,
+            ours: self.ours.inputs.tessellation.displacement,
         }
     }
 
     /// Says which vertices were moved: those off the surface, and those that were moved along it.
-    pub(super) fn moved(&self, ours: &OurTessellation, strays: &[u32]) -> Option<Finding> {
+    pub(super) fn moved(&self, strays: &[u32]) -> Option<Finding> {
         let overlaid = self.assignment.overlaid;
         let slid: u64 = self.all.iter().map(|outcome| outcome.found.slid).sum();
         let distance = |index: &u32| overlaid.places[*index as usize].distance;
-        let triangle = |patch: u32| ours.topology.patches[patch as usize].triangle;
         let vertices = strays.len() as u64 + slid;
         let worst = strays.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
         let least = worst.map_or(0.0, distance);
         // A vertex is no nearer to where it belongs than to the surface, unless it isn't known where it belongs.
         if let Some(farthest) = self.farthest().filter(|farthest| vertices > 0 && farthest.distance >= least) {
             let Farthest { distance, patch, theirs, .. } = farthest;
-            return Some(Finding::Moved { vertices, farthest: theirs, distance, triangle: triangle(patch) });
+            return Some(Finding::Moved { vertices, farthest: theirs, distance, triangle: self.triangle(patch) });
         }
         worst.map(|worst| Finding::Moved {
             vertices,
             farthest: overlaid.positions[*worst as usize],
             distance: least,
-            triangle: triangle(overlaid.places[*worst as usize].patch),
+            triangle: self.triangle(overlaid.places[*worst as usize].patch),
         })
+    }
+
+    /// The mesh's triangle of a patch.
+    pub(super) fn triangle(&self, patch: u32) -> u32 {
+        self.ours.topology.patches[patch as usize].triangle
     }
 
     /// Explains where points differ, and returns the sides that are cut differently. `other` is the surface that their vertices lie on, if
     /// it isn't ours. `None` if no point differs but for that surface or for displacement.
     pub(super) fn explain(
         &self,
-        ours: &OurTessellation,
         other: Option<&OurSurface>,
         findings: &mut Vec<Finding>,
-        progress: &Progress,
-    ) -> Result<Option<Vec<SideDifference>>, Cancelled> {
+    ) -> Option<Vec<SideDifference>> {
         let different = self.different();
         if different.is_empty() {
-            return Ok(Some(Vec::new()));
+            return Some(Vec::new());
         }
-        let OurTessellation { mesh, inputs, given, .. } = *ours;
-        let reaches = &self.reaches;
-        let explainer = Explainer {
-            mesh,
-            assignment: self.assignment,
-            inputs,
-            other: other.map(|other| &other.inputs),
-            given,
-            reaches,
-        };
-        let explanations = explainer.explain(&different, progress)?;
+        let Self { ours, assignment, reaches, .. } = self;
+        let OurTessellation { inputs, given, .. } = **ours;
+        let explainer = Explainer { ours, assignment, other: other.map(|other| &other.inputs), reaches };
+        let explanations = explainer.explain(&different);
         let own = Explanation { partitioning: inputs.tessellation.partitioning, rule: Rule::Same };
         if explanations.first() == Some(&own) || explainer.are_last_bits(&different) {
-            return Ok(None);
+            return None;
         }
         // LOD measures control points, so that others have other factors, which are no mistake beside that.
         let measures = given.is_none() && inputs.tessellation.used_lod().reads().control_points;
         if measures && explanations.is_empty() && other.is_some_and(|other| other.mistake.is_some()) {
-            return Ok(None);
+            return None;
         }
-        let OtherCuts { sides, inside, suits } = self.other_cuts(ours, &different);
+        let OtherCuts { sides, inside, suits } = self.other_cuts(&different);
         let (patches, of) = (different.len() as u64, self.compared().count() as u64);
         let Tessellation { partitioning, convention, .. } = inputs.tessellation;
         findings.push(match explanations.is_empty() {
@@ -272,21 +267,22 @@ impl<'a> Outcomes<'a> {
             true => {
                 let is_of_view = given.is_none() && inputs.tessellation.used_lod().follows_view();
                 let sides = sides.len() as u64;
-                Finding::UnknownFactors { patches, of, sides, inside, suits, ours: partitioning, is_of_view }
+                let ours = partitioning;
+                Finding::UnknownFactors(UnknownFactors { patches, of, sides, inside, suits, ours, is_of_view })
             }
         });
-        findings.extend(self.cracks(ours, progress)?);
-        Ok(Some(sides))
+        findings.extend(self.cracks());
+        Some(sides)
     }
 
     /// How the sides of these patches, whose points differ, are cut.
-    fn other_cuts(&self, ours: &OurTessellation, different: &[u32]) -> OtherCuts {
+    fn other_cuts(&self, different: &[u32]) -> OtherCuts {
         let (mut sides, mut inside): (Vec<SideDifference>, _) = (Vec::new(), 0);
         let (mut suited, mut seen) = ([0_usize; Partitioning::DIRECT3D.len()], 0);
         for &patch in different {
             let theirs = self.cuts(patch);
             let before = sides.len();
-            sides.extend(self.side_differences(ours, patch, &theirs, &self.our_mesh.patch(patch)));
+            sides.extend(self.side_differences(patch, &theirs));
             inside += u64::from(sides.len() == before);
             if seen < SIDES {
                 seen += theirs.len();
@@ -309,19 +305,13 @@ impl<'a> Outcomes<'a> {
     }
 
     /// The sides of a patch that are cut differently.
-    fn side_differences(
-        &self,
-        ours: &OurTessellation,
-        patch: u32,
-        theirs: &[Cut; 3],
-        own: &OurPatch,
-    ) -> Vec<SideDifference> {
-        let reach = self.reaches[patch as usize].domain;
-        let positions = ours.topology.patch_positions(patch);
+    fn side_differences(&self, patch: u32, theirs: &[Cut; 3]) -> Vec<SideDifference> {
+        let (own, reach) = (self.our_mesh.patch(patch), self.reaches[patch as usize].domain);
+        let positions = self.ours.topology.patch_positions(patch);
         let difference = |side: usize| {
             let own = Cut::new(side, own.weights.iter().copied(), reach);
             (!theirs[side].is_like(&own, reach)).then(|| SideDifference {
-                triangle: ours.topology.patches[patch as usize].triangle,
+                triangle: self.triangle(patch),
                 side: side as u32,
                 ends: [positions[side], positions[(side + 1) % 3]].map(|end| end.to_array()),
                 theirs: SideCut::new(&theirs[side]),
@@ -332,11 +322,11 @@ impl<'a> Outcomes<'a> {
     }
 
     /// Counts the edges between two patches that their sides cut differently, if there are any.
-    fn cracks(&self, ours: &OurTessellation, progress: &Progress) -> Result<Option<Finding>, Cancelled> {
-        let topology = ours.topology;
-        let cuts = made_of_all(self.all.len(), progress, |patch| {
+    fn cracks(&self) -> Option<Finding> {
+        let topology = self.ours.topology;
+        let cuts = made_of_all(self.all.len(), |patch| {
             (self.assignment.count(patch as u32) > 0).then(|| self.cuts(patch as u32).map(|cut| cut.factor() as f32))
-        })?;
+        });
         let (mut edges, mut of) = (0, 0);
         for edge in topology.edges.iter().filter(|edge| !matches!(edge.kind, EdgeKind::Boundary)) {
             let cut = |side: &geometry::mesh::Side| cuts[side.patch() as usize].map(|cuts| cuts[side.index()]);
@@ -347,66 +337,49 @@ impl<'a> Outcomes<'a> {
                 edges += u64::from(differs);
             }
         }
-        Ok((edges > 0).then_some(Finding::Cracked { edges, of }))
+        (edges > 0).then_some(Finding::Cracked { edges, of })
     }
 
-    /// Says what is wrong with triangles: those that are missing, doubled, wound the other way, or join other points.
-    /// `is_mirrored` says that their coordinates are.
-    pub(super) fn judge_triangles(&self, ours: &OurTessellation, is_mirrored: bool, findings: &mut Vec<Finding>) {
+    /// What is wrong with triangles: those that are missing, doubled, wound the other way, or join other points. `is_mirrored` says that
+    /// their coordinates are.
+    pub(super) fn judge_triangles(&self, is_mirrored: bool) -> impl Iterator<Item = Finding> {
         let emitted = (0..self.all.len() as u32).filter(|patch| self.our_mesh.emits(*patch)).count() as u64;
-        let names = |patches: &[u32]| -> Vec<u32> {
-            patches.iter().take(NAMED).map(|patch| ours.topology.patches[*patch as usize].triangle).collect()
+        let named = |all: &[u32]| {
+            let triangles: Vec<u32> = all.iter().take(NAMED).map(|patch| self.triangle(*patch)).collect();
+            (!all.is_empty()).then_some((all.len() as u64, triangles))
         };
-        if !self.missing.is_empty() {
-            let (patches, triangles) = (self.missing.len() as u64, names(&self.missing));
-            findings.push(Finding::MissingPatches { patches, of: emitted, triangles });
-        }
-        if !self.additional.is_empty() {
-            let (patches, triangles) = (self.additional.len() as u64, names(&self.additional));
-            findings.push(Finding::AdditionalPatches { patches, triangles });
-        }
+        let lost = named(&self.missing);
+        let lost = lost.map(|(patches, triangles)| Finding::MissingPatches { patches, of: emitted, triangles });
+        let additional = named(&self.additional);
+        let additional = additional.map(|(patches, triangles)| Finding::AdditionalPatches { patches, triangles });
         let count = |of: fn(&Match) -> u64| {
-            let counts = || self.compared().map(|(_, outcome)| of(&outcome.found));
-            (counts().sum::<u64>(), counts().filter(|count| *count > 0).count() as u64)
+            let counts = || self.compared().map(|(_, outcome)| of(&outcome.found)).filter(|count| *count > 0);
+            (counts().sum::<u64>(), counts().count() as u64)
         };
-        let none = (0, 0);
         // Places of displaced vertices are too rough to tell one triangle from the next.
         let is_exact = self.assignment.overlaid.fit.is_finite();
-        let exact = |of: fn(&Match) -> u64| if is_exact { count(of) } else { none };
-        let (missing, doubled) = (exact(|found| found.missing), exact(|found| found.doubled));
+        let exact = |of: fn(&Match) -> u64| Some(count(of)).filter(|(count, _)| is_exact && *count > 0);
+        let missing = exact(|found| found.missing).map(|(count, patches)| Finding::MissingTriangles { count, patches });
+        let doubled = exact(|found| found.doubled).map(|(count, patches)| Finding::Doubled { count, patches });
         let other = exact(|found| found.other);
-        if missing.0 > 0 {
-            findings.push(Finding::MissingTriangles { count: missing.0, patches: missing.1 });
-        }
-        if doubled.0 > 0 {
-            findings.push(Finding::Doubled { count: doubled.0, patches: doubled.1 });
-        }
+        let other =
+            other.map(|(count, patches)| Finding::OtherTriangles { count, patches, order: self.corner_order() });
         let [flipped, thin] = [count(|found| found.flipped).0, count(|found| found.thin).0];
-        let of = self.compared_triangles();
+        let of = self.compared().map(|(patch, _)| u64::from(self.assignment.count(patch))).sum();
         let flipped = if flipped > 0 && flipped + thin == of { of } else { flipped };
         // What is mirrored shows its other side, unless its winding was turned as well.
-        if flipped > 0 && !(is_mirrored && flipped == of) {
-            findings.push(Finding::Flipped { count: flipped, of });
-        }
-        if other.0 > 0 {
-            findings.push(Finding::OtherTriangles { count: other.0, patches: other.1, order: self.corner_order(ours) });
-        }
-    }
-
-    fn compared_triangles(&self) -> u64 {
-        self.compared().map(|(patch, _)| u64::from(self.assignment.count(patch))).sum()
+        let is_turned = flipped > 0 && !(is_mirrored && flipped == of);
+        let flipped = is_turned.then_some(Finding::Flipped { count: flipped, of });
+        [lost, additional, missing, doubled, flipped, other].into_iter().flatten()
     }
 
     /// The order of corners that explains all triangles that join other points.
-    fn corner_order(&self, ours: &OurTessellation) -> Option<CornerOrder> {
-        let Inputs { tessellation, .. } = *ours.inputs;
+    fn corner_order(&self) -> Option<CornerOrder> {
+        let tessellation = self.ours.inputs.tessellation;
         if tessellation.partitioning.has_rows() {
             return None;
         }
-        let written = match ours.given {
-            Some(given) => given.to_vec(),
-            None => hull_factors(ours.mesh, ours.topology, ours.inputs),
-        };
+        let written = self.ours.written(self.ours.inputs);
         let turned: Vec<u32> =
             self.compared().filter(|(_, outcome)| outcome.found.other > 0).map(|(patch, _)| patch).collect();
         let explains = |order: &CornerOrder| {
@@ -439,7 +412,7 @@ impl Outcome {
 }
 
 impl Offsets {
-    fn add(&mut self, offset: glam::DVec3, normal: glam::DVec3) {
+    fn add(&mut self, offset: DVec3, normal: DVec3) {
         /// The largest sine of the angle between an offset along a normal and that normal. Where a surface bends, the nearest
         /// place isn't the one that was displaced.
         const ASIDE: f64 = 0.3;

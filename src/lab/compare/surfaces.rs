@@ -7,7 +7,6 @@ use super::foreign::spread;
 use super::locator::{COARSE, Locator, OurSurface};
 use super::net_mistakes::{NetMistake, THIRD};
 use geometry::mesh::Mesh;
-use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{Inputs, Surface, Tessellation};
 
 /// How many vertices of each kind are tried: those that lie on our surface, and those that don't.
@@ -53,30 +52,23 @@ impl<'a> Trial<'a> {
 
     /// Returns the surface of ours that the vertices lie on, or what a usual mistake makes of our own; `None` if they lie on none of these
     /// better than on our own.
-    pub(super) fn other_surface(&self, progress: &Progress) -> Result<Option<OurSurface>, Cancelled> {
-        let found = match self.best(self.candidates(), progress)? {
-            Some(found) => Some(found),
-            None => match self.other_strength(progress)? {
-                Some(found) => Some(found),
-                None => self.mistake(progress)?,
-            },
-        };
+    pub(super) fn other_surface(&self) -> Option<OurSurface> {
+        let found = self.best(self.candidates()).or_else(|| self.other_strength()).or_else(|| self.mistake())?;
+        let (surface, fitting) = found;
         let own = OurSurface::from(self.inputs);
-        Ok(found
-            .filter(|(surface, fitting)| *surface != own && fitting.share > self.own + 0.01)
-            .map(|(surface, _)| surface))
+        (surface != own && fitting.share > self.own + 0.01).then_some(surface)
     }
 
     /// The first of the surfaces that the most vertices lie on, if nearly all do.
-    fn best(&self, among: Vec<OurSurface>, progress: &Progress) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
+    fn best(&self, among: Vec<OurSurface>) -> Option<(OurSurface, Fitting)> {
         let mut best: Option<(OurSurface, Fitting)> = None;
         for surface in among {
-            let fitting = self.fitting(&surface, progress)?;
+            let fitting = self.fitting(&surface);
             if best.is_none_or(|(_, other)| fitting.share > other.share + 0.005) {
                 best = Some((surface, fitting));
             }
         }
-        Ok(best.filter(|(_, fitting)| fitting.share >= FOUND))
+        best.filter(|(_, fitting)| fitting.share >= FOUND)
     }
 
     /// Our own tessellation without displacement.
@@ -104,37 +96,27 @@ impl<'a> Trial<'a> {
     }
 
     /// Seeks the strength of Phong tessellation at which the vertices are nearest to it.
-    fn other_strength(&self, progress: &Progress) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
+    fn other_strength(&self) -> Option<(OurSurface, Fitting)> {
         let own = self.undisplaced();
-        for surface in [Surface::PhongAen, Surface::Phong] {
+        [Surface::PhongAen, Surface::Phong].into_iter().find_map(|surface| {
             let at = |alpha: f32| self.surface(Tessellation { surface, alpha: alpha.clamp(0.0, 1.0), ..own }, None);
-            // Nobody means a strength of so many digits.
-            let plain = |alpha: f32| (alpha * 1000.0).round() / 1000.0;
-            if let Some(found) = self.fitted([0.0, 1.0], at, plain, progress)? {
-                return Ok(Some(found));
-            }
-        }
-        Ok(None)
+            self.fitted([0.0, 1.0], at, plain)
+        })
     }
 
     /// Seeks the usual mistake in the control points of our own surface that gives theirs.
-    fn mistake(&self, progress: &Progress) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
+    fn mistake(&self) -> Option<(OurSurface, Fitting)> {
         let own = self.undisplaced();
         if own.surface.is_flat() {
-            return Ok(None);
+            return None;
         }
         let with = |mistake: NetMistake| self.surface(own, Some(mistake));
-        if let Some(found) = self.best(NetMistake::usual().map(with).collect(), progress)? {
-            return Ok(Some(found));
-        }
-        let plain = |x: f32| (x * 1000.0).round() / 1000.0;
         let center = |x: f32| with(NetMistake::Center(x));
-        if let Some(found) = self.fitted([-1.5, 2.0], center, plain, progress)? {
-            return Ok(Some(found));
-        }
-        // Control points lie as far beside an edge as the square of a normal's length says.
         let edges = |bend: f32| with(NetMistake::Edges { share: THIRD, bend });
-        self.fitted([0.0, 4.0], edges, |bend| plain(bend.max(0.0).sqrt()).powi(2), progress)
+        self.best(NetMistake::usual().map(with).collect())
+            .or_else(|| self.fitted([-1.5, 2.0], center, plain))
+            // Control points lie as far beside an edge as the square of a normal's length says.
+            .or_else(|| self.fitted([0.0, 4.0], edges, |bend| plain(bend.max(0.0).sqrt()).powi(2)))
     }
 
     /// Seeks the number at which the vertices are nearest to the surface `at` it. Their distance from it is proportional to the difference
@@ -144,11 +126,10 @@ impl<'a> Trial<'a> {
         [mut least, mut most]: [f32; 2],
         at: impl Fn(f32) -> OurSurface,
         plain: impl Fn(f32) -> f32,
-        progress: &Progress,
-    ) -> Result<Option<(OurSurface, Fitting)>, Cancelled> {
+    ) -> Option<(OurSurface, Fitting)> {
         const STEPS: usize = 4;
         for _ in 0..STEPS {
-            let [lower, upper] = [self.fitting(&at(least), progress)?.mean, self.fitting(&at(most), progress)?.mean];
+            let [lower, upper] = [least, most].map(|number| self.fitting(&at(number)).mean);
             // On a flat mesh all are alike.
             if lower + upper == 0.0 {
                 break;
@@ -158,18 +139,23 @@ impl<'a> Trial<'a> {
             [least, most] = [middle - reach, middle + reach];
         }
         let found = at(plain(0.5 * (least + most)));
-        let fitting = self.fitting(&found, progress)?;
-        Ok((fitting.share >= FOUND).then_some((found, fitting)))
+        let fitting = self.fitting(&found);
+        (fitting.share >= FOUND).then_some((found, fitting))
     }
 
-    fn fitting(&self, surface: &OurSurface, progress: &Progress) -> Result<Fitting, Cancelled> {
+    fn fitting(&self, surface: &OurSurface) -> Fitting {
         let Some(locator) = Locator::from_surface(self.mesh, self.overlaid.topology, surface, COARSE) else {
-            return Ok(Fitting { share: 0.0, mean: f64::INFINITY });
+            return Fitting { share: 0.0, mean: f64::INFINITY };
         };
         let distance = |index: usize| locator.place(self.sample[index]).map_or(f64::INFINITY, |place| place.distance);
-        let distances = made_of_all(self.sample.len(), progress, distance)?;
+        let distances = made_of_all(self.sample.len(), distance);
         let count = distances.len().max(1) as f64;
         let fits = distances.iter().filter(|distance| **distance <= self.overlaid.fit).count() as f64;
-        Ok(Fitting { share: fits / count, mean: distances.iter().sum::<f64>() / count })
+        Fitting { share: fits / count, mean: distances.iter().sum::<f64>() / count }
     }
+}
+
+/// A number without more digits than anybody means.
+fn plain(number: f32) -> f32 {
+    (number * 1000.0).round() / 1000.0
 }

@@ -86,13 +86,13 @@ impl Scene {
         };
         let within = (16.0 * ulp(&self.topology)).max(2.0 * resolution);
         let theirs = ForeignMesh::new(&theirs.positions, theirs.triangles.iter().copied());
-        compare(&ours, &theirs, Tolerances { within, resolution }, &Progress::new()).expect("nobody cancels")
+        compare(&ours, &theirs, Tolerances { within, resolution })
     }
 
     /// Compares, and checks that these kinds are found and no others. Returns their texts.
     fn check(&self, theirs: &Theirs, kinds: &[&str]) -> String {
         let found = self.compare(theirs);
-        let texts: Vec<String> = found.findings.iter().map(Finding::text).collect();
+        let texts: Vec<String> = found.findings.iter().map(Finding::to_string).collect();
         let own: Vec<&str> = found.findings.iter().map(Finding::kind).collect();
         assert_eq!(own, kinds, "{}\n{:?}", texts.join("\n"), found.farthest);
         texts.join("\n")
@@ -518,7 +518,7 @@ fn coordinates_that_are_turned_scaled_mirrored_or_moved_are_found_first() {
         (whole.clone().moved(|p| vec3(p.x, p.y, -p.z)), "mirrored (its x, y, z are our x, y, -z)"),
         (whole.clone().moved(|p| p + vec3(5.0, 0.0, 0.0)), "moved (by (5, 0, 0))"),
     ] {
-        let text = scene.compare(&theirs).findings.first().map(Finding::text).unwrap_or_default();
+        let text = scene.compare(&theirs).findings.first().map(Finding::to_string).unwrap_or_default();
         assert!(text.contains(said), "{said}: {text}");
         let kinds: Vec<_> = scene.compare(&theirs).findings.iter().map(Finding::kind).collect();
         assert!(kinds.len() == 1 || kinds[1..] == ["rounding"], "{said}: {kinds:?}");
@@ -544,14 +544,14 @@ fn coordinates_of_a_symmetric_mesh_are_told_by_its_vertices() {
         (whole.clone().moved(|p| p * 1.03), "scaled (1.03 times ours)."),
     ] {
         let found: Vec<_> = scene.compare(&theirs).findings;
-        let text = found.first().map(Finding::text).unwrap_or_default();
+        let text = found.first().map(Finding::to_string).unwrap_or_default();
         assert!(text.contains(said), "{said}: {text}");
         let others: Vec<_> = found.iter().skip(1).map(Finding::kind).filter(|kind| *kind != "rounding").collect();
         assert!(others.is_empty(), "{said}: {others:?}");
     }
     // With other factors the surface alone tells, and of several ways to turn it the usual one is named.
     let theirs = scene.theirs(|own| own.partitioning = Partitioning::Pow2).moved(|p| vec3(p.x, -p.z, p.y));
-    let text = scene.compare(&theirs).findings.first().map(Finding::text).unwrap_or_default();
+    let text = scene.compare(&theirs).findings.first().map(Finding::to_string).unwrap_or_default();
     assert!(text.contains("its x, y, z are our x, -z, y"), "{text}");
 }
 
@@ -576,7 +576,7 @@ fn triangles_that_are_not_finite_are_said() {
 fn examples() -> Vec<Finding> {
     use super::corner_orders::CornerOrder;
     use super::explanations::{Explanation, InsideRule, Rule};
-    use super::findings::Displaced;
+    use super::findings::{Displaced, UnknownFactors};
     use super::spaces::SpaceKind;
     let axes = |axes, scale| Finding::Aligned(Frame::Axes(Alignment { axes, scale, offset: DVec3::ZERO }));
     let space = |kind| Finding::Aligned(Frame::Space(Space::from_kind(kind)));
@@ -599,7 +599,7 @@ fn examples() -> Vec<Finding> {
     let farthest = Farthest { distance: 5e-6, patch: 0, theirs: place, ours: place };
     let unknown = |is_of_view| {
         let (suits, ours) = (vec![Partitioning::Integer], Partitioning::Integer);
-        Finding::UnknownFactors { patches: 60, of: 64, sides: 170, inside: 2, suits, ours, is_of_view }
+        Finding::UnknownFactors(UnknownFactors { patches: 60, of: 64, sides: 170, inside: 2, suits, ours, is_of_view })
     };
     vec![
         Finding::NotATessellation { far: 1203, vertices: 4000, distance: 0.05 },
@@ -655,7 +655,7 @@ fn the_results_have_every_sentence_and_kind() {
     let page = documents::in_repository("docs/results/compare-meshes.md");
     let page = std::fs::read_to_string(page).expect("a page");
     for finding in examples() {
-        assert!(page.contains(&format!("| {} |", finding.text())), "the page lacks: {}", finding.text());
+        assert!(page.contains(&format!("| {} |", finding)), "the page lacks: {}", finding);
         assert!(page.contains(&format!("`{}`", finding.kind())), "the page lacks {}", finding.kind());
     }
 }

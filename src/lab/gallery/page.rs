@@ -45,9 +45,7 @@ pub fn page(subject: Option<&str>, adapter: &str, shown: &[(Exhibit, Vec<TileRes
     for (exhibit, tiles) in shown {
         let Exhibit { name, title, about, .. } = exhibit;
         let _ = write!(text, "\n## {title}\n\n{about}\n\n![{title}]({name}.png)\n\n");
-        for tile in &exhibit.tiles {
-            let _ = writeln!(text, "- `{}`: {}", tile.name, tile.about);
-        }
+        text.extend(exhibit.tiles.iter().map(|tile| format!("- `{}`: {}\n", tile.name, tile.about)));
         text.push('\n');
         text += &table(&exhibit.tiles, tiles);
     }

@@ -55,13 +55,9 @@ pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     // The tessellator makes about 1.5 times the square of the factor triangles in a patch.
     let most = (MOST_TRIANGLES / (1.5 * scene.tessellator.topology().patches.len().max(1) as f32)).sqrt();
     debug_assert!(!inputs.tessellation.lod.follows_view());
-    Inputs {
-        tessellation: Tessellation {
-            factor: if inputs.tessellation.factor > most { most.floor().max(1.0) } else { inputs.tessellation.factor },
-            ..inputs.tessellation
-        },
-        ..*inputs
-    }
+    let own = inputs.tessellation;
+    let factor = if own.factor > most { most.floor().max(1.0) } else { own.factor };
+    Inputs { tessellation: Tessellation { factor, ..own }, ..*inputs }
 }
 
 /// Times, measures and draws a tile. Returns its picture and its results.

@@ -1,5 +1,7 @@
 //! Holds the rows of a run to gates.
 
+use std::collections::BTreeSet;
+
 use super::{Method, Row, Tried};
 use geometry::choice::Choice;
 use geometry::numbers::{grouped, short};
@@ -33,13 +35,8 @@ fn failure(Gate { kind, limit }: &Gate, rows: &[Row]) -> Option<Failure> {
         row.quantity.gate() == Some(*kind) && limit.count().is_some_and(|limit| row.measured > limit as f64)
     };
     let worst = rows.iter().filter(fails).reduce(|a, b| if b.measured > a.measured { b } else { a })?;
-    let mut methods: Vec<&str> = Vec::new();
-    for row in rows.iter().filter(fails).filter(|row| row.case == worst.case) {
-        if !methods.contains(&row.method) {
-            methods.push(row.method);
-        }
-    }
-    let others = match methods.len() {
+    let failing = rows.iter().filter(fails).filter(|row| row.case == worst.case);
+    let others = match failing.map(|row| row.method).collect::<BTreeSet<_>>().len() {
         1 => String::new(),
         several => format!("; {several} methods fail there"),
     };

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::{Quantity, Row, Subject};
+use load::markdown;
 
 /// The results of one method on one case: for each quantity, the worst number over devices and partitionings.
 #[derive(Clone, Debug, PartialEq)]
@@ -158,24 +159,15 @@ pub fn page(sections: &[(&Subject, Option<String>)], rows: &[Row]) -> String {
         if let Some(picture) = picture {
             let _ = writeln!(text, "![{name}]({picture})\n");
         }
-        let header: Vec<_> = COLUMNS.iter().map(|(_, column)| *column).collect();
-        let _ = writeln!(
-            text,
-            "| method | {} | further | verdict |\n| --- |{} --- | --- |",
-            header.join(" | "),
-            " ---: |".repeat(header.len())
-        );
-        for line in lines.iter().filter(|line| line.case == *name) {
-            let cells: Vec<_> = COLUMNS.iter().map(|(quantity, _)| line.cell(*quantity)).collect();
-            let _ = writeln!(
-                text,
-                "| {} | {} | {} | {} |",
-                line.method,
-                cells.join(" | "),
-                line.rest(),
-                line.verdict.text()
-            );
-        }
+        let row = |line: &Line| {
+            let cells = COLUMNS.map(|(quantity, _)| line.cell(quantity));
+            let last = [line.rest(), line.verdict.text().to_owned()];
+            [line.method.to_owned()].into_iter().chain(cells).chain(last).collect()
+        };
+        let rows: Vec<_> = lines.iter().filter(|line| line.case == *name).map(row).collect();
+        let names = COLUMNS.map(|(_, name)| name);
+        let columns: Vec<_> = ["method"].into_iter().chain(names).chain(["further", "verdict"]).collect();
+        text += &markdown::table(&columns, &[0, columns.len() - 2, columns.len() - 1], &rows);
         text.push('\n');
     }
     text

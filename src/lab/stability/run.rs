@@ -72,12 +72,9 @@ impl Worst {
     }
 }
 
-/// A tessellation that is to be tried.
-struct Trial {
-    tried: Tried,
-    /// Further cameras that leaks are counted from, if factors and clipping don't depend on the camera.
-    also_from: Vec<Camera>,
-}
+/// A tessellation that is to be tried, and further cameras that leaks are counted from, if factors and clipping don't depend on the
+/// camera.
+type Trial = (Tried, Vec<Camera>);
 
 /// A case that is being run: its mesh, and the same mesh on the device.
 struct Running<'a> {
@@ -157,7 +154,7 @@ impl<'a> Running<'a> {
     fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<Trial> {
         let case_camera = views::camera(&self.bounds, &self.case.view, views::viewport());
         let random = |index| views::random(&self.bounds, index);
-        let seen = |settings, camera, also_from| Trial { tried: Tried { settings, camera, moment: None }, also_from };
+        let seen = |settings, camera, also_from| (Tried { settings, camera, moment: None }, also_from);
         let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| {
             let settings = method.displacing(&self.mesh, method.settings(partitioning, factor));
             // Each camera is used with one of the factors.
@@ -172,9 +169,7 @@ impl<'a> Running<'a> {
         let views = [unclipped, adaptive].map(|settings| seen(settings, case_camera, Vec::new()));
         let views = views.into_iter().filter(|_| self.case.probe == Probe::View);
         let mut trials: Vec<_> = uniform.chain(random).chain(views).collect();
-        for (index, trial) in trials.iter_mut().enumerate() {
-            trial.tried.moment = self.moment(index);
-        }
+        trials.iter_mut().enumerate().for_each(|(index, (tried, _))| tried.moment = self.moment(index));
         trials
     }
 
@@ -196,7 +191,7 @@ impl<'a> Running<'a> {
 
     fn on_cpu(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Worst {
         let mut worst = Worst::default();
-        for Trial { tried, .. } in self.trials(method, partitioning, effort) {
+        for (tried, _) in self.trials(method, partitioning, effort) {
             let Tried { settings, camera, moment } = tried;
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let pose = self.pose(moment);
@@ -223,7 +218,7 @@ impl<'a> Running<'a> {
 
     fn on_device(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Worst, GpuError> {
         let mut worst = Worst::default();
-        for Trial { tried, also_from } in self.trials(method, partitioning, effort) {
+        for (tried, also_from) in self.trials(method, partitioning, effort) {
             let Tried { settings, camera, moment } = tried;
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let pose = self.pose(moment);

@@ -21,10 +21,10 @@ const LEAST_SHEAR: f32 = 1e-4;
 
 /// The images, samplers and textures that were written so far. Materials share them.
 #[derive(Default)]
-pub(super) struct Images {
-    images: Vec<(*const Texture, usize)>,
-    samplers: Vec<(Sampling, usize)>,
-    textures: Vec<([usize; 2], usize)>,
+pub(super) struct Written {
+    images: Vec<*const Texture>,
+    samplers: Vec<Sampling>,
+    textures: Vec<[usize; 2]>,
 }
 
 /// Texture coordinates of vertices.
@@ -80,18 +80,12 @@ impl Writer {
     ///
     /// # Errors
     /// An image can't be encoded.
-    pub(super) fn material(
-        &mut self,
-        material: &Material,
-        sets: &UvSets,
-        images: &mut Images,
-        path: &str,
-    ) -> Result<usize, ExportError> {
+    pub(super) fn material(&mut self, material: &Material, sets: &UvSets) -> Result<usize, ExportError> {
         let look = &material.look;
         let mut infos: [Option<Value>; Slot::COUNT] = Default::default();
         for (map, info) in look.maps.iter().zip(&mut infos) {
             if let Some(map) = map {
-                *info = self.map(map, material, sets, images, path)?;
+                *info = self.map(map, material, sets)?;
             }
         }
         let mut of = |slot: Slot| infos[slot as usize].take();
@@ -101,7 +95,7 @@ impl Writer {
             "roughnessFactor": look.roughness,
         });
         if let Some(image) = &material.texture {
-            let index = self.texture(image, material.sampling, images, path)?;
+            let index = self.texture(image, material.sampling)?;
             rough["baseColorTexture"] = json!({ "index": index, "texCoord": sets.number(UvSet::Own) });
         }
         set(&mut rough, "metallicRoughnessTexture", of(Slot::MetallicRoughness));
@@ -124,16 +118,15 @@ impl Writer {
         self.emission(look, &mut written);
         self.reflection(look, &mut written, &mut of);
         if look.transmits() {
-            let mut members = json!({ "transmissionFactor": look.transmission });
-            set(&mut members, "transmissionTexture", of(Slot::Transmission));
-            self.extend(&mut written, "KHR_materials_transmission", members);
+            let members = json!({ "transmissionFactor": look.transmission });
+            let maps = [("transmissionTexture", of(Slot::Transmission))];
+            self.extend(&mut written, "KHR_materials_transmission", with_maps(members, maps));
         }
         if look.has_sheen() {
-            let mut members =
-                json!({ "sheenColorFactor": look.sheen_color, "sheenRoughnessFactor": look.sheen_roughness });
-            set(&mut members, "sheenColorTexture", of(Slot::SheenColor));
-            set(&mut members, "sheenRoughnessTexture", of(Slot::SheenRoughness));
-            self.extend(&mut written, "KHR_materials_sheen", members);
+            let members = json!({ "sheenColorFactor": look.sheen_color, "sheenRoughnessFactor": look.sheen_roughness });
+            let [color, roughness] = [Slot::SheenColor, Slot::SheenRoughness].map(&mut of);
+            let maps = [("sheenColorTexture", color), ("sheenRoughnessTexture", roughness)];
+            self.extend(&mut written, "KHR_materials_sheen", with_maps(members, maps));
         }
         Ok(pushed(&mut self.materials, written))
     }
@@ -160,43 +153,36 @@ impl Writer {
         let (strength, color) = (map(Slot::Specular), map(Slot::SpecularColor));
         let has_numbers = look.specular != usual.specular || look.specular_color != usual.specular_color;
         if has_numbers || strength.is_some() || color.is_some() {
-            let mut members = json!({ "specularFactor": look.specular, "specularColorFactor": look.specular_color });
-            set(&mut members, "specularTexture", strength);
-            set(&mut members, "specularColorTexture", color);
-            self.extend(written, "KHR_materials_specular", members);
+            let members = json!({ "specularFactor": look.specular, "specularColorFactor": look.specular_color });
+            let maps = [("specularTexture", strength), ("specularColorTexture", color)];
+            self.extend(written, "KHR_materials_specular", with_maps(members, maps));
         }
         if look.clearcoat > 0.0 {
-            let mut members =
+            let members =
                 json!({ "clearcoatFactor": look.clearcoat, "clearcoatRoughnessFactor": look.clearcoat_roughness });
-            set(&mut members, "clearcoatTexture", map(Slot::Clearcoat));
-            set(&mut members, "clearcoatRoughnessTexture", map(Slot::ClearcoatRoughness));
-            let normal = with(map(Slot::ClearcoatNormal), "scale", look.clearcoat_normal_scale);
-            set(&mut members, "clearcoatNormalTexture", normal);
-            self.extend(written, "KHR_materials_clearcoat", members);
+            let maps = [
+                ("clearcoatTexture", map(Slot::Clearcoat)),
+                ("clearcoatRoughnessTexture", map(Slot::ClearcoatRoughness)),
+                ("clearcoatNormalTexture", with(map(Slot::ClearcoatNormal), "scale", look.clearcoat_normal_scale)),
+            ];
+            self.extend(written, "KHR_materials_clearcoat", with_maps(members, maps));
         }
     }
 
     /// Returns where a map is and how it is placed; none, with a warning, for one that glTF can't place so.
-    fn map(
-        &mut self,
-        map: &Map,
-        material: &Material,
-        sets: &UvSets,
-        images: &mut Images,
-        path: &str,
-    ) -> Result<Option<Value>, ExportError> {
+    fn map(&mut self, map: &Map, material: &Material, sets: &UvSets) -> Result<Option<Value>, ExportError> {
         let (set, affine) = match map.uv {
             MapUv::Own => (UvSet::Own, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]),
             MapUv::Set(set, affine) => (UvSet::File(set), affine),
         };
         let Some(transform) = transform(affine) else {
-            let name = names::shown(&material.name);
+            let (path, name) = (&self.path, names::shown(&material.name));
             self.warnings.push(format!(
                 "{path}: a map of material \"{name}\" is left out, because glTF can't shear texture coordinates."
             ));
             return Ok(None);
         };
-        let index = self.texture(&map.texture, map.sampling, images, path)?;
+        let index = self.texture(&map.texture, map.sampling)?;
         let mut info = json!({ "index": index, "texCoord": sets.number(set) });
         if let Some(transform) = transform {
             self.extend(&mut info, TRANSFORM, transform);
@@ -205,39 +191,24 @@ impl Writer {
     }
 
     /// Returns the texture for an image that is sampled in a way.
-    fn texture(
-        &mut self,
-        image: &Arc<Texture>,
-        sampling: Sampling,
-        known: &mut Images,
-        path: &str,
-    ) -> Result<usize, ExportError> {
-        let source = match find(&known.images, &Arc::as_ptr(image)) {
-            Some(index) => index,
-            None => {
-                let index = self.image(image, path)?;
-                known.images.push((Arc::as_ptr(image), index));
-                index
-            }
+    fn texture(&mut self, image: &Arc<Texture>, sampling: Sampling) -> Result<usize, ExportError> {
+        let source = match place(&mut self.written.images, Arc::as_ptr(image)) {
+            (index, false) => index,
+            _ => self.image(image)?,
         };
-        let sampler = find(&known.samplers, &sampling).unwrap_or_else(|| {
-            let index = pushed(&mut self.samplers, sampler(sampling));
-            known.samplers.push((sampling, index));
-            index
-        });
-        Ok(find(&known.textures, &[source, sampler]).unwrap_or_else(|| {
-            let index = pushed(&mut self.textures, json!({ "source": source, "sampler": sampler }));
-            known.textures.push(([source, sampler], index));
-            index
-        }))
+        let (sampler_index, is_new) = place(&mut self.written.samplers, sampling);
+        self.samplers.extend(is_new.then(|| sampler(sampling)));
+        let (texture, is_new) = place(&mut self.written.textures, [source, sampler_index]);
+        self.textures.extend(is_new.then(|| json!({ "source": source, "sampler": sampler_index })));
+        Ok(texture)
     }
 
     /// Writes an image as PNG.
-    fn image(&mut self, texture: &Texture, path: &str) -> Result<usize, ExportError> {
+    fn image(&mut self, texture: &Texture) -> Result<usize, ExportError> {
         let ([width, height], mut png) = (texture.size, Cursor::new(Vec::new()));
         let (color, format) = (image::ExtendedColorType::Rgba8, image::ImageFormat::Png);
         image::write_buffer_with_format(&mut png, &texture.rgba, width, height, color, format)
-            .map_err(|reason| ExportError::Texture { path: path.to_owned(), reason: reason.to_string() })?;
+            .map_err(|reason| ExportError::Texture { path: self.path.clone(), reason: reason.to_string() })?;
         let view = self.view(png.get_ref(), None);
         Ok(pushed(&mut self.images, json!({ "bufferView": view, "mimeType": "image/png" })))
     }
@@ -257,8 +228,21 @@ fn with(info: Option<Value>, name: &str, number: f32) -> Option<Value> {
     Some(info)
 }
 
-fn find<K: PartialEq>(known: &[(K, usize)], key: &K) -> Option<usize> {
-    known.iter().find(|(own, _)| own == key).map(|(_, index)| *index)
+/// The members of an extension, with the maps that there are.
+fn with_maps<const N: usize>(mut members: Value, maps: [(&str, Option<Value>); N]) -> Value {
+    maps.into_iter().for_each(|(name, map)| set(&mut members, name, map));
+    members
+}
+
+/// The place of what a list has each once, and whether it is new there.
+fn place<T: PartialEq>(known: &mut Vec<T>, wanted: T) -> (usize, bool) {
+    match known.iter().position(|own| *own == wanted) {
+        Some(index) => (index, false),
+        None => {
+            known.push(wanted);
+            (known.len() - 1, true)
+        }
+    }
 }
 
 /// Returns the members of KHR_texture_transform for an affine map of texture coordinates (see [`MapUv`]), which scales, turns and

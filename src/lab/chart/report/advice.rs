@@ -62,10 +62,7 @@ fn reaching(parts: &[Part], error: f64) -> Option<String> {
         text += &format!(" No tessellation is needed on {}.", markdown::listed(&as_they_are));
     }
     if !nobody.is_empty() {
-        let on = match nobody.len() == raced.len() {
-            true => "any mesh".to_owned(),
-            false => markdown::listed(&nobody),
-        };
+        let on = if nobody.len() == raced.len() { "any mesh".to_owned() } else { markdown::listed(&nobody) };
         text += &format!(" No setting reaches it on {on}.");
     }
     Some(text)
@@ -108,13 +105,9 @@ fn saved(parts: &[Part], other: LodKind) -> Option<String> {
         text += &format!(", and {}", compared(times.mean, ["less time", "as much time"]));
     }
     text.push('.');
-    for (count, who) in [(alone[0], "LOD by error"), (alone[1], name)] {
-        if count > 0 {
-            text += &format!(
-                " {count} {} only by {who}.",
-                if count == 1 { "error is reached" } else { "errors are reached" }
-            );
-        }
+    for (count, who) in [(alone[0], "LOD by error"), (alone[1], name)].into_iter().filter(|(count, _)| *count > 0) {
+        let errors = if count == 1 { "error is reached" } else { "errors are reached" };
+        text += &format!(" {count} {errors} only by {who}.");
     }
     Some(text)
 }

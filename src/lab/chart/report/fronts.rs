@@ -80,10 +80,8 @@ pub(super) fn brief(parts: &[Part], methods: &[Method]) -> Vec<String> {
     let tried: Vec<Method> = parts.iter().flat_map(|part| part.subject.methods()).collect();
     let name = |method: &Method| {
         let mut own = tried.iter().filter(|other| other.surface == method.surface);
-        match own.all(|other| methods.contains(other)) {
-            true => format!("{} by any LOD", method.surface.name()),
-            false => name(parts, *method),
-        }
+        let are_all = own.all(|other| methods.contains(other));
+        if are_all { format!("{} by any LOD", method.surface.name()) } else { name(parts, *method) }
     };
     distinct(methods.iter().map(name))
 }

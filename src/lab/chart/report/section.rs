@@ -64,39 +64,37 @@ fn known(number: Option<f64>) -> String {
     number.map_or_else(|| "-".to_owned(), short)
 }
 
-fn columns(part: &Part) -> impl Iterator<Item = &'static str> {
-    COLUMNS
-        .into_iter()
-        .filter(|(_, needs_reference_shape, _)| part.has_reference_shape() || !needs_reference_shape)
-        .map(|(name, ..)| name)
-}
-
-fn cells(part: &Part, row: &Row) -> impl Iterator<Item = String> {
-    COLUMNS
-        .into_iter()
-        .filter(|(_, needs_reference_shape, _)| part.has_reference_shape() || !needs_reference_shape)
-        .map(|(.., text)| text(row))
+/// A table of rows, each after three words about it, whose columns have these names; empty without rows.
+fn table(part: &Part, names: [&str; 3], rows: &[([String; 3], &Row)]) -> String {
+    if rows.is_empty() {
+        return String::new();
+    }
+    let known = |(_, needs_reference_shape, _): &&Column| part.has_reference_shape() || !needs_reference_shape;
+    let own = || COLUMNS.iter().filter(known);
+    let columns: Vec<&str> = names.into_iter().chain(own().map(|(name, ..)| *name)).collect();
+    let line = |(words, row): &([String; 3], &Row)| {
+        let cells = own().map(|(.., text)| text(row));
+        words.iter().cloned().chain(cells).collect()
+    };
+    markdown::table(&columns, &[0, 1, 2], &rows.iter().map(line).collect::<Vec<_>>())
 }
 
 /// A table of the rows that no other row beats, in triangles or in ms.
-fn front(part: &Part, race: &Race) -> String {
+fn front<'a>(part: &Part, race: &Race<'a>) -> String {
     let fronts = [Cost::Triangles, Cost::Ms].map(|cost| race.front(|row| cost.of(row)));
     let is_in = |row: &Row, front: &[(&Row, f64)]| front.iter().any(|(other, _)| std::ptr::eq(*other, row));
-    let mut rows: Vec<(&Row, f64)> = fronts[0].clone();
+    let mut rows: Vec<(&'a Row, f64)> = fronts[0].clone();
     rows.extend(fronts[1].iter().filter(|(row, _)| !is_in(row, &fronts[0])));
     rows.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let line = |(row, _): &(&Row, f64)| {
+    let line = |(row, _): (&'a Row, f64)| {
         let on = match [is_in(row, &fronts[0]), is_in(row, &fronts[1])] {
             [true, true] => "both",
             [true, false] => "triangles",
             _ => "ms",
         };
-        let names = [part.subject.name(row.setting.method), row.setting.label(), on.to_owned()];
-        names.into_iter().chain(cells(part, row)).collect()
+        ([part.subject.name(row.setting.method), row.setting.label(), on.to_owned()], row)
     };
-    let names = ["method", "setting", "unbeaten in"];
-    let columns: Vec<&str> = names.into_iter().chain(columns(part)).collect();
-    markdown::table(&columns, &[0, 1, 2], &rows.iter().map(line).collect::<Vec<_>>())
+    table(part, ["method", "setting", "unbeaten in"], &rows.into_iter().map(line).collect::<Vec<_>>())
 }
 
 /// A table of the cheapest row of each method for each error, and sentences about the methods that don't reach it.
@@ -116,10 +114,8 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
         let cheapest = |method| race.cheapest(error, Cost::Triangles, |row| row.setting.method == method);
         let mut reached: Vec<&Row> = methods().filter_map(cheapest).collect();
         reached.sort_by_key(|row| row.probe.triangles);
-        for row in &reached {
-            let names = [level.clone(), part.subject.name(row.setting.method), row.setting.label()];
-            rows.push(names.into_iter().chain(cells(part, row)).collect());
-        }
+        let words = |row: &Row| [level.clone(), part.subject.name(row.setting.method), row.setting.label()];
+        rows.extend(reached.iter().map(|row| (words(row), *row)));
         let missing = methods().filter(|method| cheapest(*method).is_none());
         match brief(std::slice::from_ref(part), &missing.collect::<Vec<_>>()) {
             _ if reached.is_empty() => said.push(format!("{level}: no setting reaches it.")),
@@ -127,10 +123,5 @@ fn best(part: &Part, race: &Race) -> (String, Vec<String>) {
             names => said.push(format!("{level}: not reached by {}.", markdown::listed(&names))),
         }
     }
-    if rows.is_empty() {
-        return (String::new(), said);
-    }
-    let names = ["error of at most", "method", "setting"];
-    let columns: Vec<&str> = names.into_iter().chain(columns(part)).collect();
-    (markdown::table(&columns, &[0, 1, 2], &rows), said)
+    (table(part, ["error of at most", "method", "setting"], &rows), said)
 }
