@@ -6,16 +6,17 @@ use std::sync::Arc;
 use super::options::{LodCameraOption, PictureOptions, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, ReferenceSurfaceOption, SurfaceOptions, SurfaceShaderOption, file_of,
-    file_of_heights, keep_apart, load, load_apart, options, refuse, warn,
+    file_of_heights, keep_apart, load, load_apart, note, options, refuse, warn,
 };
+use geometry::mesh::Moment;
 use geometry::progress::Progress;
 use gpu::Given;
-use inspect::engine::{Engine, Loaded, Preparation};
+use inspect::engine::{ClipFinding, Engine, Loaded, Preparation, worst_moment};
 use inspect::gates::{Gate, GateKind};
-use inspect::render::Camera;
 use inspect::render::environment::Environment;
-use inspect::settings::{ColorSource, Lighting};
-use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotView, Subject};
+use inspect::render::{Camera, Scene};
+use inspect::settings::{Choice, ColorSource, Lighting};
+use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
 use load::{Source, load_matcap};
@@ -50,6 +51,9 @@ pub struct ShotOptions {
     /// PNG, JPEG or WebP image of a lit sphere for the matcap overlay, in place of that of --matcap
     #[arg(long, value_name = "IMAGE", conflicts_with = "matcap")]
     pub matcap_image: Option<PathBuf>,
+    /// Show the moment of --animation that has the most of these, of up to 60 moments all through it, in place of --time
+    #[arg(long, value_name = "FINDING", requires = "animation", conflicts_with = "time", value_parser = options::choice::<ClipFinding>())]
+    pub worst: Option<ClipFinding>,
     /// Transparent background
     #[arg(long, conflicts_with = "background")]
     pub transparent: bool,
@@ -165,6 +169,26 @@ impl ShotOptions {
         if let Some(panorama) = subject.environment.take() {
             scene.set_environment(Some(Arc::new(Environment::from_panorama(&engine.gpu, panorama)?)));
         }
+        let mut view = self.view(&subject, &scene)?;
+        if let Some((finding, moment)) = self.worst.zip(subject.moment) {
+            let lod_view = view.lod_view(&scene);
+            let found = engine.survey_clip(&mut scene, &subject.settings, lod_view, moment.clip, &Progress::new())?;
+            if let Some(worst) = worst_moment(&found.map_err(ShotError::from)?, finding) {
+                let count = worst.counts[finding as usize];
+                note(&format!("the most {} are at {} s: {count}", finding.label(), worst.time as f32));
+                subject.moment = Some(Moment { time: worst.time, ..moment });
+                subject.apply_to_scene(&engine, &mut scene)?;
+                view = self.view(&subject, &scene)?;
+            }
+        }
+        let lod_view = view.lod_view(&scene);
+        let within = self.surface.within_budget_on(&engine, &mut scene, lod_view)?;
+        subject.settings = subject.settings.with(within.tessellation);
+        Ok(Shot::new(engine, scene, subject, view)?)
+    }
+
+    /// From where the subject is seen at its moment.
+    fn view(&self, subject: &Subject, scene: &Scene) -> Result<ShotView, CliError> {
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
             camera: self.surface.view.camera(&self.surface, (mesh, subject.moment, &scene.bounds))?,
@@ -174,10 +198,7 @@ impl ShotOptions {
             legend: self.legend,
         };
         self.check_camera(&view.camera)?;
-        let lod_view = view.lod_view(&scene);
-        let within = self.surface.within_budget_on(&engine, &mut scene, lod_view)?;
-        subject.settings = subject.settings.with(within.tessellation);
-        Ok(Shot::new(engine, scene, subject, view)?)
+        Ok(view)
     }
 }
 

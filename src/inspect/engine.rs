@@ -1,6 +1,7 @@
 //! The engine that the window and the commands share: a device with its pipelines, and what can be done with a scene
 //! without a window: upload it, tessellate it, draw it, read it back and time it.
 
+mod clip_survey;
 mod loading;
 pub mod measurements;
 mod readbacks;
@@ -17,6 +18,7 @@ use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{Inputs, LodView};
 use gpu::{AdapterChoice, ComputePipelines, Gpu, GpuError, Recorder, Timing};
 
+pub use clip_survey::{ClipFinding, MomentFound, worst_moment};
 pub use loading::{Loaded, Preparation, load};
 pub use measurements::{MeasurementResults, Measurements};
 pub use readbacks::CopiedChunk;

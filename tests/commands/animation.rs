@@ -100,3 +100,28 @@ fn info_lists_clips() {
     let fly = json!({ "name": "Fly", "duration": 2.0, "joints": 0, "nodes": 1, "targets": 0 });
     assert_eq!(info["animations"][2], fly);
 }
+
+#[test]
+fn the_worst_moment_of_a_clip_is_the_one_with_the_most() {
+    let folder = Folder::new();
+    let file = file(&folder);
+    let triangles = |options: &[&str]| {
+        let picture = folder.path("worst.png");
+        let clip = ["--animation", "Bend", "--size", "200x160", "--lod", "edge-length", "--stats", "-"];
+        let run = run(&[&["render", &file, "-o", &picture], &clip[..], options].concat());
+        assert!(run.status.success(), "{run:?}");
+        let stats: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let said = String::from_utf8(run.stderr).expect("text");
+        (stats["triangles_out"].as_u64().expect("a count"), stats["animation"]["time"].as_f64().expect("a time"), said)
+    };
+    let (most, time, said) = triangles(&["--worst", "triangles"]);
+    assert!(said.contains(&format!("the most triangles are at {} s: {most}", time as f32)), "{said}");
+    for k in 0..=8 {
+        let at = format!("{}", f64::from(k) * 0.25);
+        assert!(triangles(&["--time", &at]).0 <= most + most / 50, "{at}");
+    }
+    assert_eq!(triangles(&["--time", &time.to_string()]).0, most);
+    for (options, said) in [(&["--worst", "folds"][..], "--animation"), (&["--animation", "All", "--worst", "x"], "folds")] {
+        assert!(failure(&[&["render", &file, "-o", "a.png"], options].concat(), 2).contains(said), "{options:?}");
+    }
+}

@@ -178,3 +178,24 @@ fn a_mesh_loaded_again_keeps_its_pose_and_another_is_at_rest() {
     assert_eq!(harness.state().moment(), None);
     click(&mut harness, "Wireframe");
 }
+
+#[test]
+fn the_worst_moments_of_a_clip_are_one_click_away() {
+    let (mut harness, _folder) = moving_window();
+    choose(&mut harness, "LOD", "Edge length");
+    choose(&mut harness, "Clip", CLIPS[2]);
+    harness.get_by_label("Find the worst moments").click();
+    let start = std::time::Instant::now();
+    while harness.query_by_label_contains("Most triangles: ").is_none() {
+        assert!(start.elapsed() < crate::PATIENCE, "the clip is measured");
+        settle(&mut harness);
+    }
+    let text = crate::findings::button(&harness, |text| text.starts_with("Most triangles: "));
+    let [count, at] = [2, 4].map(|word| text.split(' ').nth(word).expect("a number").to_owned());
+    click(&mut harness, &text);
+    assert_eq!(format!("{:.3}", time(&harness)), at);
+    assert_eq!(harness.state().totals().map(|totals| totals.1.to_string()), Some(count));
+    // Another tessellation has other moments.
+    choose(&mut harness, "Surface", "Flat");
+    harness.get_by_label("Find the worst moments");
+}

@@ -6,10 +6,11 @@ use crate::app::jobs::job_list::{Job, Work};
 use geometry::progress::Stage;
 
 /// The jobs that are shown, and what stopping them does, in sentences.
-const SHOWN: [(Work, &str); 5] = [
+const SHOWN: [(Work, &str); 6] = [
     (Work::Mesh, "Stops loading. The mesh that is open stays."),
     (Work::ReferenceShape, "Stops loading. The reference surface before it stays."),
     (Work::LeftMesh, "Stops loading. The left half stays as it is."),
+    (Work::Clip, "Stops measuring. The clip stays."),
     (Work::Light, "Stops reading. The light before it stays."),
     (Work::File, "Stops it. Nothing is written."),
 ];

@@ -15,6 +15,7 @@ use super::jobs::measure_job::MeasureJob;
 use super::jobs::mesh_checks::Checks;
 use super::jobs::silhouette_job::SilhouetteJob;
 use super::jobs::stand_in::StandIn;
+use super::panels::clip_moments::ClipMoments;
 use super::panels::destinations::ShownFinding;
 use super::viewport::highlight::Highlight;
 use super::viewport::place::Showing;
@@ -57,6 +58,8 @@ pub(crate) struct Document {
     pub leaks: LeakJob,
     pub silhouette: SilhouetteJob,
     pub explanation: Explanation,
+    /// What was found in the clip that was measured last.
+    pub clip_moments: Option<ClipMoments>,
     pub selection: Selection,
     pub shown_finding: Option<ShownFinding>,
     /// The place that is about to be shown.
@@ -110,6 +113,7 @@ impl Document {
             leaks: LeakJob::default(),
             silhouette: SilhouetteJob::default(),
             explanation: None,
+            clip_moments: None,
             selection: Selection::default(),
             shown_finding: None,
             showing: None,

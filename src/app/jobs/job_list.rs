@@ -40,6 +40,8 @@ pub(crate) enum Work {
     Explanation,
     /// Measuring settings for the chart.
     Chart,
+    /// Measuring moments of a clip.
+    Clip,
     /// The scene of the left half.
     LeftHalf,
     /// The mesh that previews draw in place of a large one.
@@ -49,8 +51,8 @@ pub(crate) enum Work {
 impl Work {
     /// Whether the picture, or what is said about it, waits for it.
     fn is_waited_for(self) -> bool {
-        use Work::{Chart, Checks, Dialog, File, Folder, MeshFiles, StandIn, State};
-        !matches!(self, File | Dialog | State | Checks | Chart | StandIn | MeshFiles | Folder)
+        use Work::{Chart, Checks, Clip, Dialog, File, Folder, MeshFiles, StandIn, State};
+        !matches!(self, Clip | File | Dialog | State | Checks | Chart | StandIn | MeshFiles | Folder)
     }
 
     /// Whether it reads a file beside the mesh.
@@ -61,8 +63,8 @@ impl Work {
 
     /// Whether it ends with the document.
     fn is_of_document(self) -> bool {
-        use Work::{Chart, Checks, Explanation, Folder, LeftHalf, MeshFiles, StandIn};
-        matches!(self, Checks | Explanation | Chart | LeftHalf | StandIn | MeshFiles | Folder)
+        use Work::{Chart, Checks, Clip, Explanation, Folder, LeftHalf, MeshFiles, StandIn};
+        matches!(self, Checks | Clip | Explanation | Chart | LeftHalf | StandIn | MeshFiles | Folder)
     }
 }
 

@@ -4,6 +4,7 @@
 pub(super) mod chart;
 mod chart_diagram;
 mod chart_panel;
+pub(super) mod clip_moments;
 mod crack_list;
 mod crease_band;
 pub(super) mod destinations;

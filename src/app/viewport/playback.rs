@@ -36,6 +36,11 @@ impl Playback {
         self.clip.map(|clip| Moment { clip, time: self.time })
     }
 
+    /// Shows another time of the clip, and pauses.
+    pub(crate) fn show(&mut self, time: f64) {
+        (self.time, self.playing) = (time, None);
+    }
+
     pub(crate) fn is_playing(&self) -> bool {
         self.playing.is_some()
     }
@@ -165,6 +170,7 @@ impl App {
             self.play_button(ui);
             ui.end_row();
         });
+        self.clip_moments(ui);
         // Playing at rest chooses the first clip by itself.
         if chosen != before {
             self.choose_clip(chosen);

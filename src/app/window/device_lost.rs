@@ -135,7 +135,7 @@ impl App {
     /// Lets jobs go on in this window. Those that need the lost device start over.
     fn go_on_in(&mut self, context: &egui::Context) {
         self.jobs.move_to_another_window();
-        [Work::LeftHalf, Work::StandIn].into_iter().for_each(|work| self.jobs.stop(work));
+        [Work::Clip, Work::LeftHalf, Work::StandIn].into_iter().for_each(|work| self.jobs.stop(work));
         self.load_anew(context);
         // What the lost device had of it is gone too.
         if let Some(path) = self.environment_file().map(Path::to_owned) {

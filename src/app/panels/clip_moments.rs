@@ -1,0 +1,108 @@
+//! What is found all through the clip: a strip of moments, and buttons that show the worst ones.
+
+use egui::{Rect, Sense, pos2, vec2};
+
+use crate::app::App;
+use crate::app::jobs::job_list::Work;
+use crate::app::jobs::scenes::arena_bytes;
+use crate::app::widgets::rgb;
+use geometry::progress::Progress;
+use geometry::tessellate::Inputs;
+use inspect::engine::{ClipFinding, MomentFound, worst_moment};
+use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR};
+use inspect::settings::Choice;
+
+/// The height of the strip, in points.
+const HEIGHT: f32 = 28.0;
+
+/// What was found in a clip, tessellated so.
+pub(crate) struct ClipMoments {
+    of: (usize, Inputs),
+    found: Vec<MomentFound>,
+}
+
+impl App {
+    /// The strip of moments and the worst of them; before they are measured, the button that starts it.
+    pub(in crate::app) fn clip_moments(&mut self, ui: &mut egui::Ui) {
+        let Some(clip) = self.moment().map(|moment| moment.clip) else { return };
+        let of = self.viewport.picture.drawn.as_ref().map(|drawn| (clip, drawn.inputs));
+        let known = self.document.as_ref().and_then(|document| document.clip_moments.as_ref());
+        let Some(found) = known.filter(|known| Some(known.of) == of).map(|known| known.found.clone()) else {
+            let hover = "Measures moments all through the clip, as it is seen and tessellated now, and then shows those with the most folds, \
+                         cracked edges and triangles.";
+            let button =
+                ui.add_enabled(of.is_some() && !self.jobs.has(Work::Clip), egui::Button::new("Find the worst moments"));
+            if let Some((clip, inputs)) = of.filter(|_| button.on_hover_text(hover).clicked()) {
+                self.survey_clip(ui.ctx(), clip, inputs);
+            }
+            return;
+        };
+        let chosen = self.strip(ui, &found);
+        let worst = |finding| worst_moment(&found, finding).map(|worst| (finding, worst));
+        let mut time = chosen;
+        for (finding, MomentFound { time: at, counts }) in ClipFinding::ALL.into_iter().filter_map(worst) {
+            let count = counts[finding as usize];
+            let text = format!("Most {}: {count} at {at:.3} s", finding.label());
+            let button = ui.add_enabled(count > 0, egui::Button::new(text).truncate());
+            if button.on_hover_text(finding.text()).on_disabled_hover_text("There are none in this clip.").clicked() {
+                time = Some(at);
+            }
+        }
+        if let Some(time) = time {
+            self.viewport.playback.show(time);
+        }
+    }
+
+    /// Folds and cracked edges over time, each against the most of them. Returns the time of the moment that is clicked on.
+    fn strip(&self, ui: &mut egui::Ui, found: &[MomentFound]) -> Option<f64> {
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+        let end = found.last().map_or(0.0, |last| last.time).max(f64::MIN_POSITIVE);
+        let painter = ui.painter_at(rect);
+        painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
+        let width = rect.width() / found.len().max(1) as f32;
+        for (finding, color) in [(ClipFinding::Cracks, CRACK_COLOR), (ClipFinding::Folds, FOLD_COLOR)] {
+            let most = worst_moment(found, finding).map_or(0, |worst| worst.counts[finding as usize]).max(1);
+            for (index, moment) in found.iter().enumerate() {
+                let height = HEIGHT * (moment.counts[finding as usize] as f32 / most as f32);
+                let left = rect.left() + width * index as f32;
+                let bar = Rect::from_min_max(pos2(left, rect.bottom() - height), pos2(left + width, rect.bottom()));
+                painter.rect_filled(bar, 0.0, rgb(color).gamma_multiply(0.8));
+            }
+        }
+        if let Some(now) = self.moment() {
+            let x = rect.left() + rect.width() * (now.time / end) as f32;
+            painter.vline(x, rect.y_range(), ui.visuals().widgets.active.fg_stroke);
+        }
+        let hover = "Folds and cracked edges over the clip, each against the most of them. A click shows that moment.";
+        let pointer = response
+            .on_hover_text(hover)
+            .interact_pointer_pos()
+            .filter(|_| ui.input(|input| input.pointer.any_click()));
+        pointer.map(|pointer| end * f64::from(((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0)))
+    }
+
+    /// Starts to measure a clip on a thread of its own.
+    fn survey_clip(&mut self, context: &egui::Context, clip: usize, inputs: Inputs) {
+        let Some(document) = &self.document else { return };
+        let (engine, sibling) = (self.engine.clone(), document.scene.sibling(arena_bytes(&self.engine)));
+        let settings = self.settings.with(inputs.tessellation);
+        let survey = move |progress: &Progress| {
+            let made = engine.gpu.attempt(|| {
+                let mut scene = sibling()?;
+                scene.frame_clip(Some(clip));
+                engine.survey_clip(&mut scene, &settings, inputs.view, clip, progress)
+            });
+            made.and_then(|made| made)
+        };
+        self.jobs.start(context, Work::Clip, "Measuring the clip".to_owned(), survey, move |app, _, ended| {
+            match (ended, &mut app.document) {
+                (Ok(Ok(Ok(found))), Some(document)) => {
+                    document.clip_moments = Some(ClipMoments { of: (clip, inputs), found })
+                }
+                (Ok(Err(error)), _) => app.dialogs.error = Some(error.to_string()),
+                (Err(stopped), _) => app.dialogs.error = Some(format!("measuring the clip {stopped}")),
+                _ => {}
+            }
+        });
+    }
+}
