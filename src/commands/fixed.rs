@@ -76,17 +76,15 @@ fn file() -> Vec<Command> {
             "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.",
         )
         .menu(File, 2),
-        beside(CompanionFile::LeftMesh, "Mesh left of the split…", LEFT_MESH).menu(File, 2).needs(document),
+        beside(CompanionFile::LeftMesh, "Mesh left of the split…", LEFT_MESH).needs(document),
         close(
             CompanionFile::LeftMesh,
             &[Need::LeftMesh],
             "The same mesh left of the split",
             "Shows the mesh that is open in both halves.",
-        )
-        .menu(File, 2),
+        ),
         Command::new(FileAction::CompareWithBefore, "Compare with before the change")
             .text("Shows the mesh as it was before its file changed left of the split, tessellated as the new one is.")
-            .menu(File, 2)
             .needs(&[Need::Before]),
         beside(CompanionFile::Factors, "Factors of a file…", FACTORS).menu(File, 2).needs(document),
         close(

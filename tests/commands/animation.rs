@@ -121,7 +121,9 @@ fn the_worst_moment_of_a_clip_is_the_one_with_the_most() {
         assert!(triangles(&["--time", &at]).0 <= most + most / 50, "{at}");
     }
     assert_eq!(triangles(&["--time", &time.to_string()]).0, most);
-    for (options, said) in [(&["--worst", "folds"][..], "--animation"), (&["--animation", "All", "--worst", "x"], "folds")] {
+    for (options, said) in
+        [(&["--worst", "folds"][..], "--animation"), (&["--animation", "All", "--worst", "x"], "folds")]
+    {
         assert!(failure(&[&["render", &file, "-o", "a.png"], options].concat(), 2).contains(said), "{options:?}");
     }
 }

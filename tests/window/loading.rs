@@ -56,7 +56,10 @@ fn before_the_first_picture_the_view_has_its_background_and_everything_its_place
     harness.step();
     assert_eq!(harness.state().source(), None, "it is still being loaded");
     let below = harness.get_by_label("Waste").rect();
-    assert!(harness.query_by_label("Left: untessellated").is_none(), "there is nothing yet that is untessellated");
+    assert!(
+        harness.query_by_label_contains("triangles, 0 cracked").is_none(),
+        "there is nothing yet that is untessellated"
+    );
     assert!(harness.query_by_label_contains("Drag to turn").is_none(), "the progress is there");
     let picture = harness.render().expect("a picture of the window");
     let corner = harness.get_by_label("Viewport").rect().left_top();
@@ -71,7 +74,7 @@ fn before_the_first_picture_the_view_has_its_background_and_everything_its_place
     }
     settle(&mut harness);
     assert_eq!(harness.get_by_label("Waste").rect(), below);
-    harness.get_by_label("Left: untessellated");
+    harness.get_by_label("Left: untessellated\n308 triangles, 0 cracked edges");
     harness.get_by_label_contains("Drag to turn");
 }
 
@@ -222,7 +225,7 @@ fn a_mesh_that_changed_is_compared_with_what_it_was_and_with_another_file() {
     harness.event(egui::Event::Text("shape:cube-smooth".into()));
     settle(&mut harness);
     press(&mut harness, egui::Key::Enter);
-    harness.get_by_label_contains("Left: shape:cube-smooth, PN-AEN");
+    harness.get_by_label_contains("Left: Cube, smooth normals, PN-AEN");
     let command = copied(&mut harness);
     assert!(command.contains("--split-with shape:cube-smooth"), "{command}");
     assert_draws(&harness, &command, "quad-view");

@@ -68,22 +68,20 @@ mod tests {
             let point = || Vec3::from([(); 3].map(|()| 2.0 * random.f32() - 1.0));
             let points: Vec<_> = std::iter::repeat_with(point).take(40).collect();
             for &point in &points {
-                let [cut, whole] = [cut, whole].map(|matrix| matrix * point.extend(1.0));
-                assert_eq!([cut.x, cut.y, cut.w], [whole.x, whole.y, whole.w]);
+                let [at, before] = [cut, whole].map(|matrix| matrix * point.extend(1.0));
+                assert_eq!([at.x, at.y, at.w], [before.x, before.y, before.w]);
                 let distance = normal.dot(point - place);
-                let is_in_view = whole.w > camera.distance * 0.01 && whole.truncate().abs().max_element() < whole.w;
+                let is_in_view = before.w > camera.distance * 0.01 && before.truncate().abs().max_element() < before.w;
                 if is_in_view && distance.abs() > 0.01 {
-                    let stays = cut.z >= 0.0 && cut.z <= cut.w;
-                    assert_eq!(stays, distance > 0.0, "{camera:?}, {settings:?}, {point}: {cut} of {whole}");
+                    let stays = at.z >= 0.0 && at.z <= at.w;
+                    assert_eq!(stays, distance > 0.0, "{camera:?}, {section:?}, {point}: {at} of {before}");
                     seen[usize::from(stays)] += 1;
                 }
                 // Toward the eye, depths are larger, as they are without a section.
                 let toward = if camera.orthographic { camera.axes()[2] } else { (camera.eye() - point).normalize() };
                 let nearer = cut * (point + 0.1 * toward).extend(1.0);
-                assert!(
-                    !is_in_view || nearer.w <= 0.0 || nearer.z / nearer.w > cut.z / cut.w,
-                    "{camera:?}, {settings:?}"
-                );
+                let is_seen = is_in_view && nearer.w > 0.0;
+                assert!(!is_seen || nearer.z / nearer.w > at.z / at.w, "{camera:?}, {section:?}, {at}, {nearer}");
             }
         }
         assert!(seen.iter().all(|&points| points > 10_000), "{seen:?}");

@@ -219,6 +219,7 @@ fn unused_options_have_no_effect() {
         "curvature-scale",
         "matcap",
         "split-left",
+        "section-at",
     ];
     let with = |own: &[&'static str]| -> Vec<_> { own.iter().copied().chain(elsewhere).collect() };
     for value in Lod::ALL {
@@ -254,7 +255,7 @@ fn unused_options_have_no_effect() {
         idle(&phong_left),
         with_light(
             &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
-            &["curvature-scale", "matcap", "split-left"]
+            &["curvature-scale", "matcap", "split-left", "section-at"]
         )
     );
     phong_left.split = Some(0.5);
@@ -262,7 +263,7 @@ fn unused_options_have_no_effect() {
         idle(&phong_left),
         with_light(
             &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
-            &["curvature-scale", "matcap"]
+            &["curvature-scale", "matcap", "section-at"]
         )
     );
     phong_left.overlays.colors = Colors::Material;
