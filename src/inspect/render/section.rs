@@ -23,9 +23,11 @@ pub fn clip_from_object(camera: &Camera, viewport: Vec2, bounds: &Bounds, settin
         normal = (normal + 2.0 * LEAST * back).normalize();
     }
     let mut offset = -normal.dot(place);
-    let toward_eye = if camera.orthographic { normal.dot(back) } else { normal.dot(camera.eye()) + offset };
-    if !camera.orthographic && toward_eye.abs() < LEAST * bounds.radius() {
-        offset += LEAST * bounds.radius() - toward_eye;
+    let mut toward_eye = if camera.orthographic { normal.dot(back) } else { normal.dot(camera.eye()) + offset };
+    let least = LEAST * bounds.radius();
+    if !camera.orthographic && toward_eye.abs() < least {
+        offset += least - toward_eye;
+        toward_eye = least;
     }
     with_plane(clip, normal.extend(offset), toward_eye >= 0.0, camera.frustum(viewport, bounds))
 }
