@@ -394,10 +394,15 @@ fn normals_are_made_anew_with_a_click_where_all_edges_are_split() {
     settle(&mut harness);
     assert_eq!(split(&harness), Some(0));
     assert!(harness.query_by_label_contains("edges are split").is_none());
-    press(&mut harness, Key::W);
-    choose(&mut harness, "LOD", "Uniform");
+}
+
+#[test]
+fn wires_that_are_too_dense_are_said_to_be() {
+    let mut harness = crate::uniform(Some(Source::Shape(Shape::Icosphere)));
     harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(64.0);
     settle(&mut harness);
+    assert!(harness.query_by_label_contains("Wires too dense: ").is_none());
+    press(&mut harness, Key::W);
     harness.get_by_label_contains("Wires too dense: ");
 }
 
@@ -407,7 +412,7 @@ fn colours_have_a_number_under_the_pointer_while_it_rests() {
     let place = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center();
     harness.hover_at(place);
     settle(&mut harness);
-    assert!(harness.query_by_label_contains("Factors ").is_none(), "the material has no numbers");
+    assert!(harness.query_by_label_contains("Factors 8.00").is_none(), "the material has no numbers");
     choose(&mut harness, "Colours", "Factors");
     harness.hover_at(place);
     settle(&mut harness);

@@ -141,7 +141,7 @@ const TASKS: [Task; 20] = [
     },
     Task {
         what: "get the command that draws this picture",
-        steps: &[Click("Edit"), Click("Copy as command")],
+        steps: &[Menu("Edit"), Click("Copy as command")],
         done: |window, _| window.query_all_by_label("Copied").next().is_some(),
     },
     Task {
@@ -151,7 +151,7 @@ const TASKS: [Task; 20] = [
     },
     Task {
         what: "undo a change",
-        steps: &[Click("Wireframe"), Click("Edit"), Click("Undo")],
+        steps: &[Click("Wireframe"), Menu("Edit"), Click("Undo")],
         done: |window, _| !window.state().settings().overlays.wireframe,
     },
 ];

@@ -34,8 +34,10 @@ impl App {
         if wanted == shown || self.jobs.has(Work::LeftHalf) {
             return Ok(());
         }
+        // What measures the scene before must not go on with another one.
         document.halves[SplitSide::Left as usize].forget();
-        let Some(wanted) = wanted else { return document.scene.set_left(None) };
+        document.scene.set_left(None)?;
+        let Some(wanted) = wanted else { return Ok(()) };
         let (engine, sibling) = (self.engine.clone(), document.scene.sibling(arena_bytes(&self.engine)));
         let other = self.left_mesh.as_ref().map(|left| left.loaded.clone());
         let make = move |_: &_| match other {
