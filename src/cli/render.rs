@@ -21,7 +21,7 @@ use load::Source;
 pub struct Args {
     #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
-    /// Picture to write, a PNG file; or with a name in .html a report on it: a page with the picture, findings and numbers. With --cameras, a folder, or a name with {} where each view's name goes
+    /// Picture to write, a PNG file, or a report on it, an .html file. With --cameras, a folder, or a name with {} where each view's name goes
     #[arg(short, long, value_name = "OUT.png", value_parser = options::picture_or_page())]
     pub output: PathBuf,
     #[command(flatten)]

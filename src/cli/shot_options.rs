@@ -41,7 +41,7 @@ pub struct ShotOptions {
     pub environment: Option<PathBuf>,
     #[command(flatten)]
     pub reference_shape: ReferenceSurfaceOption,
-    /// Mesh left of the split in place of the same one, such as an earlier export or the high-poly original: a mesh file, or a shape
+    /// Another mesh for the left of the split, such as the high-poly original: a mesh file, or a shape
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub split_with: Option<Source>,
     /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
@@ -51,14 +51,13 @@ pub struct ShotOptions {
     /// PNG, JPEG or WebP image of a lit sphere for the matcap overlay, in place of that of --matcap
     #[arg(long, value_name = "IMAGE", conflicts_with = "matcap")]
     pub matcap_image: Option<PathBuf>,
-    /// Show the moment of --animation that has the most of these, of up to 60 moments all through it, in place of --time
+    /// Show the moment of --animation with the most of these, in place of --time
     #[arg(long, value_name = "FINDING", requires = "animation", conflicts_with = "time", value_parser = options::choice::<ClipFinding>())]
     pub worst: Option<ClipFinding>,
     /// Transparent background
     #[arg(long, conflicts_with = "background")]
     pub transparent: bool,
-    /// Draw the legend of the surface's colours into the lower right corner, if the colours stand for something, and in a split picture
-    /// the divider and what both halves show
+    /// Draw the legend of the surface's colours into the lower right corner, and in a split picture the divider and what its halves show
     #[arg(long)]
     pub legend: bool,
 }

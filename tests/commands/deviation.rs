@@ -207,5 +207,6 @@ fn another_mesh_left_of_a_split_is_drawn_and_counted_as_it_is_alone() {
     let refused = failure(&["render", &new, "-o", "a.png", "--split-with", &old], 2);
     assert!(refused.contains("--split-with needs --split"), "{refused}");
     let missing = folder.path("missing.obj");
-    sentence(&["render", &new, "-o", "a.png", "--split", "0.5", "--split-with", &missing], &["missing.obj"]);
+    let said = failure(&["render", &new, "-o", "a.png", "--split", "0.5", "--split-with", &missing], 1);
+    assert!(said.contains("missing.obj can't be read"), "{said}");
 }

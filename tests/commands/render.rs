@@ -247,12 +247,15 @@ fn a_section_cuts_the_picture_open_and_no_measurement() {
         parts[..2].iter().all(|part| part.abs_diff(all / 2) < all / 20) && parts[2] > all * 9 / 10,
         "{all}, {parts:?}"
     );
-    for (x, y, pixel) in whole.enumerate_pixels().filter(|(x, ..)| x.abs_diff(60) > 2) {
-        let kept = if x > 60 { &beyond } else { &before };
-        let cut = if x > 60 { &before } else { &beyond };
-        assert_eq!((kept.get_pixel(x, y), cut.get_pixel(x, y)), (pixel, &background), "{x}, {y}");
+    let (mut differing, beside) = (0, whole.enumerate_pixels().filter(|(x, ..)| x.abs_diff(60) > 2));
+    for (x, y, pixel) in beside {
+        let [kept, cut] = if x > 60 { [&beyond, &before] } else { [&before, &beyond] };
+        assert_eq!(cut.get_pixel(x, y), &background, "{x}, {y}");
+        differing += usize::from(kept.get_pixel(x, y) != pixel);
     }
-    assert!(across != whole && draw(&["--section=-z", "--section-at", "1"]) == whole);
+    // But for the outline, where backs that the cut shows shine through.
+    assert!(differing < all / 30, "{differing} of {all}");
+    assert!(across != whole && covered(&draw(&["--section=-z", "--section-at", "1"])) == all);
     let [cut, whole] = [&["--section=x"][..], &[]].map(|options| {
         let stats = stats(&[&["shape:cube-split", "--surface", "pn", "--factor", "4"], options].concat());
         (stats["cracks"].clone(), stats["folds"].clone(), stats["triangles_in_view"].clone())

@@ -5,6 +5,7 @@ use egui::{Rect, Sense, pos2, vec2};
 use crate::app::App;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::scenes::arena_bytes;
+use crate::app::text::grouped;
 use crate::app::widgets::rgb;
 use geometry::progress::Progress;
 use geometry::tessellate::Inputs;
@@ -42,7 +43,10 @@ impl App {
         let mut time = chosen;
         for (finding, MomentFound { time: at, counts }) in ClipFinding::ALL.into_iter().filter_map(worst) {
             let count = counts[finding as usize];
-            let text = format!("Most {}: {count} at {at:.3} s", finding.label());
+            let text = match count {
+                0 => format!("No {}", finding.label()),
+                count => format!("Most {}: {} at {at:.3} s", finding.label(), grouped(count)),
+            };
             let button = ui.add_enabled(count > 0, egui::Button::new(text).truncate());
             if button.on_hover_text(finding.text()).on_disabled_hover_text("There are none in this clip.").clicked() {
                 time = Some(at);

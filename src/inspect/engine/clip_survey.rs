@@ -38,7 +38,7 @@ pub fn worst_moment(found: &[MomentFound], finding: ClipFinding) -> Option<Momen
 }
 
 impl Engine {
-    /// Measures moments at equal distances from the start to the end of a clip. The scene is left in the last one's pose.
+    /// Measures moments at nearly equal distances from the start to the end of a clip. The scene is left in the last one's pose.
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind, or the device was lost; none if `progress` was cancelled.
@@ -58,7 +58,8 @@ impl Engine {
             if let Err(cancelled) = progress.check() {
                 return Ok(Err(cancelled));
             }
-            let time = duration * f64::from(frame) / f64::from(last);
+            // In whole ms, which are what people read and type.
+            let time = (1e3 * duration * f64::from(frame) / f64::from(last)).floor() / 1e3;
             scene.set_moment(Some(Moment { clip, time }))?;
             self.count(scene, &settings.inputs(view), &mut Timing::Off)?;
             let measured = self.measure(scene)?;

@@ -419,7 +419,7 @@ options! {
         label: "Section",
         placeholder: "AXIS",
         text: "Cuts the picture open with a plane across this axis, and draws what is beyond it; with a minus, what is before it. \
-               The backs of faces are then in one colour. What is measured stays the same.",
+               Measurements stay the same.",
         unset: Description::new("none", "None", "All of the mesh is drawn."),
     }
 
