@@ -73,8 +73,9 @@ fn line(index: u32, own: Line, has_caps: bool) -> LineVaryings {
     let cap = along * select(-beyond, beyond, at_end);
     let clip = select(from_clip, to_clip, at_end);
     let offset = (across * side * reach + cap) / half_viewport;
-    // A little nearer than the surface that the line lies on; depth is reversed.
-    let z = min(clip.z * NEARER, clip.w);
+    // A little nearer than the surface that the line lies on; depth is reversed. What is nearer than the near plane, or cut away by a
+    // section, stays out.
+    let z = select(min(clip.z * NEARER, clip.w), clip.z, clip.z > clip.w);
     return LineVaryings(vec4<f32>(clip.xy + offset * clip.w, z, clip.w), side * reach, own.color, half_width, own.times);
 }
 

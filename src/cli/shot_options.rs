@@ -169,6 +169,9 @@ impl ShotOptions {
             scene.set_environment(Some(Arc::new(Environment::from_panorama(&engine.gpu, panorama)?)));
         }
         let mut view = self.view(&subject, &scene)?;
+        let lod_view = view.lod_view(&scene);
+        let within = self.surface.within_budget_on(&engine, &mut scene, lod_view)?;
+        subject.settings = subject.settings.with(within.tessellation);
         if let Some((finding, moment)) = self.worst.zip(subject.moment) {
             let lod_view = view.lod_view(&scene);
             let found = engine.survey_clip(&mut scene, &subject.settings, lod_view, moment.clip, &Progress::new())?;
@@ -180,9 +183,6 @@ impl ShotOptions {
                 view = self.view(&subject, &scene)?;
             }
         }
-        let lod_view = view.lod_view(&scene);
-        let within = self.surface.within_budget_on(&engine, &mut scene, lod_view)?;
-        subject.settings = subject.settings.with(within.tessellation);
         Ok(Shot::new(engine, scene, subject, view)?)
     }
 

@@ -37,7 +37,7 @@ pub const ENVIRONMENT: &str =
 pub(crate) const LEFT_MESH: &str = "The mesh left of the split: the same one, or that of another file, such as an earlier export or the high-poly original.";
 const REFERENCE_SURFACE: &str =
     "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
-const PICTURE: &str = "Writes the picture as a PNG file, in any size, with or without background, overlays and legend.";
+const PICTURE: &str = "Writes the picture as a PNG file, or a report on it as a page, in any size, with or without background, overlays and legend.";
 const MESH: &str = "Writes the tessellated mesh as a .glb or .obj file, as it is emitted for this view.";
 
 fn file() -> Vec<Command> {
@@ -361,7 +361,7 @@ fn camera() -> Vec<Command> {
 fn look() -> Vec<Command> {
     vec![
         Command::new(Action::SplitView, "Split view")
-            .text("Shows the untessellated mesh or another surface left of a divider, from the same camera.")
+            .text("Shows the untessellated mesh, another tessellation or another mesh left of a divider, from the same camera.")
             .keys([plain(Key::S)]),
         Command::new(Action::Background, "Background colour…").text("Chooses the colour behind the mesh."),
         Command::new(Action::PlayOrPause, "Play or pause")

@@ -35,20 +35,15 @@ fn page() -> String {
     )
 }
 
-/// All names in their order. Those that begin alike up to a colon share that beginning.
+/// All names in their order; the values of an option, which begin alike up to a colon, as one.
 fn joined(names: &[String]) -> String {
-    let mut text = String::new();
-    let mut before = None;
-    for name in names {
-        let beginning = name.split_once(": ").map(|(beginning, _)| beginning);
-        match (beginning, before) {
-            (Some(own), Some(before)) if own == before => text += &format!(", {}", &name[own.len() + 2..]),
-            (_, None) if text.is_empty() => text += name,
-            _ => text += &format!("; {name}"),
-        }
-        before = beginning;
-    }
-    text
+    let beginning = |name: &String| name.split_once(": ").map(|(beginning, _)| beginning.to_owned());
+    let groups = names.chunk_by(|a, b| beginning(a).is_some() && beginning(a) == beginning(b));
+    let said = |group: &[String]| match group {
+        [one] => one.clone(),
+        several => format!("{}: each value", several.first().and_then(beginning).unwrap_or_default()),
+    };
+    groups.map(said).collect::<Vec<_>>().join("; ")
 }
 
 /// The menu that a command is in; empty if it is in none.

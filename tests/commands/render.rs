@@ -256,6 +256,8 @@ fn a_section_cuts_the_picture_open_and_no_measurement() {
     // But for the outline, where backs that the cut shows shine through.
     assert!(differing < all / 30, "{differing} of {all}");
     assert!(across != whole && covered(&draw(&["--section=-z", "--section-at", "1"])) == all);
+    // Nothing of what the cut shows is left out because it faces away.
+    assert!(draw(&["--section=-z", "--cull-back-faces"]) == across);
     let [cut, whole] = [&["--section=x"][..], &[]].map(|options| {
         let stats = stats(&[&["shape:cube-split", "--surface", "pn", "--factor", "4"], options].concat());
         (stats["cracks"].clone(), stats["folds"].clone(), stats["triangles_in_view"].clone())

@@ -229,6 +229,12 @@ fn a_mesh_that_changed_is_compared_with_what_it_was_and_with_another_file() {
     let command = copied(&mut harness);
     assert!(command.contains("--split-with shape:cube-smooth"), "{command}");
     assert_draws(&harness, &command, "quad-view");
+    // Patches there are those of the other mesh, which has more of them.
+    choose(&mut harness, "Colours", "Deviation");
+    harness.get_by_label_contains("Left Worst point in patch").click();
+    settle(&mut harness);
+    assert!(harness.state().camera().target.is_finite());
+    choose(&mut harness, "Colours", "Material");
     choose(&mut harness, "Left mesh", "The same");
     harness.get_by_label("Left: PN-AEN\n242 triangles, 0 cracked edges");
     says_nothing(&harness);

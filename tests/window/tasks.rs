@@ -6,10 +6,10 @@ use std::path::Path;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, Queryable};
-use geometry::tessellate::{Lod, Partitioning, Surface};
+use geometry::tessellate::{Lod, Partitioning, Surface, Tessellation};
 use inspect::settings::Colors;
-use load::Source;
 use load::markdown::table;
+use load::{NormalSource, Source};
 use pnaen::app::App;
 
 use super::layout::first_start;
@@ -49,7 +49,7 @@ fn is_written(folder: &Path, name: &str) -> bool {
     std::fs::metadata(folder.join(name)).is_ok_and(|file| file.len() > 0)
 }
 
-const TASKS: [Task; 20] = [
+const TASKS: [Task; 27] = [
     Task {
         what: "open a mesh",
         steps: &[Click("File"), Click("Open…"), Type("other.glb")],
@@ -84,6 +84,36 @@ const TASKS: [Task; 20] = [
         what: "compare two surfaces side by side",
         steps: &[List("Left", "PN")],
         done: |window, _| window.state().settings().has_left_tessellation(),
+    },
+    Task {
+        what: "compare with another file",
+        steps: &[List("Left mesh", "Another file…"), Type("other.glb")],
+        done: |window, _| window.query_by_label_contains("Left: other.glb").is_some(),
+    },
+    Task {
+        what: "exchange both halves",
+        steps: &[Click("Swap")],
+        done: |window, _| window.state().settings().tessellation == Tessellation::untessellated(),
+    },
+    Task {
+        what: "see triangles that fold over",
+        steps: &[Click("Overlays"), Click("Folds")],
+        done: |window, _| window.state().settings().overlays.folds,
+    },
+    Task {
+        what: "make the normals anew",
+        steps: &[List("Normals", "Made anew")],
+        done: |window, _| window.state().settings().import.normals == NormalSource::Made,
+    },
+    Task {
+        what: "look from above",
+        steps: &[Click("Look from the top")],
+        done: |window, _| window.state().camera().elevation > 89.0,
+    },
+    Task {
+        what: "measure a distance",
+        steps: &[Menu("View"), Click("Measure distance")],
+        done: |window, _| window.state().ruler().is_some(),
     },
     Task {
         what: "read the factors of an edge",
@@ -128,6 +158,11 @@ const TASKS: [Task; 20] = [
         what: "save the picture",
         steps: &[Click("Save picture"), Click("Save…"), Type("picture.png")],
         done: |_, folder| is_written(folder, "picture.png"),
+    },
+    Task {
+        what: "write a report",
+        steps: &[Click("Save picture"), Click("Save…"), Type("report.html")],
+        done: |_, folder| is_written(folder, "report.html"),
     },
     Task {
         what: "export the tessellated mesh",
@@ -247,7 +282,7 @@ fn page() -> String {
     });
     format!(
         "# Where to click\n\n\
-         This page shows the clicks for twenty common tasks. They are counted from the first start, when the vase is open in a \
+         This page shows the clicks for common tasks. They are counted from the first start, when the vase is open in a \
          split view. You can also find every command by its name with Ctrl+P, and most commands have a [key](keys.md). To open a \
          file, you can also drop it on the window.\n\n{}",
         table(&["to", "click", "clicks"], &[0, 1], &rows)

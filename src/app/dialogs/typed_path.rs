@@ -235,7 +235,12 @@ impl App {
     fn take_source(&mut self, context: &egui::Context, purpose: Purpose, source: Source) -> Result<(), String> {
         match (purpose, source) {
             (Purpose::Write(written), Source::File(path)) => return self.write_as(context, written, path),
-            (Purpose::CompanionFile(beside), source) => self.open_companion(context, beside, source),
+            (Purpose::CompanionFile(beside), source) => {
+                if beside == CompanionFile::LeftMesh {
+                    self.settings.split.get_or_insert(self.viewport.last_split);
+                }
+                self.open_companion(context, beside, source);
+            }
             (_, Source::File(path)) => self.open_path(context, path),
             (_, source) => self.open(context, source),
         }

@@ -218,6 +218,7 @@ impl App {
         } else if is_turned {
             self.follow_reference_shape(context);
             self.follow_left_mesh(context);
+            self.forget_before();
         }
         let is_first = before.is_none();
         if !is_first {

@@ -164,12 +164,20 @@ impl Document {
         self.posed().unwrap_or_else(|| (self.loaded.mesh.clone(), self.loaded.topology.clone()))
     }
 
+    /// The corners of a patch of the mesh in a half, in the pose that is shown.
+    pub(crate) fn patch_positions(&self, half: SplitSide, patch: u32) -> [glam::Vec3; 3] {
+        match self.scene.half(half).filter(|_| !self.scene.shares_mesh(half)) {
+            Some(other) => other.tessellator.posed().deformed().1.patch_positions(patch),
+            None => self.shown().1.patch_positions(patch),
+        }
+    }
+
     /// The mesh and its topology in the pose that is shown; none as long as that pose isn't known on the CPU.
     pub(crate) fn posed(&self) -> Option<Deformed> {
         self.scene.tessellator.posed().deformed_if_quick()
     }
 
-    /// Bytes on the device: topology and output, of both halves if the split has two surfaces.
+    /// Bytes on the device: topology and output, of both halves of a split view.
     pub(crate) fn bytes(&self) -> u64 {
         let of = |scene: &Scene| {
             let tessellator = &scene.tessellator;

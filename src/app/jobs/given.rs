@@ -27,8 +27,8 @@ impl App {
         let factors = self.given.as_ref().map_or(0, |given| given.generation);
         let surface = self.surface_shader.as_ref().and_then(OpenShader::shader);
         let light = self.environment.as_ref().filter(|_| self.settings.lighting == Lighting::Environment);
-        // They are for the triangles of this mesh.
-        let takes_left = self.settings.has_left_tessellation() && self.left_mesh.is_none();
+        // A file's factors are for the triangles of this mesh.
+        let takes_left = self.settings.has_left_tessellation() && (self.left_mesh.is_none() || lod.is_some());
         let factors = lod.map_or(factors, |(_, generation)| generation);
         FromFiles {
             factors,

@@ -45,16 +45,24 @@ impl App {
         source.into_iter().for_each(|source| self.open_left_mesh(context, source));
     }
 
+    /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.
+    pub(in crate::app) fn forget_before(&mut self) {
+        self.document.iter_mut().for_each(|document| document.before = None);
+        if self.left_mesh.as_ref().is_some_and(|left| left.source.is_none()) {
+            self.forget_left_mesh();
+        }
+    }
+
     /// Shows the mesh as it was before its file changed, tessellated as the new one is.
     pub(in crate::app) fn compare_with_before(&mut self) {
         let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
         self.settings.left = self.settings.tessellation;
         self.show_left_mesh(None, before);
+        self.settings.split.get_or_insert(self.viewport.last_split);
     }
 
     fn show_left_mesh(&mut self, source: Option<Source>, loaded: Loaded) {
         self.left_mesh = Some(LeftMesh { source, loaded, generation: new_generation() });
-        self.settings.split.get_or_insert(self.viewport.last_split);
     }
 
     /// Shows the mesh that is open in both halves.

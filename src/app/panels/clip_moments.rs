@@ -3,12 +3,13 @@
 use egui::{Rect, Sense, pos2, vec2};
 
 use crate::app::App;
+use crate::app::jobs::given::FromFiles;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::scenes::arena_bytes;
 use crate::app::text::grouped;
 use crate::app::widgets::rgb;
 use geometry::progress::Progress;
-use geometry::tessellate::Inputs;
+use geometry::tessellate::{Inputs, LodView, Tessellation};
 use inspect::engine::{ClipFinding, MomentFound, worst_moment};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR};
 use inspect::settings::Choice;
@@ -16,25 +17,32 @@ use inspect::settings::Choice;
 /// The height of the strip, in points.
 const HEIGHT: f32 = 28.0;
 
-/// What was found in a clip, tessellated so.
+/// What was found in a clip.
 pub(crate) struct ClipMoments {
-    of: (usize, Inputs),
+    of: Measured,
     found: Vec<MomentFound>,
 }
+
+/// What moments depend on: the clip, how it is tessellated, from where it is seen if that matters, and what files give.
+type Measured = (usize, Tessellation, Option<LodView>, FromFiles);
 
 impl App {
     /// The strip of moments and the worst of them; before they are measured, the button that starts it.
     pub(in crate::app) fn clip_moments(&mut self, ui: &mut egui::Ui) {
         let Some(clip) = self.moment().map(|moment| moment.clip) else { return };
-        let of = self.viewport.picture.drawn.as_ref().map(|drawn| (clip, drawn.inputs));
+        let drawn = self.viewport.picture.drawn.as_ref().map(|drawn| (drawn.inputs, drawn.from_files));
+        let of = drawn.map(|(Inputs { tessellation, view, .. }, from_files)| {
+            (clip, tessellation, tessellation.follows_view().then_some(view), from_files)
+        });
         let known = self.document.as_ref().and_then(|document| document.clip_moments.as_ref());
         let Some(found) = known.filter(|known| Some(known.of) == of).map(|known| known.found.clone()) else {
             let hover = "Measures moments all through the clip, as it is seen and tessellated now, and then shows those with the most folds, \
                          cracked edges and triangles.";
             let button =
                 ui.add_enabled(of.is_some() && !self.jobs.has(Work::Clip), egui::Button::new("Find the worst moments"));
-            if let Some((clip, inputs)) = of.filter(|_| button.on_hover_text(hover).clicked()) {
-                self.survey_clip(ui.ctx(), clip, inputs);
+            let is_clicked = button.on_hover_text(hover).clicked();
+            if let Some((of, (inputs, _))) = of.zip(drawn).filter(|_| is_clicked) {
+                self.survey_clip(ui.ctx(), of, inputs);
             }
             return;
         };
@@ -60,7 +68,6 @@ impl App {
     /// Folds and cracked edges over time, each against the most of them. Returns the time of the moment that is clicked on.
     fn strip(&self, ui: &mut egui::Ui, found: &[MomentFound]) -> Option<f64> {
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
-        let end = found.last().map_or(0.0, |last| last.time).max(f64::MIN_POSITIVE);
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
         let width = rect.width() / found.len().max(1) as f32;
@@ -74,19 +81,22 @@ impl App {
             }
         }
         if let Some(now) = self.moment() {
-            let x = rect.left() + rect.width() * (now.time / end) as f32;
-            painter.vline(x, rect.y_range(), ui.visuals().widgets.active.fg_stroke);
+            let before = found.partition_point(|moment| moment.time <= now.time).saturating_sub(1);
+            let middle = rect.left() + width * (before as f32 + 0.5);
+            painter.vline(middle, rect.y_range(), ui.visuals().widgets.active.fg_stroke);
         }
         let hover = "Folds and cracked edges over the clip, each against the most of them. A click shows that moment.";
         let pointer = response
             .on_hover_text(hover)
             .interact_pointer_pos()
             .filter(|_| ui.input(|input| input.pointer.any_click()));
-        pointer.map(|pointer| end * f64::from(((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0)))
+        let index = pointer.map(|pointer| ((pointer.x - rect.left()) / width).max(0.0) as usize);
+        index.and_then(|index| found.get(index)).map(|moment| moment.time)
     }
 
     /// Starts to measure a clip on a thread of its own.
-    fn survey_clip(&mut self, context: &egui::Context, clip: usize, inputs: Inputs) {
+    fn survey_clip(&mut self, context: &egui::Context, of: Measured, inputs: Inputs) {
+        let clip = of.0;
         let Some(document) = &self.document else { return };
         let (engine, sibling) = (self.engine.clone(), document.scene.sibling(arena_bytes(&self.engine)));
         let settings = self.settings.with(inputs.tessellation);
@@ -100,9 +110,7 @@ impl App {
         };
         self.jobs.start(context, Work::Clip, "Measuring the clip".to_owned(), survey, move |app, _, ended| {
             match (ended, &mut app.document) {
-                (Ok(Ok(Ok(found))), Some(document)) => {
-                    document.clip_moments = Some(ClipMoments { of: (clip, inputs), found })
-                }
+                (Ok(Ok(Ok(found))), Some(document)) => document.clip_moments = Some(ClipMoments { of, found }),
                 (Ok(Err(error)), _) => app.dialogs.error = Some(error.to_string()),
                 (Err(stopped), _) => app.dialogs.error = Some(format!("measuring the clip {stopped}")),
                 _ => {}

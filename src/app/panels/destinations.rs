@@ -8,7 +8,7 @@ use inspect::gates::{EdgeSpot, GateKind, Place, Spot};
 use inspect::measure::FoldedPatch;
 use inspect::render::Leak;
 use inspect::settings::{Overlay, SplitSide};
-use load::NormalSource;
+use load::{Import, NormalSource};
 
 /// Where a click on a finding leads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -167,7 +167,13 @@ impl App {
             Destination::Sizes => overlays.turn_on(Overlay::TriangleSize),
             Destination::Factors => overlays.turn_on(Overlay::Factors),
             Destination::CreaseAngle(angle) => self.settings.import.crease_angle = angle,
-            Destination::MadeNormals => self.settings.import.normals = NormalSource::Made,
+            Destination::MadeNormals => {
+                let import = &mut self.settings.import;
+                import.normals = NormalSource::Made;
+                if import.crease_angle == 0.0 {
+                    import.crease_angle = Import::default().crease_angle;
+                }
+            }
             Destination::Patches => open.set(Section::Patches, true),
             Destination::Warnings => self.dialogs.shows_warnings = true,
         }

@@ -242,7 +242,7 @@ impl App {
     fn frame_worst(&mut self, half: SplitSide) {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };
-        let corners = document.shown().1.patch_positions(worst.patch);
+        let corners = document.patch_positions(half, worst.patch);
         self.show_place(half, &Spot::patch(corners, worst.emitted.as_vec3()), None);
     }
 }

@@ -33,7 +33,7 @@ impl App {
         });
     }
 
-    /// Which half of a split view is edited, and a button that exchanges both halves, if both are tessellated. While a file stands for
+    /// Which half of a split view is edited, and a button that exchanges both halves, of a split view. While a file stands for
     /// settings of the right half, these come back there when it is closed, so that half alone is edited.
     fn halves_row(&mut self, ui: &mut egui::Ui) {
         let has_files = self.given.is_some() || self.lod_shader.is_some() || self.surface_shader.is_some();
@@ -298,7 +298,9 @@ impl App {
     }
 
     pub(in crate::app) fn toggle_split(&mut self) {
-        self.settings.split = if self.settings.split.is_some() { None } else { Some(self.viewport.last_split) };
+        // A half that blinks shows alone: then the divider comes back.
+        let shows_both = self.settings.split.is_some_and(|split| split > 0.0 && split < 1.0);
+        self.settings.split = if shows_both { None } else { Some(self.viewport.last_split) };
     }
 }
 

@@ -26,8 +26,7 @@ impl App {
             ui.spacing_mut().item_spacing.x = 4.0;
             let now = self.availability();
             let commands = all(&now);
-            let hover =
-                "Shows the untessellated mesh, or another surface, left of a divider and the tessellation right of it.";
+            let hover = "Shows the untessellated mesh, another tessellation or another mesh left of a divider.";
             if toggle(ui, self.settings.split.is_some(), ["Split", "Split view"], &with_key(hover, &Action::SplitView))
             {
                 self.toggle_split();

@@ -268,7 +268,10 @@ impl App {
     fn split_edges_line(&self, color: Color32) -> Option<Line> {
         let document = self.document.as_ref().filter(|document| {
             let is_of_file = document.loaded.preparation.import.normals == NormalSource::File;
-            is_of_file && document.edges.split > 0 && document.edges.smooth + document.edges.seam == 0
+            is_of_file
+                && !self.lacks_normals()
+                && document.edges.split > 0
+                && document.edges.smooth + document.edges.seam == 0
         })?;
         let hover = "Every edge between triangles has different normals on its two sides, so that each triangle is flat and nothing can \
                      curve. A click makes normals anew, smooth below the crease angle: the mesh is loaded again.";

@@ -213,7 +213,8 @@ impl App {
             self.open_surface_shader(context, path.into());
         }
         self.panels.open = lasting.kept.open;
-        self.viewport.last_split = self.settings.split.unwrap_or(self.viewport.last_split);
+        let divider = self.settings.split.filter(|split| *split > 0.0 && *split < 1.0);
+        self.viewport.last_split = divider.unwrap_or(self.viewport.last_split);
         context.set_theme(lasting.kept.frame.theme);
         context.set_zoom_factor(lasting.kept.frame.zoom);
         self.dialogs.error = lasting.said.take().or(self.dialogs.error.take());

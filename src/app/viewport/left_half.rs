@@ -1,4 +1,4 @@
-//! The left half of a split view with another tessellation. Its scene is made on a thread of its own, and only while it is shown.
+//! The left half of a split view. Its scene is made on a thread of its own, and only while it is shown.
 
 use std::time::Duration;
 
@@ -66,7 +66,7 @@ impl App {
 
     fn leave_as_it_came(&mut self, why: &str) {
         self.settings.split = None;
-        self.dialogs.error = Some(format!("the left half can't show another tessellation: {why}"));
+        self.dialogs.error = Some(format!("the left half can't be shown: {why}"));
     }
 
     /// Measures the left half while it is shown.

@@ -9,7 +9,7 @@ use super::pace::next_steps;
 use crate::app::Document;
 use crate::app::jobs::given::FromFiles;
 use crate::app::painting::{Painting, ShownPicture};
-use geometry::mesh::{Bounds, Moment};
+use geometry::mesh::Moment;
 use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
@@ -160,11 +160,13 @@ impl Picture {
     }
 
     /// A pixel of the last picture, counted from the left and the top, and the half that is there.
-    pub(crate) fn pixel(&self, bounds: &Bounds, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
+    pub(crate) fn pixel(&self, scene: &Scene, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
         let PictureRequest { camera, viewport, settings, .. } = self.drawn?;
-        let clip_from_object = section::clip_from_object(&camera, viewport, bounds, &settings);
         let size = self.target.as_ref()?.0.size;
-        Some((half_at(at, size, settings.split), Pixel { clip_from_object, size, at, has_input: false }))
+        let half = half_at(at, size, settings.split);
+        let bounds = scene.half(half).map_or(&scene.bounds, |own| &own.bounds);
+        let clip_from_object = section::clip_from_object(&camera, viewport, bounds, &settings);
+        Some((half, Pixel { clip_from_object, size, at, has_input: false }))
     }
 
     pub(crate) fn seen_from(&self) -> Option<ScreenView> {

@@ -12,7 +12,7 @@ use geometry::view::{ScreenView, seen_on_plane};
 use gpu::GpuError;
 use inspect::measure::size_px;
 use inspect::render::{Picked, Picking, Pixel};
-use inspect::settings::{Colors, SplitSide};
+use inspect::settings::{Colors, DeviationUnit, SplitSide};
 
 /// How long the pointer rests before the place under it is looked up.
 const REST: Duration = Duration::from_millis(120);
@@ -40,7 +40,9 @@ impl App {
     /// The device was lost.
     pub(super) fn show_pointer_value(&mut self, response: &Response) -> Result<(), GpuError> {
         let place = self.place_under(response);
-        let kept = self.viewport.pointer.take_if(|kept| Some(kept.key()) == place.as_ref().map(PointerValue::key));
+        // What is no longer looked for must not count as under way.
+        let kept = self.viewport.pointer.take();
+        let kept = kept.filter(|kept| Some(kept.key()) == place.as_ref().map(PointerValue::key));
         let Some(mut place) = kept.or(place) else { return Ok(()) };
         place.search = match std::mem::replace(&mut place.search, Search::Done(None)) {
             Search::Waiting => self.start_search(&place, response)?,
@@ -76,14 +78,17 @@ impl App {
         let document = self.document.as_ref().filter(|_| !self.viewport.picture.is_busy())?;
         let at = (pointer - response.rect.min) * response.ctx.pixels_per_point();
         let (half, pixel) =
-            self.viewport.picture.pixel(&document.scene.bounds, [at.x.max(0.0) as u32, at.y.max(0.0) as u32])?;
+            self.viewport.picture.pixel(&document.scene, [at.x.max(0.0) as u32, at.y.max(0.0) as u32])?;
         let picture = self.viewport.picture.pictures();
         Some(PointerValue { half, pixel, picture, since: Instant::now(), search: Search::Waiting })
     }
 
     fn start_search(&mut self, place: &PointerValue, response: &Response) -> Result<Search, GpuError> {
+        if place.since.elapsed() < REST {
+            return Ok(Search::Waiting);
+        }
         let scene = self.document.as_mut().and_then(|document| document.scene.half_mut(place.half));
-        let Some(scene) = scene.filter(|_| place.since.elapsed() >= REST) else { return Ok(Search::Waiting) };
+        let Some(scene) = scene else { return Ok(Search::Done(None)) };
         // Looking through many chunks would take as long as drawing them.
         if scene.tessellator.chunk_count() > self.viewport.picture.short {
             return Ok(Search::Done(None));
@@ -103,6 +108,9 @@ impl App {
                 Some(format!("{} px", short(size)))
             }
             Colors::Deviation => {
+                if self.settings.deviation_in == DeviationUnit::Px {
+                    return None;
+                }
                 let reference = self.yardstick().1?;
                 let point = seen_on_plane(&view, vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5), corners)?;
                 Some(format!("{} units", short(reference.closest(point.as_dvec3()).distance)))

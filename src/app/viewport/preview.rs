@@ -245,8 +245,10 @@ fn shape_of(
     if !follows && (triangles <= kept || wanted.from_files.factors != 0) {
         return Shape::Same;
     }
+    // It stands for the mesh alone, not for another one beside it.
     if patches > LARGE * most
         && document.moment.is_none()
+        && (wanted.settings.split.is_none() || document.left_of == 0)
         && document.stand_in.is_made(jobs, context, engine, &document.loaded, (LARGE * most) as usize)
     {
         return Shape::StandIn;

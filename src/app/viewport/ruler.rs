@@ -7,6 +7,7 @@ use crate::app::text::short;
 use geometry::view::{ScreenView, seen_on_plane};
 use inspect::render::layout::OUTLINE_COLOR;
 use inspect::render::{LineSegment, Picked, Pixel};
+use inspect::settings::SplitSide;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Ruler {
@@ -64,11 +65,11 @@ impl App {
     }
 
     /// Takes the place that was found at a pixel. Returns whether the ruler is in use.
-    pub(in crate::app) fn measure_to(&mut self, pixel: &Pixel, found: Option<&Picked>) -> bool {
+    pub(in crate::app) fn measure_to(&mut self, half: SplitSide, pixel: &Pixel, found: Option<&Picked>) -> bool {
         let (Some(ruler), Some(document)) = (&mut self.viewport.ruler, &self.document) else { return false };
         let corners = found.map(|picked| match picked.triangle {
             Some(triangle) => triangle.vertices.map(|vertex| Vec3::from(vertex.position)),
-            None => document.shown().1.patch_positions(picked.patch),
+            None => document.patch_positions(half, picked.patch),
         });
         let viewport = glam::vec2(pixel.size[0] as f32, pixel.size[1] as f32);
         let view = ScreenView { clip_from_object: pixel.clip_from_object, viewport };

@@ -23,8 +23,8 @@ pub(crate) struct Selection {
     hit: Option<(u64, PickedTriangle)>,
     /// A click on a picture whose tessellation isn't known yet.
     clicked: Option<(SplitSide, Pixel)>,
-    /// The search for the triangle under a click, its tessellation's number (none for the left half's), and where the click was.
-    picking: Option<(Option<u64>, Pixel, Picking)>,
+    /// The search for the triangle under a click: in which half, its tessellation's number, and where the click was.
+    picking: Option<(SplitSide, u64, Pixel, Picking)>,
 }
 
 /// What the lines over a selected patch depend on, besides the measurements.
@@ -116,7 +116,7 @@ impl App {
         let Some(document) = self.document.as_mut().filter(|_| !self.viewport.closes_list) else { return };
         let place = (pointer - response.rect.min) * pixels_per_point;
         document.selection.clicked =
-            self.viewport.picture.pixel(&document.scene.bounds, [place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
+            self.viewport.picture.pixel(&document.scene, [place.x.max(0.0) as u32, place.y.max(0.0) as u32]);
     }
 
     /// Searches for what was clicked on, on the device. Returns true once the result is taken.
@@ -133,16 +133,16 @@ impl App {
             let is_short = scene.tessellator.chunk_count() <= self.viewport.picture.short;
             let pixel = Pixel { has_input: !is_short, ..pixel };
             let picking = self.engine.picker.start(&self.engine.gpu, scene, &pixel)?;
-            let emitted = (half == SplitSide::Right).then(|| scene.tessellator.generation());
-            document.selection.picking = Some((emitted, pixel, picking));
+            document.selection.picking = Some((half, scene.tessellator.generation(), pixel, picking));
         }
-        let Some((emitted, pixel, mut picking)) = document.selection.picking.take() else { return Ok(false) };
+        let Some((half, of, pixel, mut picking)) = document.selection.picking.take() else { return Ok(false) };
         let Some(found) = picking.poll()? else {
-            document.selection.picking = Some((emitted, pixel, picking));
+            document.selection.picking = Some((half, of, pixel, picking));
             return Ok(false);
         };
-        if !self.measure_to(&pixel, found.as_ref()) && (emitted.is_some() || self.left_mesh.is_none()) {
-            self.take_picked(emitted, found);
+        let is_of_mesh = document.scene.shares_mesh(half);
+        if !self.measure_to(half, &pixel, found.as_ref()) && is_of_mesh {
+            self.take_picked((half == SplitSide::Right).then_some(of), found);
         }
         Ok(true)
     }

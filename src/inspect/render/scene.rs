@@ -137,7 +137,10 @@ impl Scene {
         if !is_same {
             let clips = left.tessellator.mesh().rig.as_ref().map_or(0, |rig| rig.clips.len());
             let moment = moment.filter(|moment| moment.clip < clips);
-            left.frame_clip(moment.map(|moment| moment.clip));
+            let clip = moment.map(|moment| moment.clip);
+            if clip != left.moment.map(|moment| moment.clip) {
+                left.frame_clip(clip);
+            }
             return left.set_moment(moment);
         }
         (left.bounds, left.ulp) = (self.bounds, self.ulp);

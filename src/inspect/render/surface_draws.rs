@@ -6,7 +6,6 @@ use super::layout::overlay_bits;
 use super::needs::{Cut, Needs, PictureKind};
 use crate::settings::{Colors, NormalsAt, Overlays, Settings};
 use geometry::mesh::{Material, Mesh};
-//PAD
 
 /// The pipeline for emitted triangles of a material, in such pictures.
 pub(super) fn surface_draw(

@@ -139,12 +139,12 @@ choices! {
 choices! {
     /// The axis along which pictures are cut, and the side that stays.
     pub enum SectionAxis {
-        X => "x", "X", "What is beyond the plane along X is drawn.";
-        NegX => "-x", "-X", "What is before the plane along X is drawn.";
-        Y => "y", "Y", "What is beyond the plane along Y is drawn.";
-        NegY => "-y", "-Y", "What is before the plane along Y is drawn.";
-        Z => "z", "Z", "What is beyond the plane along Z is drawn.";
-        NegZ => "-z", "-Z", "What is before the plane along Z is drawn.";
+        X => "x", "X", "What has a larger X than the plane is drawn.";
+        NegX => "-x", "-X", "What has a smaller X than the plane is drawn.";
+        Y => "y", "Y", "What has a larger Y than the plane is drawn.";
+        NegY => "-y", "-Y", "What has a smaller Y than the plane is drawn.";
+        Z => "z", "Z", "What has a larger Z than the plane is drawn.";
+        NegZ => "-z", "-Z", "What has a smaller Z than the plane is drawn.";
     }
 }
 
@@ -277,7 +277,9 @@ impl Settings {
 
     /// What the tessellation depends on, seen from `view`.
     pub fn inputs(&self, view: LodView) -> Inputs {
-        Inputs::new(&self.tessellation, view)
+        // A section shows what faces away.
+        let cull_back_faces = self.tessellation.cull_back_faces && self.section.is_none();
+        Inputs::new(&Tessellation { cull_back_faces, ..self.tessellation }, view)
     }
 }
 

@@ -400,7 +400,7 @@ options! {
         name: "split",
         label: "Divider",
         placeholder: "FRACTION",
-        text: "Splits the picture at this fraction of its width. The left half shows the untessellated mesh or another tessellation.",
+        text: "Splits the picture at this fraction of its width. The left half shows the untessellated mesh, another tessellation or another mesh.",
         unset: Description::new("none", "None", "The picture isn't split."),
     }
 
@@ -419,7 +419,7 @@ options! {
         label: "Section",
         placeholder: "AXIS",
         text: "Cuts the picture open with a plane across this axis, and draws what is beyond it; with a minus, what is before it. \
-               Measurements stay the same.",
+               Measurements stay, but what faces away is then tessellated, too.",
         unset: Description::new("none", "None", "All of the mesh is drawn."),
     }
 

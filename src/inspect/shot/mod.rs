@@ -184,7 +184,8 @@ impl Shot {
         let target = make(&engine.gpu, view.size)?;
         engine.split(&mut scene, &subject.settings, subject.left.as_ref())?;
         if let Some(left) = scene.half_mut(SplitSide::Left) {
-            let takes_given = subject.settings.has_left_tessellation() && subject.left.is_none();
+            let is_shader = matches!(subject.given, Some(Given::Shader(_)));
+            let takes_given = subject.settings.has_left_tessellation() && (subject.left.is_none() || is_shader);
             left.tessellator.give(subject.given.clone().filter(|_| takes_given))?;
             left.tessellator.set_surface_shader(None)?;
         }

@@ -83,7 +83,7 @@ pub struct Stats {
     deviation: Option<DeviationStats>,
     /// How far the outline is from others, if the silhouette is shown.
     silhouette: Option<SilhouetteStats>,
-    /// The left half of a split view, if it has another surface; all else here is about the right half.
+    /// The left half of a split view; all else here is about the right half.
     left: Option<LeftStats>,
     /// None at rest.
     animation: Option<AnimationStats>,

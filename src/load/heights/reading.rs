@@ -17,6 +17,9 @@ use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::heights::HeightMap;
 use geometry::progress::{Cancelled, Progress};
 
+/// The bytes of a file at most: more than the largest image takes without compression.
+const LARGEST_FILE: u64 = 4 << 30;
+
 /// What is said of a file of another kind.
 const NO_IMAGE: &str = "choose a PNG, JPEG or WebP image";
 
@@ -37,8 +40,7 @@ pub(super) fn read_map(
         image::guess_format(start).map_err(|_| image.fail(NO_IMAGE.to_owned()))?;
         image.check(png_header(start).map_or([0; 2], |(size, _)| size)).map(|_| ())
     };
-    // What the image takes is limited by its size in px.
-    let bytes = read_file(path, &Limits { file: u64::MAX, memory: 0 }, check, progress)?;
+    let bytes = read_file(path, &Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
     budget.allow(bytes.len() as u64);
     match png_header(&bytes) {
         Some((_, false)) => image.read_rows(&bytes),
@@ -52,7 +54,8 @@ impl From<FileError> for HeightError {
             FileError::Cancelled(cancelled) => return cancelled.into(),
             FileError::NotAFile { path } => (path, format!("it is not a file; {NO_IMAGE}")),
             FileError::Io { path, source } => (path, file_reason(&source)),
-            FileError::Changed { path } | FileError::TooLarge { path, .. } => {
+            FileError::TooLarge { path, .. } => (path, "it is larger than 4 GiB; choose a smaller image".to_owned()),
+            FileError::Changed { path } => {
                 (path, "it changed while it was read; open it again once it is whole".to_owned())
             }
         };

@@ -1,4 +1,4 @@
-//! Records the draws of surfaces: emitted triangles, input triangles, and normals at vertices.
+//! Records the draws of surfaces: emitted triangles, and normals at vertices.
 
 use super::Renderer;
 use crate::render::coverage::Coverage;
