@@ -1,4 +1,4 @@
-// Draws the surface with overlays, the emitted triangles or the input triangles: lit by the lights at the camera or by light from all
+// Draws the surface with overlays: lit by the lights at the camera or by light from all
 // around, and cut by the masks of materials.
 // With: draw_surface_vertices
 

@@ -4,7 +4,6 @@
 @group(0) @binding(0) var<storage, read> frame: Frame;
 @group(0) @binding(4) var<storage, read> vertex_halves: array<vec4<u32>>;
 @group(0) @binding(5) var<storage, read> indices: array<u32>;
-// Only for emitted triangles.
 @group(2) @binding(0) var<uniform> slab: Slab;
 @group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
 
@@ -29,14 +28,14 @@ struct Varyings {
     @location(5) @interpolate(flat) patch_index: u32,
     // 1 if the drawn triangle faces away from where its patch faces.
     @location(6) @interpolate(flat) folded: u32,
-    // Factors of the edges where u, v and w is 0, and inside; 0 for input triangles.
+    // Factors of the edges where u, v and w is 0, and inside.
     @location(7) @interpolate(flat) factors: vec4<f32>,
     // 1 if they are all below 2.
     @location(8) @interpolate(flat) low: u32,
     // Size of the drawn triangle in px.
     @location(9) @interpolate(flat) size: f32,
-    // Number of the emitted triangle in its chunk, or of the input triangle.
+    // Number of the emitted triangle in its chunk.
     @location(10) @interpolate(flat) triangle: u32,
-    // How many times as many triangles the patch has as its own least; 0 for input triangles.
+    // How many times as many triangles the patch has as its own least.
     @location(11) @interpolate(flat) excess: f32,
 }

@@ -1,6 +1,5 @@
 // The vertex shaders of surfaces with overlays: for emitted triangles, which are drawn indexed; or, where an overlay looks at whole
-// triangles, without an index buffer, so that the shader fetches each corner itself and knows the barycentric coordinates; and for
-// the input triangles.
+// triangles, without an index buffer, so that the shader fetches each corner itself and knows the barycentric coordinates.
 
 fn varyings(
     position: vec3<f32>,

@@ -280,7 +280,7 @@ fn a_report_is_one_page_with_both_halves_what_was_found_and_the_command() {
     }
     for words in [
         "<span class=\"passed\">cracks</span>",
-        "<span class=\"failed\">hard-edges failed</span>",
+        "<span class=\"\">hard-edges</span>: 12 edges have two normals at an end",
         "pnaen render shape:cube-split",
         "<tr><th>triangles out</th><td>288</td></tr>",
         "<tr><th>left, cracks, edges</th><td>12</td></tr>",

@@ -8,10 +8,12 @@ use super::{Camera, Scene, Target};
 use crate::settings::{DeviationUnit, Settings};
 use gpu::{Gpu, uniform_buffer};
 
-/// Uploads the constants of a picture of a scene, or of a half of it that begins at the column `left`.
+/// Uploads the constants of a picture of a scene, or of a half of it that begins at the column `left`. `radius` is the bounding
+/// radius that scales are for, which both halves share.
 pub(super) fn frame(
     gpu: &Gpu,
     scene: &Scene,
+    radius: f32,
     target: &Target,
     camera: &Camera,
     settings: &Settings,
@@ -20,7 +22,7 @@ pub(super) fn frame(
     let viewport = target.viewport();
     let [right, up, back] = camera.axes();
     let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
-    let scale = scale_of(settings, scene.known_deviation(), scene.bounds.radius());
+    let scale = scale_of(settings, scene.known_deviation(), radius);
     // In clip space, w is 1 everywhere in an orthographic view, and the distance from the eye in a perspective view.
     let px_where_w_is_1 =
         (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);

@@ -58,7 +58,8 @@ impl Renderer {
         let rects = halves(target.size, settings.split);
         let half_frame = |half| {
             let (drawn, settings) = scene.half(half).zip(settings.half(half))?;
-            Some(frame(&self.gpu, drawn, target, camera, &settings, rects[half as usize][0]))
+            let radius = scene.bounds.radius();
+            Some(frame(&self.gpu, drawn, radius, target, camera, &settings, rects[half as usize][0]))
         };
         let steps = steps(scene, settings);
         let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
