@@ -85,11 +85,10 @@ impl App {
             let middle = rect.left() + width * (before as f32 + 0.5);
             painter.vline(middle, rect.y_range(), ui.visuals().widgets.active.fg_stroke);
         }
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, "Moments of the clip"));
         let hover = "Folds and cracked edges over the clip, each against the most of them. A click shows that moment.";
-        let pointer = response
-            .on_hover_text(hover)
-            .interact_pointer_pos()
-            .filter(|_| ui.input(|input| input.pointer.any_click()));
+        let pointer = response.interact_pointer_pos().filter(|_| response.clicked());
+        response.on_hover_text(hover);
         let index = pointer.map(|pointer| ((pointer.x - rect.left()) / width).max(0.0) as usize);
         index.and_then(|index| found.get(index)).map(|moment| moment.time)
     }
