@@ -205,7 +205,7 @@ impl Session {
         let mut bench = Bench {
             engine: &self.engine,
             mesh: loaded.source.to_string(),
-            camera: view.view.camera(&view, (&loaded.mesh, None, &scene.bounds))?,
+            camera: view.view.camera(&view, (&loaded.mesh, None, &scene.bounds), view.viewport())?,
             scene,
             target: &self.target,
             reference_shape: reference_shape.as_ref().map(|(reference_shape, _)| reference_shape),

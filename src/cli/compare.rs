@@ -109,7 +109,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         return Err(CliError::NothingToCompare { file: args.mesh.to_string() });
     }
     let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|(factors, _)| factors);
-    let camera = args.surface.view.camera(&args.surface, (mesh, own.moment, &own.bounds))?;
+    let camera = args.surface.view.camera(&args.surface, (mesh, own.moment, &own.bounds), args.surface.viewport())?;
     let inputs = own.inputs(own.lod_view(&camera))?;
     let tessellated = own.tessellated(&inputs, given.as_deref(), |_, triangles| match triangles > MOST {
         true => Err(CliError::TooFine { file: args.mesh.to_string(), triangles, most: MOST }),

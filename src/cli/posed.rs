@@ -35,7 +35,7 @@ impl<'a> Posed<'a> {
     }
 
     pub(super) fn camera(&self, view: &View) -> Result<Camera, CliError> {
-        view.camera(self.surface, (&self.posed.mesh, self.moment, &self.bounds))
+        view.camera(self.surface, (&self.posed.mesh, self.moment, &self.bounds), self.surface.viewport())
     }
 
     /// What LOD and clipping are computed for.

@@ -143,7 +143,7 @@ impl Args {
         if view.named.is_none() {
             return Ok(None);
         }
-        let camera = view.camera(&self.shot.surface, shot.place())?;
+        let camera = view.camera(&self.shot.surface, shot.place(), self.shot.framed_size())?;
         self.shot.check_camera(&camera)?;
         Ok(Some(camera))
     }

@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use glam::Vec2;
+
 use super::options::{LodCameraOption, PictureOptions, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, ReferenceSurfaceOption, SurfaceOptions, SurfaceShaderOption, file_of,
@@ -14,7 +16,7 @@ use gpu::Given;
 use inspect::engine::{ClipFinding, Engine, Loaded, Preparation, worst_moment};
 use inspect::gates::{Gate, GateKind};
 use inspect::render::environment::Environment;
-use inspect::render::{Camera, Scene};
+use inspect::render::{Camera, Scene, framed_size};
 use inspect::settings::{Choice, ColorSource, Lighting};
 use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
@@ -91,6 +93,11 @@ impl ShotOptions {
         let shaders = [self.user_lod.lod_shader.as_deref(), self.user_surface.surface_shader.as_deref()];
         let own = [file_of(file), reference_shape, left, heights, factors, matcap, self.environment.as_deref()];
         keep_apart(own.into_iter().chain(shaders).chain(read.iter().copied()), written.iter().copied())
+    }
+
+    /// Width and height in px of the middle of the picture that shows all of the mesh.
+    pub(super) fn framed_size(&self) -> Vec2 {
+        framed_size(self.surface.viewport(), &self.picture.0)
     }
 
     /// Refuses gates that these options leave nothing to judge.
@@ -190,7 +197,11 @@ impl ShotOptions {
     fn view(&self, subject: &Subject, scene: &Scene) -> Result<ShotView, CliError> {
         let mesh = &subject.loaded.mesh;
         let view = ShotView {
-            camera: self.surface.view.camera(&self.surface, (mesh, subject.moment, &scene.bounds))?,
+            camera: self.surface.view.camera(
+                &self.surface,
+                (mesh, subject.moment, &scene.bounds),
+                self.framed_size(),
+            )?,
             lod_camera: self.lod.camera(&self.surface, mesh, &scene.bounds)?,
             size: self.surface.size,
             transparent: self.transparent,

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::Vec2;
+
 use super::options::{CamerasOption, MeshAt, NamedView, SurfaceOptions};
 use super::{CliError, make_folder, refuse};
 use geometry::names::shown;
@@ -95,11 +97,11 @@ impl View {
         }
     }
 
-    /// The view's camera.
-    pub(super) fn camera(&self, surface: &SurfaceOptions, mesh: MeshAt) -> Result<Camera, CliError> {
-        let Some(NamedView { name, view }) = &self.named else { return surface.view.camera(surface, mesh) };
+    /// The view's camera, which shows all of the mesh in the middle `size` px if nothing else is said.
+    pub(super) fn camera(&self, surface: &SurfaceOptions, mesh: MeshAt, size: Vec2) -> Result<Camera, CliError> {
+        let Some(NamedView { name, view }) = &self.named else { return surface.view.camera(surface, mesh, size) };
         let of_view = |error: CliError| CliError::View { view: shown(name), error: Box::new(error) };
-        view.camera(surface, mesh).map_err(of_view)
+        view.camera(surface, mesh, size).map_err(of_view)
     }
 }
 

@@ -182,7 +182,8 @@ fn the_nearest_edge_is_the_one_whose_weight_is_least() {
 #[test]
 fn a_pixel_of_a_split_picture_is_in_one_half() {
     let middle = [SIZE[0] / 2, SIZE[1] / 2];
-    let halves = [None, Some(0.4), Some(0.6)].map(|split| half_at(middle, SIZE, split));
+    let halves =
+        [None, Some(0.4), Some(0.6)].map(|split| half_at(middle, SIZE, &Settings { split, ..Settings::default() }).0);
     assert_eq!(halves, [SplitSide::Right, SplitSide::Right, SplitSide::Left]);
 }
 

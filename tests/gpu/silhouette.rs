@@ -155,7 +155,7 @@ fn silhouettes_look_as_they_did() {
         let settings = Settings { overlays, ..Settings::from(uniform(factor)) };
         let mut drawn = picture(&mut scene, &settings, SIZE);
         let camera = Camera::framing(&scene.bounds, vec2(400.0, 300.0));
-        lay_over(&mut drawn, &outlines_picture(&compared(&mut scene, &settings.tessellation, &camera)));
+        lay_over(&mut drawn, &outlines_picture(&compared(&mut scene, &settings.tessellation, &camera)), &settings);
         pictures.push((format!("silhouette-{name}"), drawn));
     }
     assert_eq!(differing(pictures), Vec::<String>::new());

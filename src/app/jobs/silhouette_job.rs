@@ -177,7 +177,7 @@ impl App {
     /// Lays the outlines over a copy of the picture that is shown.
     pub(in crate::app) fn lay_outlines_over(&self, picture: &mut RgbaImage) {
         if let Some(found) = self.found_outlines() {
-            lay_over(picture, &found.picture);
+            lay_over(picture, &found.picture, &self.settings);
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::app::text::counted;
 use crate::app::widgets::{list, switch_button};
 use crate::commands::{Action, CameraAction, all};
 use geometry::names::{shortened, shown};
+use inspect::render::framed_size;
 use load::ShownParts;
 use load::parts::Part;
 
@@ -110,7 +111,8 @@ impl App {
     fn frame_part(&mut self, part: u32) {
         let Some(document) = &self.document else { return };
         if let Some(bounds) = document.shown().0.part_bounds(part) {
-            self.viewport.camera.frame(&bounds, self.viewport.picture.size());
+            let size = framed_size(self.viewport.picture.size(), &self.settings);
+            self.viewport.camera.frame(&bounds, size);
         }
     }
 }

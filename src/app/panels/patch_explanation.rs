@@ -4,11 +4,12 @@
 use egui::Ui;
 
 use crate::app::patch_names::ends_text;
+use crate::app::text::factor;
 use crate::app::widgets::{dense, title};
 use geometry::mesh::Topology;
 use geometry::tessellate::{
-    Convention, DecidedBy, ExplainedEdge, ExplainedPatch, PatchFactors, domain_side, inside_cut, is_enough,
-    triangle_count,
+    Convention, DecidedBy, EdgeFormula, ExplainedEdge, ExplainedPatch, PatchFactors, domain_side, inside_cut,
+    is_enough, triangle_count,
 };
 
 pub(super) struct ShownExplanation<'a> {
@@ -17,13 +18,19 @@ pub(super) struct ShownExplanation<'a> {
     /// None until it is made, and if nothing is emitted. The rows then have ellipses, so that they don't jump.
     pub explained: Option<&'a ExplainedPatch>,
     pub by_error: bool,
+    /// What takes the place of LOD: a file of factors, or a shader.
+    pub given_by: Option<&'static str>,
     pub factors: Option<PatchFactors>,
 }
 
 impl ShownExplanation<'_> {
     pub(super) fn rows(&self, ui: &mut Ui) {
+        if !self.by_error {
+            title(ui, WHY, "What LOD computes the factor of each edge from.");
+            (0..3).for_each(|i| self.formula_row(ui, domain_side(self.convention, i) as usize));
+        }
         let (name, hover) = if self.by_error {
-            ("Why these factors", "What LOD by error was asked for, and how far the triangles are from the surface.")
+            (WHY, "What LOD by error was asked for, and how far the triangles are from the surface.")
         } else {
             ("Against LOD by error", "How the patch's triangles compare with the tolerance of LOD by error.")
         };
@@ -36,6 +43,17 @@ impl ShownExplanation<'_> {
         self.inside_row(ui);
         self.tolerance_row(ui);
         self.least_rows(ui);
+    }
+
+    /// An edge's factor as LOD computes it.
+    fn formula_row(&self, ui: &mut Ui, k: usize) {
+        let formula = self.explained.and_then(|explained| explained.formulas).map(|formulas| formulas[k]);
+        let (text, hover) = match (self.given_by, formula) {
+            (Some(given_by), _) => (given_by.to_owned(), "The LOD that is chosen has no part in it.".to_owned()),
+            (None, None) => (UNKNOWN.to_owned(), String::new()),
+            (None, Some(formula)) => formula_text(formula),
+        };
+        ui.label(dense(format!("{:<4}{text}", ends_text(k as u32)))).on_hover_text(hover);
     }
 
     fn header(&self, ui: &mut Ui) {
@@ -166,6 +184,33 @@ impl ShownExplanation<'_> {
         let is_beyond = self.explained.is_some_and(|explained| px.is_some_and(|px| px > explained.tolerance));
         let color = ui.visuals().warn_fg_color;
         ui.label(if is_beyond { dense(text).color(color) } else { dense(text) })
+    }
+}
+
+const WHY: &str = "Why these factors";
+
+/// An LOD's formula with its numbers, and in a sentence.
+fn formula_text(formula: EdgeFormula) -> (String, String) {
+    match formula {
+        EdgeFormula::Uniform => ("the one that is set".to_owned(), "All edges have the factor that is set.".to_owned()),
+        EdgeFormula::Length { px, segment } => {
+            let [length, each] = [px, segment].map(|px| factor(px.into(), 1));
+            let quotient = factor(f64::from((px / segment).max(1.0)), 3);
+            let sign = if px < segment { "->" } else { "=" };
+            let hover = format!(
+                "The control polygon of the edge's curve is {length} px long on screen, and a segment is {each} px. A factor is at least 1."
+            );
+            (format!("{length} px / {each} px {sign} {quotient}"), hover)
+        }
+        EdgeFormula::Distance { radii, factors } => {
+            let [a, b] = factors.map(|own| factor(own.into(), 2));
+            let [near, far] = radii.map(|own| factor(own.into(), 2));
+            let mean = factor(f64::from(factors[0] + factors[1]) / 2.0, 3);
+            let hover = format!(
+                "The ends are {near} and {far} bounding radii from the eye, where the factor is {a} and {b}. The edge gets the mean."
+            );
+            (format!("({a} + {b}) / 2 = {mean}"), hover)
+        }
     }
 }
 

@@ -61,6 +61,8 @@ impl App {
             (Some(triangle), None) => drop(ui.label(format!("Triangle {triangle} is degenerate: it has no patch."))),
             (Some(triangle), Some(patch)) => {
                 let (question, is_of_shader) = (self.emitted_patch(patch), self.uses_surface_shader());
+                let given_by = self.given.as_ref().map(|_| "from the file of factors");
+                let given_by = given_by.or(self.uses_lod_shader().then_some("computed by the LOD shader"));
                 let results = self.results();
                 let found = results.map(|results| &results.found);
                 let convention =
@@ -88,12 +90,12 @@ impl App {
                     ui.spacing_mut().interact_size.y = 16.0;
                     shown.factor_rows(ui);
                     let explained = question.as_ref().and_then(|(question, _)| self.explained(question));
-                    let by_error = shown.lod.is_by_error();
+                    let by_error = shown.lod.is_by_error() && given_by.is_none();
                     if is_of_shader {
                         ui.add(egui::Label::new(NOT_EXPLAINED).wrap());
                     } else {
                         let (convention, factors) = (shown.convention, shown.factors);
-                        ShownExplanation { topology, convention, explained, by_error, factors }.rows(ui);
+                        ShownExplanation { topology, convention, explained, by_error, given_by, factors }.rows(ui);
                     }
                     shown.plot(ui);
                     shown.edge_rows(ui, &mut wish);

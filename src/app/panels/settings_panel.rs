@@ -120,6 +120,7 @@ impl App {
         if self.settings.split.is_some() && self.panels.edited == SplitSide::Right {
             self.left_mesh_row(ui);
             self.left_row(ui);
+            option_row(ui, &options::SPLIT_VIEW, &mut self.settings, "");
         }
         self.normals_rows(ui);
         let settings = &mut self.settings;

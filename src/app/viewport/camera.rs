@@ -5,7 +5,7 @@ use glam::{Vec2, vec2};
 use crate::app::App;
 use crate::commands::{CameraAction, Direction};
 use geometry::mesh::Moment;
-use inspect::render::Camera;
+use inspect::render::{Camera, framed_size};
 use inspect::settings::SplitSide;
 
 /// Degrees that the camera turns at a press of an arrow key.
@@ -84,7 +84,8 @@ impl App {
         if let Some(document) = &self.document {
             let camera = &mut self.viewport.camera;
             (camera.field_of_view, camera.roll) = (Camera::default().field_of_view, 0.0);
-            self.viewport.camera.frame(&document.scene.drawn_bounds(&self.settings), self.viewport.picture.size());
+            let size = framed_size(self.viewport.picture.size(), &self.settings);
+            self.viewport.camera.frame(&document.scene.drawn_bounds(&self.settings), size);
             self.viewport.framed = Some(self.viewport.camera);
         }
     }

@@ -39,6 +39,8 @@ pub(super) struct Viewport {
     pub camera: Camera,
     /// The camera as it was when it last framed the whole mesh.
     pub framed: Option<Camera>,
+    /// The size in px that the picture, or half of it, had in the last frame.
+    pub framed_size: glam::Vec2,
     /// The camera with which a mesh was opened, until its first picture is measured.
     pub opened: Option<Camera>,
     /// The camera of the file that is looked through, until the camera is moved otherwise.
@@ -71,6 +73,7 @@ impl Viewport {
             rect: egui::Rect::NOTHING,
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
             framed: None,
+            framed_size: glam::Vec2::ZERO,
             opened: None,
             through: None,
             bookmarks: Vec::new(),

@@ -16,8 +16,8 @@ use crate::commands::{Action, CameraAction, key_name, with_key};
 use geometry::view::ScreenView;
 use gpu::GpuError;
 use inspect::engine::SilhouetteView;
-use inspect::render::{Ground, Scene};
-use inspect::settings::{Settings, SplitSide};
+use inspect::render::{Ground, Scene, framed_size, half_at, outlines_columns};
+use inspect::settings::{Settings, SplitSide, SplitView};
 use load::Source;
 
 /// Degrees that the camera turns for a point of dragging.
@@ -50,8 +50,9 @@ impl App {
         self.click(&response, scale);
         response.context_menu(|ui| self.part_menu(ui));
         let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
-        // A camera that frames the whole mesh goes on doing so in a window of another size.
-        let resized = self.viewport.picture.target.as_ref().is_some_and(|(target, _)| target.size != size);
+        // A camera that frames the whole mesh goes on doing so in a window of another size, and side by side.
+        let framed_size = framed_size(size.map(|side| side as f32).into(), &self.settings);
+        let resized = std::mem::replace(&mut self.viewport.framed_size, framed_size) != framed_size;
         let framed = resized && self.is_framed();
         let shown = self.advance(ui.ctx(), size).and_then(|()| Ok(self.show_pointer_value(&response)?));
         if let Err(error) = shown {
@@ -80,8 +81,7 @@ impl App {
                     ui.painter().rect_filled(rect, 0.0, veil);
                 }
                 if let Some(outlines) = self.outlines_texture().filter(|_| previewed.is_none()) {
-                    let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-                    ui.painter().image(outlines, rect, whole, egui::Color32::WHITE);
+                    self.paint_outlines(ui, rect, outlines, size[0]);
                 }
                 self.over_picture(ui, rect);
             }
@@ -91,6 +91,16 @@ impl App {
             }
         }
         self.viewport_notes(ui, rect);
+    }
+
+    /// Paints the outlines over the picture, which is so many px wide, where it shows what they are of.
+    fn paint_outlines(&self, ui: &egui::Ui, rect: egui::Rect, outlines: egui::TextureId, px: u32) {
+        let Some(columns) = outlines_columns(px, &self.settings) else { return };
+        let [from, to, width] = columns.map(|column| column as f32 / px as f32);
+        let across = |start: f32| rect.left() + rect.width() * start..=rect.left() + rect.width() * (start + width);
+        let place = egui::Rect::from_x_y_ranges(across(to), rect.y_range());
+        let seen = egui::Rect::from_x_y_ranges(from..=from + width, 0.0..=1.0);
+        ui.painter().image(outlines, place, seen, egui::Color32::WHITE);
     }
 
     /// What lies over a picture, and explains it.
@@ -254,17 +264,35 @@ impl App {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let ratio = (-scroll * 0.0025).exp() / pinch;
             if ratio != 1.0 {
-                let pointer = pointer - response.rect.min;
-                self.viewport.camera.zoom(ratio, vec2(pointer.x, pointer.y), points);
+                let (pointer, scale) = (pointer - response.rect.min, ui.ctx().pixels_per_point());
+                let size = (points * scale).to_array().map(|side| side.round() as u32);
+                let (_, [x, _]) = half_at([(pointer.x * scale) as u32, 0], size, &self.settings);
+                self.viewport.camera.zoom(ratio, vec2(x as f32 / scale, pointer.y), points);
             }
         }
     }
 
-    /// The split's divider, which can be dragged.
+    /// The split's divider, and the titles of its halves.
     fn divider(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         let titles = SplitSide::BOTH.map(|half| self.half_title(half));
+        let Some(split) = self.settings.split else { return };
+        let is_whole = self.settings.split_view == SplitView::Difference;
+        let at = rect.left() + rect.width() * if is_whole { 0.5 } else { split };
+        if !is_whole {
+            self.divider_handle(ui, rect, at);
+        }
+        // The axes are in the right half's corner, or under the titles.
+        let beside = axes_place(rect, Some(split)).filter(|axes| Some(*axes) == axes_place(rect, None));
+        let end = beside.map_or(rect.right(), |axes| axes.left());
+        let halves = [rect.with_max_x(at.min(end)), rect.with_min_x(at).with_max_x(end.max(at))];
+        for ((half, place), (title, align)) in halves.into_iter().zip(["Left", "Right"]).zip(titles.iter().zip(ALIGN)) {
+            half_note(ui, half, align, title, &format!("{place}: {title}"));
+        }
+    }
+
+    /// The line of the divider, and what drags it.
+    fn divider_handle(&mut self, ui: &mut egui::Ui, rect: egui::Rect, at: f32) {
         let Some(split) = &mut self.settings.split else { return };
-        let at = rect.left() + rect.width() * *split;
         let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
         let response = ui.interact(reach, ui.scope_id().with("divider"), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Split divider"));
@@ -287,13 +315,6 @@ impl App {
         let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
         ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width + 2.0, egui::Color32::from_black_alpha(130)));
         ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
-        // The axes are in the right half's corner, or under the titles.
-        let beside = axes_place(rect, Some(*split)).filter(|axes| Some(*axes) == axes_place(rect, None));
-        let end = beside.map_or(rect.right(), |axes| axes.left());
-        let halves = [rect.with_max_x(at.min(end)), rect.with_min_x(at).with_max_x(end.max(at))];
-        for ((half, place), (title, align)) in halves.into_iter().zip(["Left", "Right"]).zip(titles.iter().zip(ALIGN)) {
-            half_note(ui, half, align, title, &format!("{place}: {title}"));
-        }
     }
 
     /// The number of triangles of the wanted picture, as text.

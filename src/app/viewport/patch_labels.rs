@@ -9,6 +9,7 @@ use crate::app::text::factor;
 use crate::app::widgets::rgb;
 use geometry::tessellate::{factor_side, segments};
 use geometry::view::{ScreenView, project};
+use inspect::render::half_places;
 use inspect::render::layout::FACTOR_COLORS;
 use inspect::settings::SplitSide;
 
@@ -24,8 +25,9 @@ impl App {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return };
         let Some(ScreenView { clip_from_object, viewport }) = self.shown_view() else { return };
         let Some((_, topology)) = &document.posed() else { return };
+        let [_, right] = half_places(viewport.to_array().map(|side| side as u32), &self.settings);
         let at = |position| {
-            let px = project(clip_from_object, viewport, position)?;
+            let px = project(clip_from_object, viewport, position)? + right.moved();
             Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
         };
         let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };

@@ -163,7 +163,7 @@ impl Picture {
     pub(crate) fn pixel(&self, scene: &Scene, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
         let PictureRequest { camera, viewport, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
-        let half = half_at(at, size, settings.split);
+        let (half, at) = half_at(at, size, &settings);
         let bounds = scene.half(half).map_or(&scene.bounds, |own| &own.bounds);
         let clip_from_object = section::clip_from_object(&camera, viewport, bounds, &settings);
         Some((half, Pixel { clip_from_object, size, at, has_input: false }))

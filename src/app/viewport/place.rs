@@ -1,6 +1,6 @@
 //! Turns the camera to a place that was measured, and to where nothing hides it.
 
-use glam::vec2;
+use glam::Vec2;
 
 use crate::app::App;
 use crate::app::jobs::measure_job::MeasureError;
@@ -8,8 +8,8 @@ use crate::app::jobs::walk::{Parts, Walk};
 use geometry::tessellate::factors::patch_is_culled;
 use inspect::gates::{Spot, Standpoints};
 use inspect::measure::Sight;
-use inspect::render::Camera;
-use inspect::settings::SplitSide;
+use inspect::render::{Camera, half_places};
+use inspect::settings::{Settings, SplitSide};
 
 /// A place that is about to be shown: what hides it is being found out.
 pub(crate) struct Showing {
@@ -56,8 +56,9 @@ impl App {
         }
         let emitted = scene.tessellator.generation();
         let Some((_, walk)) = showing.walk.as_mut().filter(|(of, _)| *of == emitted) else {
-            let (split, half, size) = (self.settings.split, showing.half, self.viewport.picture.size());
-            let Some((at, eyes, near)) = showing.standpoints.lines(|camera| beside(camera, split, half, size)) else {
+            let (settings, half, size) = (&self.settings, showing.half, self.viewport.picture.size());
+            let Some((at, eyes, near)) = showing.standpoints.lines(|camera| beside(camera, settings, half, size))
+            else {
                 self.look(&[]);
                 return Ok(());
             };
@@ -82,15 +83,13 @@ impl App {
         let showing = self.document.as_mut().and_then(|document| document.showing.take());
         let Some(Showing { half, standpoints, .. }) = showing else { return };
         let size = self.viewport.picture.size();
-        self.viewport.camera = beside(standpoints.clearest(clear), self.settings.split, half, size);
+        self.viewport.camera = beside(standpoints.clearest(clear), &self.settings, half, size);
     }
 }
 
 /// The camera with what is in the middle of its view in the middle of a half of the split.
-fn beside(mut camera: Camera, split: Option<f32>, half: SplitSide, size: glam::Vec2) -> Camera {
-    if let Some(split) = split {
-        let middle = if half == SplitSide::Left { split / 2.0 } else { (1.0 + split) / 2.0 };
-        camera.pan(vec2((middle - 0.5) * size.x, 0.0), size);
-    }
+fn beside(mut camera: Camera, settings: &Settings, half: SplitSide, size: Vec2) -> Camera {
+    let place = half_places(size.to_array().map(|side| side as u32), settings)[half as usize];
+    camera.pan(place.middle(), size);
     camera
 }

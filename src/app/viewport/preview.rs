@@ -15,7 +15,7 @@ use geometry::view::ScreenView;
 use gpu::{GpuError, Recorder, Timing};
 use inspect::engine::Engine;
 use inspect::render::{Camera, Scene, Target};
-use inspect::settings::{ColorSource, Colors, Settings, SplitSide};
+use inspect::settings::{ColorSource, Colors, Settings, SplitSide, SplitView};
 
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
 /// some of it.
@@ -248,7 +248,8 @@ fn shape_of(
     // It stands for the mesh alone, not for another one beside it.
     if patches > LARGE * most
         && document.moment.is_none()
-        && (wanted.settings.split.is_none() || document.left_of == 0)
+        && (wanted.settings.split.is_none()
+            || document.left_of == 0 && wanted.settings.split_view == SplitView::Divider)
         && document.stand_in.is_made(jobs, context, engine, &document.loaded, (LARGE * most) as usize)
     {
         return Shape::StandIn;

@@ -60,6 +60,6 @@ impl LodCameraOption {
             ..own.view.clone()
         };
         let options = SurfaceOptions { view, size: self.lod_size.unwrap_or(own.size), ..own.clone() };
-        Ok(Some((options.view.camera(&options, (mesh, None, bounds))?, options.viewport())))
+        Ok(Some((options.view.camera(&options, (mesh, None, bounds), options.viewport())?, options.viewport())))
     }
 }

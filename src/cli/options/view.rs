@@ -2,7 +2,7 @@
 
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
-use glam::{DMat4, Vec3};
+use glam::{DMat4, Vec2, Vec3};
 
 use super::values::{angle, field_of_view, position};
 use super::{CameraOption, SurfaceOptions, defaults, file_camera, named};
@@ -112,8 +112,14 @@ fn one_of<T: Copy + Send + Sync + 'static>(all: &'static [(&str, &str, T)]) -> i
 }
 
 impl ViewOptions {
-    /// Returns the camera of these options for a mesh. Without a distance it shows everything that is drawn as `surface` says.
-    pub fn camera(&self, surface: &SurfaceOptions, (mesh, moment, bounds): MeshAt) -> Result<Camera, CliError> {
+    /// Returns the camera of these options for a mesh. Without a distance it shows everything that is drawn as `surface` says in the middle
+    /// `size` px of the picture.
+    pub fn camera(
+        &self,
+        surface: &SurfaceOptions,
+        (mesh, moment, bounds): MeshAt,
+        size: Vec2,
+    ) -> Result<Camera, CliError> {
         if let Some(matrix) = self.matrix() {
             return Ok(Camera::from_matrix(&matrix, bounds)?);
         }
@@ -122,7 +128,7 @@ impl ViewOptions {
             return file_camera(&mesh.name, &cameras, wanted).map(|camera| Camera::from_file(camera, bounds));
         }
         let mut camera = Camera { field_of_view: self.field_of_view, roll: self.roll, ..Camera::default() };
-        camera.frame(&bounds.grown(surface.settings().reach(mesh)), surface.viewport());
+        camera.frame(&bounds.grown(surface.settings().reach(mesh)), size);
         (camera.azimuth, camera.elevation) = (self.camera.azimuth, self.camera.elevation.clamp(-90.0, 90.0));
         if let Some(radii) = self.camera.distance {
             camera.distance = radii * bounds.radius();

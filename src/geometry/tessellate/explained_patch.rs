@@ -7,17 +7,19 @@ use super::factors::{
     row_width, segments,
 };
 use super::least_factors::{BEYOND_LAST, ChosenFactors, SearchGoal};
+use super::lod::point_distance_factor;
 use super::mesh_displacement::{MeshDisplacement, displacing_heights};
 use super::mesh_factors::MeshLod;
 use super::mesh_tessellation::seen_with_reach;
 use super::piece_error::{SeenPatch, may_slide, piece_error};
 use super::relief::SeenRelief;
 use super::{
-    Clip, Convention, FIXED_ONE, Inputs, Normals, Partitioning, PatchFactors, Tessellation, corner_weights,
-    domain_plan, domain_point, domain_side, domain_triangle, process, triangle_count,
+    Clip, Convention, FIXED_ONE, Inputs, Lod, LodView, Normals, Partitioning, PatchFactors, Tessellation,
+    corner_weights, domain_plan, domain_point, domain_side, domain_triangle, edge_length_factor, paper_edge_factor,
+    process, triangle_count,
 };
 use crate::mesh::{Mesh, Topology};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 /// What LOD by error makes of a patch, and why.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +28,8 @@ pub struct ExplainedPatch {
     pub tolerance: f32,
     /// What was asked of the edges of sides 0, 1 and 2; `None` under other LODs.
     pub edges: Option<[ExplainedEdge; 3]>,
+    /// What the factors of sides 0, 1 and 2 are computed from; `None` under LOD by error.
+    pub formulas: Option<[EdgeFormula; 3]>,
     /// Whether LOD by error allows points to slide along the surface: see `flat_patch.rs`. The errors then are distances to
     /// the nearest point of the surface.
     pub is_flat: bool,
@@ -46,6 +50,18 @@ pub struct ExplainedEdge {
     pub others: Vec<(u32, f32)>,
     /// The factor that it gets: the largest of these; a larger one if patches asked again; or what all edges get.
     pub got: f32,
+}
+
+/// What an LOD with a formula computes the factor of an edge from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EdgeFormula {
+    /// All edges have the factor that is set.
+    Uniform,
+    /// The length on screen, in px, of the control polygon of the edge's longest curve, and of a segment. Their quotient is the
+    /// factor, if it isn't below 1.
+    Length { px: f32, segment: f32 },
+    /// How far the edge's ends are from the eye, in bounding radii, and their factors, whose mean the edge gets.
+    Distance { radii: [f32; 2], factors: [f32; 2] },
 }
 
 /// Whose request an edge got.
@@ -181,9 +197,34 @@ pub fn explain_patch(
         edges: by_error.then(|| {
             [0, 1, 2].map(|k| lod.explain_edge(patch, k, used_factor(inputs.tessellation.convention, used, k)))
         }),
+        formulas: (!by_error).then(|| [0, 1, 2].map(|side| edge_formula(&nets, inputs, patch, side))),
         is_flat,
         errors,
         minimum,
+    }
+}
+
+/// Returns what the factor of a patch's side is computed from.
+fn edge_formula(nets: &ControlNets, inputs: &Inputs, patch: u32, side: usize) -> EdgeFormula {
+    let Inputs { tessellation: Tessellation { lod, factor, pixels, near, far, .. }, ref view } = *inputs;
+    let at = nets.patch_factor(patch, side) as usize;
+    let curves = nets.curves.factor_curves[at]..nets.curves.factor_curves[at + 1];
+    let nets = curves.map(|curve| nets.curve_points(curve));
+    let longest = |px: fn(&LodView, f32, [Vec3; 4]) -> f32| EdgeFormula::Length {
+        px: nets.clone().map(|net| px(view, 1.0, net)).fold(1.0, f32::max),
+        segment: pixels,
+    };
+    match lod {
+        Lod::Uniform | Lod::Error => EdgeFormula::Uniform,
+        Lod::Paper => longest(paper_edge_factor),
+        Lod::EdgeLength => longest(edge_length_factor),
+        Lod::Distance => {
+            let [a, _, _, b] = nets.clone().next().unwrap_or_default();
+            EdgeFormula::Distance {
+                radii: [a, b].map(|end| end.distance(view.eye) / view.radius),
+                factors: [a, b].map(|end| point_distance_factor(view, factor, near, far, end)),
+            }
+        }
     }
 }
 

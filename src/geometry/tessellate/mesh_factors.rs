@@ -261,7 +261,7 @@ impl ControlNets<'_> {
     }
 
     /// Returns the four control points of a curve, in object units.
-    fn curve_points(&self, curve: u32) -> [Vec3; 4] {
+    pub(super) fn curve_points(&self, curve: u32) -> [Vec3; 4] {
         let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
         let [ab, ba] = self.curve_nets[curve as usize];
         [a, ab, ba, b]

@@ -68,7 +68,7 @@ pub use curvature::{mean_curvature, patch_second_derivatives};
 pub use domain::{domain_plan, domain_point, domain_triangle};
 pub use explained_patch::minimum_triangles;
 pub use explained_patch::{
-    DecidedBy, ExplainedEdge, ExplainedPatch, explain_patch, inside_cut, is_enough, minimum_inputs,
+    DecidedBy, EdgeFormula, ExplainedEdge, ExplainedPatch, explain_patch, inside_cut, is_enough, minimum_inputs,
 };
 pub use factors::FACTOR_ODD;
 pub use factors::{

@@ -2,13 +2,14 @@
 
 use super::deviation::scale_of;
 use super::ground::Ground;
+use super::halves::HalfPlace;
 use super::layout::{Frame, SECTION_BIT, overlay_bits};
 use super::section::clip_from_object;
 use super::{Camera, Scene, Target};
 use crate::settings::{DeviationUnit, Settings};
 use gpu::{Gpu, uniform_buffer};
 
-/// Uploads the constants of a picture of a scene, or of a half of it that begins at the column `left`. `radius` is the bounding
+/// Uploads the constants of a picture of a scene, or of a half of it at this place. `radius` is the bounding
 /// radius that scales are for, which both halves share.
 pub(super) fn frame(
     gpu: &Gpu,
@@ -17,7 +18,7 @@ pub(super) fn frame(
     target: &Target,
     camera: &Camera,
     settings: &Settings,
-    left: u32,
+    place: &HalfPlace,
 ) -> wgpu::Buffer {
     let viewport = target.viewport();
     let [right, up, back] = camera.axes();
@@ -41,7 +42,7 @@ pub(super) fn frame(
         px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
         ground: Ground::under(&scene.bounds).packed(),
         scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
-        left: left as f32,
+        left: place.area[0] as f32,
         coarseness: target.coarseness as f32,
         _pad: [0.0; 2],
     };

@@ -3,8 +3,10 @@
 use glam::{Vec2, vec2};
 use image::{Pixel, Rgba, RgbaImage, imageops};
 
+use super::halves::outlines_columns;
 use super::layout::OUTLINE_COLOR;
 use crate::measure::{OutlineDistance, OutlineOf, Silhouette};
+use crate::settings::Settings;
 
 /// sRGB colours of the outlines, in the order of [`OutlineOf::ALL`]. They are about equally far from a dark and from a light
 /// background, and people with any colour vision can tell them apart.
@@ -33,9 +35,11 @@ pub fn outlines_picture(silhouette: &Silhouette) -> RgbaImage {
     picture
 }
 
-/// Lays outlines over a picture of the same size.
-pub fn lay_over(picture: &mut RgbaImage, outlines: &RgbaImage) {
-    imageops::overlay(picture, outlines, 0, 0);
+/// Lays outlines over a picture of the same size, where it shows what they are of.
+pub fn lay_over(picture: &mut RgbaImage, outlines: &RgbaImage, settings: &Settings) {
+    let Some([from, to, width]) = outlines_columns(picture.width(), settings) else { return };
+    let outlines = imageops::crop_imm(outlines, from, 0, width, outlines.height());
+    imageops::overlay(picture, &*outlines, to.into(), 0);
 }
 
 fn blend(pixel: &mut Rgba<u8>, [r, g, b]: [u8; 3], share: f32) {

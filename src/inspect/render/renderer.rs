@@ -11,6 +11,7 @@ use std::sync::Arc;
 
 use super::coverage::CoveragePipelines;
 use super::deviation::Deviations;
+use super::difference::DifferenceDrawer;
 use super::draws::Draw;
 use super::environment::Environment;
 use super::matcap::{MatcapPicture, Matcaps};
@@ -34,6 +35,7 @@ pub struct Renderer {
     matcaps: Matcaps,
     pipelines: DrawPipelines,
     coverage: CoveragePipelines,
+    difference: DifferenceDrawer,
     /// The buffer that is bound where deviations, or patches' minimum triangle counts, aren't known.
     unknown: wgpu::Buffer,
     samples: u32,
@@ -63,6 +65,7 @@ impl Renderer {
             studio: Lazy::default(),
             matcaps: Matcaps::new(),
             coverage: CoveragePipelines::new(),
+            difference: DifferenceDrawer::new(gpu),
             unknown: Deviations::unknown(gpu),
             samples: samples(gpu),
             shares_shaders: gpu.is_software(),

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::Scene;
 use super::layers::LayerPass;
 use super::needs::has_layers;
-use crate::settings::{Settings, SplitSide};
+use crate::settings::{Settings, SplitSide, SplitView};
 
 /// What one render pass of a picture draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,6 +18,10 @@ pub(super) enum Step {
     Layer(LayerStep),
     /// The normals of a half's chunk.
     Normals(SplitSide, usize),
+    /// Keeps the picture of the left half, which is whole, and begins another one.
+    Keep,
+    /// Shows how that differs from the one that was kept.
+    Difference,
 }
 
 /// What a render pass does with layers.
@@ -42,7 +46,7 @@ impl Step {
         match self {
             Self::Surface(half, _) | Self::Normals(half, _) => *half,
             Self::Layer(LayerStep { part: Some(LayerPart { half, .. }), .. }) => *half,
-            Self::Over | Self::Layer(_) => SplitSide::Right,
+            Self::Over | Self::Layer(_) | Self::Keep | Self::Difference => SplitSide::Right,
         }
     }
 
@@ -50,17 +54,27 @@ impl Step {
         match self {
             Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
             Self::Layer(LayerStep { part, .. }) => part.map(|part| part.chunk),
-            Self::Over => None,
+            Self::Over | Self::Keep | Self::Difference => None,
         }
     }
 }
 
 /// All steps of a picture, in order.
 pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
+    let has_both = settings.split.is_some() && scene.half(SplitSide::Left).is_some();
+    if has_both && settings.split_view == SplitView::Difference {
+        let [left, right] = SplitSide::BOTH.map(|half| steps_of(scene, settings, &[half]));
+        return [left, vec![Step::Keep], right, vec![Step::Difference]].concat();
+    }
+    steps_of(scene, settings, &SplitSide::BOTH)
+}
+
+/// The steps of one picture of these halves.
+fn steps_of(scene: &Scene, settings: &Settings, halves: &[SplitSide]) -> Vec<Step> {
     let drawn = |half| settings.half(half).and(scene.half(half));
     let chunks =
         |half| (0..drawn(half).map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk));
-    let all: Vec<_> = SplitSide::BOTH.into_iter().flat_map(chunks).collect();
+    let all: Vec<_> = halves.iter().copied().flat_map(chunks).collect();
     let mut steps: Vec<_> = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk)).collect();
     if settings.shows_materials() {
         let is_seen_through = |half| drawn(half).is_some_and(|own| has_layers(own.tessellator.mesh()));
@@ -97,21 +111,9 @@ pub(super) fn runs(scene: &Scene, steps: &[Step]) -> Vec<Range<usize>> {
     let begins = |index: &usize| match &steps[*index] {
         Step::Surface(..) | Step::Normals(..) => true,
         step @ Step::Layer(_) => *index == 0 || (step.chunk().is_some() && has_many(step.half())),
-        Step::Over => *index == 0,
+        Step::Over | Step::Keep | Step::Difference => *index == 0,
     };
     let starts: Vec<_> = (0..steps.len()).filter(begins).collect();
     let ends = starts.iter().skip(1).copied().chain([steps.len()]);
     starts.iter().zip(ends).map(|(&start, end)| start..end).collect()
-}
-
-/// The half of a picture of `size` px in which a pixel lies.
-pub fn half_at(at: [u32; 2], size: [u32; 2], split: Option<f32>) -> SplitSide {
-    let [[.., width, _], _] = halves(size, split);
-    if at[0] < width { SplitSide::Left } else { SplitSide::Right }
-}
-
-/// The rectangles left and right of the split: x, y, width and height in px.
-pub(super) fn halves([width, height]: [u32; 2], split: Option<f32>) -> [[u32; 4]; 2] {
-    let at = split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
-    [[0, 0, at, height], [at, 0, width - at, height]]
 }

@@ -1,7 +1,7 @@
 //! The texture that a picture is drawn into.
 
 use super::layout::{linear, srgb};
-use gpu::{Gpu, GpuError, Lazy, flat_texture, read_texture, whole};
+use gpu::{Gpu, GpuError, Lazy, Recorder, flat_texture, read_texture, whole};
 
 /// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
 pub(crate) const COLOR_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
@@ -22,6 +22,8 @@ pub struct Target {
     depth: wgpu::TextureView,
     /// Made when a picture first has layers: see [`super::layers`].
     layer_depths: Lazy<[wgpu::TextureView; 2]>,
+    /// Pictures of both halves, made when a difference is first drawn: see [`super::difference`].
+    kept: Lazy<[wgpu::Texture; 2]>,
     /// Whether pictures have no background: where nothing is drawn they are transparent.
     is_transparent: bool,
     /// Whether pictures leave out what takes a software driver longest: see [`Self::draft`].
@@ -31,7 +33,7 @@ pub struct Target {
 }
 
 /// The format that egui shows and a PNG holds: bytes encoded as sRGB, which sampling doesn't decode.
-const SHOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
+pub(super) const SHOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;
 
 impl Target {
     /// Makes the textures, with this width and height in px.
@@ -59,7 +61,7 @@ impl Target {
             whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count, ..own }))
         });
         let depth = depth_view(gpu, "target.depth", [width, height]);
-        let (size, layer_depths) = ([width, height], Lazy::default());
+        let (size, layer_depths, kept) = ([width, height], Lazy::default(), Lazy::default());
         let (is_transparent, is_draft, coarseness) = (false, false, 1);
         Ok(Self {
             size,
@@ -68,6 +70,7 @@ impl Target {
             multisampled,
             depth,
             layer_depths,
+            kept,
             is_transparent,
             is_draft,
             coarseness,
@@ -154,12 +157,33 @@ impl Target {
         self.layer_depths.get_or_make(gpu, || [0, 1].map(|_| depth_view(gpu, "target.layer depth", self.size)))
     }
 
+    /// The pictures that were kept. Their textures are made at the first call.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(super) fn kept(&self, gpu: &Gpu) -> Result<&[wgpu::Texture; 2], GpuError> {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let texture = |_| gpu.device.create_texture(&flat_texture("target.kept", self.size, SHOWN_FORMAT, usage));
+        self.kept.get_or_make(gpu, || [0, 1].map(texture))
+    }
+
+    /// Keeps the picture that was drawn as the one with this index.
+    ///
+    /// # Errors
+    /// The same.
+    pub(super) fn keep(&self, recorder: &mut Recorder, gpu: &Gpu, index: usize) -> Result<(), GpuError> {
+        let (from, to) = (self.resolved.as_image_copy(), self.kept(gpu)?[index].as_image_copy());
+        recorder.encoder().copy_texture_to_texture(from, to, self.resolved.size());
+        Ok(())
+    }
+
     /// The size of all its textures in bytes.
     pub fn bytes(&self) -> u64 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let samples = if self.multisampled.is_some() { 4 } else { 1 };
         let layers = if self.layer_depths.is_made() { 2 * samples } else { 0 };
-        pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 } + layers)
+        let kept = if self.kept.is_made() { 2 } else { 0 };
+        pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 } + layers + kept)
     }
 
     /// Reads the picture back, with straight alpha as PNG files have it. Waits for the device.

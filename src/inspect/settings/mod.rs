@@ -64,6 +64,8 @@ pub struct Settings {
     pub matcap: Matcap,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
     pub split: Option<f32>,
+    /// How the halves of a split picture are shown.
+    pub split_view: SplitView,
     /// The tessellation left of the split, with all other settings the same.
     pub left: Tessellation,
     /// The side of a section that is drawn; none for all of the mesh.
@@ -94,6 +96,7 @@ impl Default for Settings {
             curvature_scale: 4.0,
             matcap: Matcap::default(),
             split: None,
+            split_view: SplitView::default(),
             left: Tessellation::untessellated(),
             section: None,
             section_at: 0.5,
@@ -120,6 +123,19 @@ pub enum SplitSide {
 
 impl SplitSide {
     pub const BOTH: [Self; 2] = [Self::Left, Self::Right];
+}
+
+choices! {
+    /// How the halves of a split picture are shown.
+    #[derive(Default, Hash)]
+    pub enum SplitView {
+        #[default]
+        Divider => "divider", "Divider", "One view, of which each half shows its side of the divider.";
+        Beside => "beside", "Side by side", "Each half shows the middle of the view, from the same camera.";
+        Difference => "difference", "Difference",
+            "How far the colours of both halves are apart at each pixel: black where they are equal, brighter where they differ \
+             by more steps.";
+    }
 }
 
 choices! {

@@ -6,7 +6,7 @@
 use super::value::Field;
 use super::{
     Access, ColorSource, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps,
-    NormalsAt, Overlay, Range, SectionAxis, Settings, ToneCurve, Value, descriptions,
+    NormalsAt, Overlay, Range, SectionAxis, Settings, SplitView, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
 use geometry::tessellate::{
@@ -402,6 +402,14 @@ options! {
         placeholder: "FRACTION",
         text: "Splits the picture at this fraction of its width. The left half shows the untessellated mesh, another tessellation or another mesh.",
         unset: Description::new("none", "None", "The picture isn't split."),
+    }
+
+    SPLIT_VIEW: field!(split_view), Kind::Choice(descriptions::<SplitView>) => {
+        name: "split-view",
+        label: "Shown as",
+        placeholder: "NAME",
+        text: "How both halves of a split picture are shown.",
+        no_effect: |settings| settings.split.is_none().then_some("The view isn't split."),
     }
 
     SPLIT_LEFT: LEFT, Kind::Options(|| &TESSELLATION) => {

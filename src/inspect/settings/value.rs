@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{
     Choice, Description, DeviationUnit, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays,
-    SectionAxis, Settings, ToneCurve,
+    SectionAxis, Settings, SplitView, ToneCurve,
 };
 use geometry::mesh::UpAxis;
 use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
@@ -332,7 +332,7 @@ macro_rules! named_fields {
 
 named_fields! {
     Clip, Convention, DeviationUnit, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals, NormalsAt,
-    Partitioning, SectionAxis, Surface, ToneCurve, UpAxis,
+    Partitioning, SectionAxis, SplitView, Surface, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {

@@ -28,6 +28,8 @@ pub use copied_command::{CopiedCommand, given};
 pub use error::ShotError;
 pub use factors_report::{FactorsFile, agreement_lines, read_factors, said};
 pub use judging::Numbers;
+#[cfg(test)]
+pub(crate) use picture_comparison::DIFFERENCE_FLOOR;
 pub use picture_comparison::{CompareError, Comparison, compare};
 pub use picture_file::{png_bytes, write_drawn, write_picture};
 pub use reference::{BETWEEN_DRIVERS, Judged, Reference};
@@ -50,7 +52,7 @@ use crate::render::{
     Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
     deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
-use crate::settings::{ARENA_BYTES, ColorSource, DeviationUnit, Settings, SplitSide};
+use crate::settings::{ARENA_BYTES, ColorSource, DeviationUnit, Settings, SplitSide, SplitView};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
@@ -284,7 +286,7 @@ impl Shot {
         self.draw(&progress.part(MEASURING, 1.0))?;
         let mut picture = self.target.read(&self.engine.gpu)?;
         if let Some(silhouette) = &self.silhouette {
-            lay_over(&mut picture, &outlines_picture(silhouette));
+            lay_over(&mut picture, &outlines_picture(silhouette), &self.subject.settings);
         }
         if self.view.camera.is_mirrored() {
             image::imageops::flip_horizontal_in_place(&mut picture);
@@ -299,6 +301,7 @@ impl Shot {
     /// Draws the divider of a split picture, and what its halves show.
     fn draw_split(&self, picture: &mut RgbaImage) -> Result<(), ShotError> {
         let Some(split) = self.subject.settings.split else { return Ok(()) };
+        let split = (self.subject.settings.split_view != SplitView::Difference).then_some(split);
         Ok(draw_titles(picture, split, &SplitSide::BOTH.map(|half| self.half_title(half)))?)
     }
 

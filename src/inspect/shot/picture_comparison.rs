@@ -40,12 +40,15 @@ pub fn compare(picture: &RgbaImage, reference: &RgbaImage) -> Result<Comparison,
     })
 }
 
+/// How bright the smallest difference is in a picture of differences, in steps of 255.
+pub(crate) const DIFFERENCE_FLOOR: u8 = 64;
+
 /// A picture of the differences between pictures of one size: px that differ by more than so many steps are grey to white,
 /// and all others black.
 pub(crate) fn difference_picture(picture: &RgbaImage, reference: &RgbaImage, steps: f32) -> GrayImage {
     GrayImage::from_fn(picture.width(), picture.height(), |x, y| {
         let step = largest_step(picture.get_pixel(x, y).0, reference.get_pixel(x, y).0);
-        Luma([if f32::from(step) > steps { step.saturating_add(64) } else { 0 }])
+        Luma([if f32::from(step) > steps { step.saturating_add(DIFFERENCE_FLOOR) } else { 0 }])
     })
 }
 

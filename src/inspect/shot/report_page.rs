@@ -13,7 +13,7 @@ use super::files::write_text;
 use super::picture_file::png_bytes;
 use super::{Shot, ShotError, StatsWanted};
 use crate::gates::{Gate, GateKind, Judgement, Limit};
-use crate::settings::SplitSide;
+use crate::settings::{Settings, SplitSide, SplitView};
 use geometry::names::on_one_line;
 use geometry::numbers::{grouped, short};
 use geometry::progress::Progress;
@@ -51,7 +51,8 @@ impl Shot {
 
     /// The picture, or each half of a split one alone, as a PNG file with its title.
     fn figures(&mut self, progress: &Progress) -> Result<Vec<(String, Vec<u8>)>, ShotError> {
-        let split = self.subject.settings.split;
+        let Settings { split, split_view, .. } = self.subject.settings;
+        self.subject.settings.split_view = SplitView::Divider;
         let halves: &[_] = if split.is_some() {
             &[(SplitSide::Left, 1.0), (SplitSide::Right, 0.0)]
         } else {
@@ -65,7 +66,7 @@ impl Shot {
                 .map_err(|error| ShotError::Output(std::io::Error::other(error)))?;
             figures.push((self.half_title(half), bytes));
         }
-        self.subject.settings.split = split;
+        (self.subject.settings.split, self.subject.settings.split_view) = (split, split_view);
         Ok(figures)
     }
 }

@@ -59,14 +59,15 @@ fn counted(count: Option<u64>, one: &str) -> Option<String> {
     count.map(|count| geometry::numbers::counted(count, one))
 }
 
-/// Draws the divider, and the titles of both halves beside it.
+/// Draws the divider, if there is one, and the titles of both halves beside it or the middle.
 ///
 /// # Errors
 /// The font can't be used.
-pub(super) fn draw_titles(picture: &mut RgbaImage, split: f32, titles: &[String; 2]) -> Result<(), ChartError> {
+pub(super) fn draw_titles(picture: &mut RgbaImage, split: Option<f32>, titles: &[String; 2]) -> Result<(), ChartError> {
     let (width, height) = picture.dimensions();
-    let at = (split.clamp(0.0, 1.0) * width as f32).round() as u32;
-    for x in at.saturating_sub(1)..(at + 1).min(width) {
+    let at = (split.unwrap_or(0.5).clamp(0.0, 1.0) * width as f32).round() as u32;
+    let columns = at.saturating_sub(1)..(at + 1).min(width);
+    for x in columns.filter(|_| split.is_some()) {
         (0..height).for_each(|y| picture.put_pixel(x, y, DIVIDER));
     }
     for (half, title) in SplitSide::BOTH.into_iter().zip(titles) {

@@ -195,3 +195,33 @@ fn what_is_drawn_within_the_tolerance_is_never_fewer_than_the_least() {
     }
     assert!(found_more > 0, "the search alone should find more somewhere");
 }
+
+#[test]
+fn the_numbers_of_a_formula_give_the_factor_of_the_edge() {
+    for lod in [Lod::Paper, Lod::EdgeLength, Lod::Distance, Lod::Uniform] {
+        for kind in [Shape::Torus, Shape::CubeSplit] {
+            let own = Tessellation { pixels: 30.0, factor: 9.0, near: 1.5, far: 4.0, ..Tessellation::default() };
+            let (mesh, topology, inputs) = shape(kind, own);
+            let inputs = Inputs { tessellation: Tessellation { lod, ..inputs.tessellation }, ..inputs };
+            let nets = ControlNets::new(&mesh, &topology, &inputs);
+            let given = edge_factors(&mesh, &topology, &inputs);
+            let out = tessellate(&mesh, &topology, &inputs, None);
+            let mut above = 0;
+            for (patch, &used) in (0..).zip(&out.patch_factors) {
+                let formulas =
+                    explain_patch(&mesh, &topology, &inputs, patch, used).formulas.expect("it has a formula");
+                for (side, formula) in formulas.into_iter().enumerate() {
+                    let factor = match formula {
+                        EdgeFormula::Uniform => 9.0,
+                        EdgeFormula::Length { px, segment } => (px / segment).max(1.0),
+                        EdgeFormula::Distance { factors: [a, b], .. } => 0.5 * (a + b),
+                    };
+                    let expected = given[nets.patch_factor(patch, side) as usize];
+                    assert!((factor - expected).abs() < 1e-5 * expected, "{lod:?} {kind:?}: {formula:?}, {expected}");
+                    above += usize::from(expected > 1.0);
+                }
+            }
+            assert!(above > out.patch_factors.len(), "{lod:?}: {above} of {} sides", 3 * out.patch_factors.len());
+        }
+    }
+}

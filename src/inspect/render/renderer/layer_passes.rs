@@ -3,8 +3,9 @@
 use super::Renderer;
 use super::picture::Picture;
 use super::surfaces::{MaterialDraw, Surfaces};
-use crate::render::covered_area::{Area, covered_area, intersection, is_empty, union};
+use crate::render::covered_area::{Area, covered_area, is_empty, union};
 use crate::render::draws::{Draw, Faces, LayerDraw, Shading, SurfaceDraw, Triangles};
+use crate::render::halves::HalfPlace;
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, PictureKind, has_layers};
 use crate::render::steps::{LayerPart, LayerStep};
@@ -31,7 +32,7 @@ impl Renderer {
         LayerStep { pass, part, is_first }: LayerStep,
     ) -> Result<(), GpuError> {
         let Picture { target, settings, layer_areas, frames, .. } = picture;
-        let all = union(layer_areas[0], layer_areas[1]);
+        let all = union(layer_areas[0].area, layer_areas[1].area);
         if is_empty(all) {
             return Ok(());
         }
@@ -62,7 +63,7 @@ impl Renderer {
             render_pass.set_bind_group(3, &layer_group, &[]);
             if let Some(LayerPart { chunk, .. }) = part {
                 let chunk = drawn.tessellator.chunk(chunk);
-                self.draw_chunk(render_pass, drawn, layer_areas[half as usize], &surfaces, &chunk);
+                self.draw_chunk(render_pass, drawn, &layer_areas[half as usize], &surfaces, &chunk);
             }
         });
         Ok(())
@@ -108,24 +109,24 @@ impl Renderer {
         mesh.materials.iter().zip(groups).map(of_material).collect()
     }
 
-    /// The parts of both halves, which lie in `rects`, that layers can cover: nothing in a picture without layers, or in a draft.
+    /// The parts of both halves, which are at these places, that layers can cover: nothing in a picture without layers, or in a draft.
     pub(super) fn layer_areas(
         &self,
         scene: &Scene,
         target: &Target,
         camera: &Camera,
         settings: &Settings,
-        rects: [Area; 2],
-    ) -> [Area; 2] {
-        if target.is_draft() || !settings.shows_materials() {
-            return [[0; 4]; 2];
-        }
-        SplitSide::BOTH.map(|half| match settings.half(half).zip(scene.half(half)) {
+        places: [HalfPlace; 2],
+    ) -> [HalfPlace; 2] {
+        let is_without = target.is_draft() || !settings.shows_materials();
+        let whole = [0, 0, target.size[0], target.size[1]];
+        let covered = |half| match settings.half(half).zip(scene.half(half)).filter(|_| !is_without) {
             Some((_, own)) if !has_layers(own.tessellator.mesh()) => [0; 4],
-            Some(_) if self.peels_everywhere => rects[half as usize],
-            Some((settings, own)) => intersection(layer_area(own, target, camera, &settings), rects[half as usize]),
+            Some(_) if self.peels_everywhere => whole,
+            Some((settings, own)) => layer_area(own, target, camera, &settings),
             None => [0; 4],
-        })
+        };
+        SplitSide::BOTH.map(|half| places[half as usize].part(covered(half)))
     }
 
     fn layer_group(&self, picture: &Picture, pass: LayerPass) -> Result<wgpu::BindGroup, GpuError> {

@@ -1,13 +1,14 @@
 //! Draws a picture, step by step: see [`steps`](crate::render::steps).
 
 use super::Renderer;
-use super::surfaces::{Surfaces, confine};
-use crate::render::covered_area::{Area, is_empty};
+use super::surfaces::Surfaces;
+use crate::render::covered_area::is_empty;
 use crate::render::draws::{Draw, Occluded};
 use crate::render::frame::frame;
 use crate::render::ground::Ground;
+use crate::render::halves::{HalfPlace, half_places};
 use crate::render::layout::linear;
-use crate::render::steps::{Step, halves, steps};
+use crate::render::steps::{Step, steps};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ColorSource, Settings, SplitSide};
 use gpu::{GpuError, Recorder};
@@ -16,10 +17,10 @@ use gpu::{GpuError, Recorder};
 pub(super) struct Picture<'a> {
     pub target: &'a Target,
     pub settings: &'a Settings,
-    /// Of both halves: x, y, width and height in px.
-    pub rects: [Area; 2],
+    /// Where both halves are.
+    pub places: [HalfPlace; 2],
     /// The parts of both halves that layers can cover.
-    pub layer_areas: [Area; 2],
+    pub layer_areas: [HalfPlace; 2],
     /// The constants of both halves.
     pub frames: [Option<wgpu::Buffer>; 2],
     /// The bind groups of both halves' materials.
@@ -55,23 +56,23 @@ impl Renderer {
         settings: &'a Settings,
     ) -> Result<Picture<'a>, GpuError> {
         let light = self.light(scene, settings)?;
-        let rects = halves(target.size, settings.split);
+        let places = half_places(target.size, settings);
         let half_frame = |half| {
             let (drawn, settings) = scene.half(half).zip(settings.half(half))?;
             let radius = scene.bounds.radius();
-            Some(frame(&self.gpu, drawn, radius, target, camera, &settings, rects[half as usize][0]))
+            Some(frame(&self.gpu, drawn, radius, target, camera, &settings, &places[half as usize]))
         };
         let steps = steps(scene, settings);
         let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
-        let layer_areas = self.layer_areas(scene, target, camera, settings, rects);
-        let has_layers = !layer_areas.into_iter().all(is_empty);
+        let layer_areas = self.layer_areas(scene, target, camera, settings, places);
+        let has_layers = !layer_areas.iter().all(|place| is_empty(place.area));
         let found_materials = |half| match scene.half(half) {
             Some(own) if has_layers => self.materials.found_groups(&self.gpu, &own.materials, target.depths()),
             _ => Vec::new(),
         };
         let materials = |half| self.material_groups(scene, half, settings, light.as_ref());
         Ok(Picture {
-            rects,
+            places,
             layer_areas,
             found_materials: SplitSide::BOTH.map(found_materials),
             frames: SplitSide::BOTH.map(half_frame),
@@ -98,8 +99,11 @@ impl Renderer {
     ) -> Result<(), GpuError> {
         let &Picture { target, settings, camera, .. } = picture;
         let step = picture.steps[index];
-        if matches!(step, Step::Layer(_)) && picture.layer_areas.into_iter().all(is_empty) {
-            return Ok(());
+        match step {
+            Step::Layer(_) if picture.layer_areas.iter().all(|place| is_empty(place.area)) => return Ok(()),
+            Step::Keep => return target.keep(recorder, &self.gpu, 0),
+            Step::Difference => return self.difference.draw(recorder, &self.gpu, target),
+            _ => {}
         }
         let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
         if let Some(chunk) = step.chunk() {
@@ -131,39 +135,41 @@ impl Renderer {
         surfaces: &Surfaces,
         beside: &Beside,
     ) {
-        let Picture { target, rects, frames, .. } = picture;
-        let (step, is_first, is_last) = (picture.steps[index], index == 0, index + 1 == picture.steps.len());
+        let Picture { target, places, frames, steps, .. } = picture;
+        let ends = |at: Option<usize>| {
+            at.and_then(|at| steps.get(at)).is_none_or(|step| matches!(step, Step::Keep | Step::Difference))
+        };
+        let (step, is_first, is_last) = (steps[index], ends(index.checked_sub(1)), ends(Some(index + 1)));
         let half = step.half();
         let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { return };
-        let (group, rect) = (self.scene_group(drawn, frame), rects[half as usize]);
+        let (group, place) = (self.scene_group(drawn, frame), &places[half as usize]);
         let color = target.color(linear_color(picture.settings.background_color()), is_first, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, &group, &[]);
             if let Some((pipeline, group)) = picture.background.as_ref().filter(|_| is_first) {
                 pass.set_pipeline(pipeline);
                 pass.set_bind_group(1, group, &[]);
-                pass.draw(0..3, 0..1);
+                draw_in(pass, places, 3);
             }
             match step {
                 Step::Surface(_, chunk) => {
                     pass.set_bind_group(3, &self.measured_group(drawn, chunk), &[]);
-                    self.draw_chunk(pass, drawn, rect, surfaces, &drawn.tessellator.chunk(chunk));
+                    self.draw_chunk(pass, drawn, place, surfaces, &drawn.tessellator.chunk(chunk));
                 }
                 Step::Normals(_, chunk) => {
                     let pipelines = beside.normals.iter().flatten();
-                    self.draw_normals(pass, pipelines, rect, &drawn.tessellator.chunk(chunk));
+                    self.draw_normals(pass, pipelines, place, &drawn.tessellator.chunk(chunk));
                 }
-                Step::Over | Step::Layer(_) => {}
+                Step::Over | Step::Layer(_) | Step::Keep | Step::Difference => {}
             }
             if let Some(ground) = &beside.ground {
                 // Both halves have the same ground.
-                pass.set_scissor_rect(0, 0, target.size[0], target.size[1]);
                 pass.set_pipeline(ground);
-                pass.draw(0..6, 0..1);
+                draw_in(pass, places, 6);
             }
             if let Some(lines) = &beside.lines {
                 for half in SplitSide::BOTH {
-                    scene.half(half).into_iter().for_each(|own| draw_lines(pass, lines, own, rects[half as usize]));
+                    scene.half(half).into_iter().for_each(|own| draw_lines(pass, lines, own, &places[half as usize]));
                 }
             }
         });
@@ -177,7 +183,8 @@ impl Renderer {
         let &Picture { settings, ref steps, .. } = picture;
         let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
         let has_lines = has_lines && index + 1 == steps.len();
-        let has_ground = index == picture.ground_step && settings.overlays.grid;
+        let compares = matches!(steps.last(), Some(Step::Difference));
+        let has_ground = index == picture.ground_step && settings.overlays.grid && !compares;
         let has_normals = matches!(steps[index], Step::Normals(..));
         Ok(Beside {
             normals: has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?,
@@ -201,8 +208,17 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
     before_layers.unwrap_or(steps.len() - 1)
 }
 
-fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2], scene: &Scene, area: Area) {
-    if let Some((buffer, count)) = scene.lines.as_ref().filter(|_| confine(pass, area)) {
+/// Draws a number of corners in both halves.
+fn draw_in(pass: &mut wgpu::RenderPass, places: &[HalfPlace; 2], corners: u32) {
+    for place in places {
+        if place.confine(pass) {
+            pass.draw(0..corners, 0..1);
+        }
+    }
+}
+
+fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2], scene: &Scene, place: &HalfPlace) {
+    if let Some((buffer, count)) = scene.lines.as_ref().filter(|_| place.confine(pass)) {
         pass.set_vertex_buffer(0, buffer.slice(..));
         for pipeline in pipelines {
             pass.set_pipeline(pipeline);

@@ -2,8 +2,8 @@
 
 use super::Renderer;
 use crate::render::coverage::Coverage;
-use crate::render::covered_area::{Area, is_empty};
 use crate::render::draws::{Draw, Faces, Triangles};
+use crate::render::halves::HalfPlace;
 use crate::render::surface_draws::{emitted_triangles, surface_draw};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{Overlays, Settings};
@@ -93,11 +93,11 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass,
         scene: &Scene,
-        area: Area,
+        place: &HalfPlace,
         surfaces: &Surfaces,
         chunk: &ChunkBuffers,
     ) {
-        if !confine(pass, area) {
+        if !place.confine(pass) {
             return;
         }
         pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
@@ -129,10 +129,10 @@ impl Renderer {
         &self,
         pass: &mut wgpu::RenderPass,
         pipelines: impl Iterator<Item = &'a wgpu::RenderPipeline>,
-        area: Area,
+        place: &HalfPlace,
         chunk: &ChunkBuffers,
     ) {
-        if !confine(pass, area) {
+        if !place.confine(pass) {
             return;
         }
         pass.set_bind_group(2, &self.chunk_group(chunk), &[]);
@@ -142,15 +142,6 @@ impl Renderer {
             pass.draw(0..6, 0..chunk.chunk.vertex_count);
         }
     }
-}
-
-/// Confines draws to an area. Returns false if nothing is in it.
-pub(super) fn confine(pass: &mut wgpu::RenderPass, area: Area) -> bool {
-    let [x, y, width, height] = area;
-    if !is_empty(area) {
-        pass.set_scissor_rect(x, y, width, height);
-    }
-    !is_empty(area)
 }
 
 fn set_vertices(pass: &mut wgpu::RenderPass, chunk: &ChunkBuffers) {

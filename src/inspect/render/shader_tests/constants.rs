@@ -22,6 +22,7 @@ use crate::render::scale::Scale;
 use crate::render::sheen::LEAST_SHEEN_ALPHA;
 use crate::render::tone::{COMPRESSION_START, DESATURATION};
 use crate::settings::{Colors, Overlays, ToneCurve};
+use crate::shot::DIFFERENCE_FLOOR;
 use geometry::mesh::{EdgeKind, MAX_MAPS, MOST_LIGHTS, RELIEF_STEPS, Slot};
 use geometry::tessellate::shared_constants::{
     AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
@@ -270,6 +271,7 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("BITS_ONE_AND_STEP", number(BITS_ONE_AND_STEP)),
         ("PATTERN_HALVES", number(PATTERN_HALVES)),
         ("PATTERN_STEPS", number(PATTERN_STEPS)),
+        ("DIFFERENCE_FLOOR", number(DIFFERENCE_FLOOR)),
     ]
 }
 

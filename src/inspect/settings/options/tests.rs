@@ -24,6 +24,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         curvature_scale,
         matcap,
         split,
+        split_view,
         left,
         section,
         section_at,
@@ -82,6 +83,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("curvature_scale", format!("{curvature_scale:?}")),
         ("matcap", format!("{matcap:?}")),
         ("split", format!("{split:?}")),
+        ("split_view", format!("{split_view:?}")),
         ("split_left", format!("{left:?}")),
         ("section", format!("{section:?}")),
         ("section_at", format!("{section_at:?}")),
@@ -218,6 +220,7 @@ fn unused_options_have_no_effect() {
         "deviation-in",
         "curvature-scale",
         "matcap",
+        "split-view",
         "split-left",
         "section-at",
     ];
@@ -255,7 +258,7 @@ fn unused_options_have_no_effect() {
         idle(&phong_left),
         with_light(
             &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
-            &["curvature-scale", "matcap", "split-left", "section-at"]
+            &["curvature-scale", "matcap", "split-view", "split-left", "section-at"]
         )
     );
     phong_left.split = Some(0.5);
