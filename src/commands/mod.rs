@@ -7,7 +7,7 @@ mod files;
 mod fixed;
 mod generated;
 #[cfg(test)]
-mod page;
+mod page_tests;
 
 use std::borrow::Cow;
 use std::path::PathBuf;
