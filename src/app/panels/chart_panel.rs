@@ -258,10 +258,10 @@ fn legend(ui: &mut egui::Ui, charted: &Charted, plan: Option<&Plan>, is_stale: b
         };
         for lod in LodKind::ALL.into_iter().filter(|lod| has_lod(*lod)) {
             let place = legend_entry(ui, 30.0, lod_name(lod), "The dashes of lines between settings with this LOD.");
-            sample(ui, place, egui::Stroke::new(1.4, inks.text()), dash(lod));
+            sample(ui, place, egui::Stroke::new(1.4, inks.text), dash(lod));
         }
         let place = legend_entry(ui, 26.0, "Front", "Settings that no other setting beats in both error and cost.");
-        sample(ui, place, egui::Stroke::new(9.0, inks.front()), None);
+        sample(ui, place, egui::Stroke::new(9.0, inks.front), None);
     });
 }
 
