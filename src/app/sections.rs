@@ -2,75 +2,48 @@
 
 use egui::{Color32, Rect, Sense, Shape, Stroke, pos2, vec2};
 
-/// A section of the left or of the right panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::app) enum Section {
-    Surface,
-    LevelOfDetail,
-    Displacement,
-    Parts,
-    Animation,
-    Look,
-    Import,
-    Advanced,
-    Patch,
-    Factors,
-    LodShader,
-    Deviation,
-    Cracks,
-    Patches,
-    Waste,
-    Edges,
-    Mesh,
-    Passes,
+/// Declares the sections of the left and of the right panel: each with its title, and whether it is open at the first
+/// start, as what people set and read every day is.
+macro_rules! sections {
+    ($($section:ident => $title:literal, $opens:literal;)+) => {
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(in crate::app) enum Section {
+            $($section),+
+        }
+
+        impl Section {
+            pub(in crate::app) const ALL: [Self; [$($title),+].len()] = [$(Self::$section),+];
+            const OPEN_AT_FIRST: [bool; Self::ALL.len()] = [$($opens),+];
+
+            /// Its title in the window, by which it is saved too.
+            pub(in crate::app) fn title(self) -> &'static str {
+                match self {
+                    $(Self::$section => $title,)+
+                }
+            }
+        }
+    };
 }
 
-impl Section {
-    pub(in crate::app) const ALL: [Self; 18] = geometry::names::every![Section:
-        Surface, LevelOfDetail, Displacement, Parts, Animation, Look, Import, Advanced, Patch, Factors, LodShader, Deviation, Cracks, Patches, Waste,
-        Edges, Mesh, Passes,
-    ];
-
-    /// Its title in the window, by which it is saved too.
-    pub(in crate::app) fn title(self) -> &'static str {
-        match self {
-            Self::Surface => "Surface",
-            Self::Parts => "Parts",
-            Self::LevelOfDetail => "Level of detail",
-            Self::Displacement => "Displacement",
-            Self::Animation => "Animation",
-            Self::Look => "Look",
-            Self::Import => "Import",
-            Self::Advanced => "Advanced",
-            Self::Patch => "Patch",
-            Self::Factors => "Factors of a file",
-            Self::LodShader => "Factors of a shader",
-            Self::Deviation => "Deviation",
-            Self::Cracks => "Cracks",
-            Self::Patches => "Patches",
-            Self::Waste => "Waste",
-            Self::Edges => "Edges",
-            Self::Mesh => "Mesh",
-            Self::Passes => "Passes",
-        }
-    }
-
-    /// Whether it is open at the first start: what people set and read every day is.
-    fn opens(self) -> bool {
-        !matches!(
-            self,
-            Self::Look
-                | Self::Import
-                | Self::Displacement
-                | Self::Advanced
-                | Self::Cracks
-                | Self::Patches
-                | Self::Waste
-                | Self::Edges
-                | Self::Mesh
-                | Self::Passes
-        )
-    }
+sections! {
+    Surface => "Surface", true;
+    LevelOfDetail => "Level of detail", true;
+    Displacement => "Displacement", false;
+    Parts => "Parts", true;
+    Animation => "Animation", true;
+    Look => "Look", false;
+    Import => "Import", false;
+    Advanced => "Advanced", false;
+    Patch => "Patch", true;
+    Factors => "Factors of a file", true;
+    LodShader => "Factors of a shader", true;
+    Deviation => "Deviation", true;
+    Cracks => "Cracks", false;
+    Patches => "Patches", false;
+    Waste => "Waste", false;
+    Edges => "Edges", false;
+    Mesh => "Mesh", false;
+    Passes => "Passes", false;
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +51,7 @@ pub(in crate::app) struct OpenSections([bool; Section::ALL.len()]);
 
 impl Default for OpenSections {
     fn default() -> Self {
-        Self(Section::ALL.map(Section::opens))
+        Self(Section::OPEN_AT_FIRST)
     }
 }
 

@@ -203,11 +203,7 @@ pub(super) fn switch_button(is_on: bool, label: &str) -> egui::Button<'_> {
 
 /// The width of a text in the usual font, in points.
 pub(super) fn text_width(ui: &egui::Ui, text: &str) -> f32 {
-    text_width_in(ui, text, egui::TextStyle::Body.resolve(ui.style()))
-}
-
-/// The width of a text in points.
-pub(super) fn text_width_in(ui: &egui::Ui, text: &str, font: egui::FontId) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
     ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x
 }
 

@@ -50,10 +50,8 @@ pub struct AdapterOption {
 impl AdapterOption {
     /// Refuses --adapter where the CPU computes.
     pub fn check(&self, is_cpu: bool) -> Result<(), CliError> {
-        refuse(
-            is_cpu && self.adapter.is_some(),
-            "--adapter chooses a graphics adapter, but --device cpu uses none: leave one of them out",
-        )
+        let has_both = is_cpu && self.adapter.is_some();
+        refuse(has_both, "--adapter chooses a graphics adapter, but --device cpu uses none: leave one of them out")
     }
 
     pub fn choice(&self) -> AdapterChoice {

@@ -93,10 +93,8 @@ pub struct Args {
 
 impl Args {
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
-        refuse(
-            self.reference_shape.is_some() && self.files.len() != 1,
-            "--reference-surface takes one mesh: chart the others on their own",
-        )?;
+        let is_unclear = self.reference_shape.is_some() && self.files.len() != 1;
+        refuse(is_unclear, "--reference-surface takes one mesh: chart the others on their own")?;
         let settings = self.plan().settings();
         refuse(settings.is_empty(), "subtriangulation has uniform LOD only: add uniform to --lods")?;
         Ok(settings)
@@ -237,11 +235,8 @@ impl Session {
         }
         let LeftOut { too_large, most_triangles, .. } = left_out;
         if too_large > 0 {
-            let count = settings.len();
-            let said = format!(
-                "{title}: {too_large} of {count} settings have more than {most_triangles} triangles and are left out."
-            );
-            super::warn(&[said]);
+            let of = format!("{title}: {too_large} of {} settings", settings.len());
+            super::warn(&[format!("{of} have more than {most_triangles} triangles and are left out.")]);
         }
         let reference_shape = reference_shape.as_ref().map(|(_, words)| words.clone());
         let adapter = self.engine.gpu.info.name.clone();

@@ -91,15 +91,11 @@ const MOST: u64 = 100_000_000;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.surface.check(None)?;
-    refuse(
-        args.adapter.adapter.is_some() && args.output.is_none(),
-        "--adapter draws the picture of -o: give -o as well, or leave --adapter out",
-    )?;
+    let draws_nothing = args.adapter.adapter.is_some() && args.output.is_none();
+    refuse(draws_nothing, "--adapter draws the picture of -o: give -o as well, or leave --adapter out")?;
     let is_csv = matches!(ending(&args.theirs).as_str(), "csv" | "tsv");
-    refuse(
-        args.position_column.is_some() && !is_csv,
-        "--position-column names a column of a .csv file, which THEIRS isn't",
-    )?;
+    let has_no_columns = args.position_column.is_some() && !is_csv;
+    refuse(has_no_columns, "--position-column names a column of a .csv file, which THEIRS isn't")?;
     let heights = file_of_heights(args.surface.height.as_ref());
     let read = [Some(&*args.theirs), file_of(&args.mesh), heights, args.given.given.as_deref()];
     keep_apart(read, [args.output.as_deref()])?;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::options::LOD_OPTIONS;
 use super::{CliError, note};
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{HullFactors, Tessellation};
@@ -13,11 +14,7 @@ pub struct FactorsOption {
     /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
     /// patch,e0,e1,e2,inside (under rows patch,e0,e1,e2,base,width,flipped) and a line for each triangle, as the factors
     /// command or another engine writes it. Standard error lists edges whose two sides have different factors, and names the convention under which all sides agree
-    #[arg(
-        long = "factors",
-        value_name = "CSV",
-        conflicts_with_all = ["lod", "factor", "pixels", "distances", "max_triangles"]
-    )]
+    #[arg(long = "factors", value_name = "CSV", conflicts_with_all = LOD_OPTIONS)]
     pub given: Option<PathBuf>,
 }
 

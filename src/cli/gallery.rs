@@ -43,10 +43,8 @@ pub struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
-    refuse(
-        args.camera.distance.is_some(),
-        "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled",
-    )?;
+    let is_far = args.camera.distance.is_some();
+    refuse(is_far, "--camera takes AZIMUTH,ELEVATION here: the distance is chosen so that each tile is filled")?;
     let options = GalleryOptions {
         source: args.file.clone(),
         preparation: Preparation { heights: args.height.clone(), ..args.weld.preparation() },

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use super::options::LOD_OPTIONS;
 use super::{CliError, FactorsOption, refuse};
 use geometry::tessellate::Tessellation;
 use gpu::Given;
@@ -11,11 +12,7 @@ use inspect::user_shader::read_user_shader;
 pub struct LodShaderOption {
     /// Compute factors on the GPU by functions of your own in place of LOD's: a WGSL file with the function edge_factor, and perhaps
     /// inside_factor. The manual's page on own shaders says what they get. Standard error lists edges whose two sides got different factors
-    #[arg(
-        long,
-        value_name = "WGSL",
-        conflicts_with_all = ["lod", "factor", "pixels", "distances", "max_triangles"]
-    )]
+    #[arg(long, value_name = "WGSL", conflicts_with_all = LOD_OPTIONS)]
     pub lod_shader: Option<PathBuf>,
 }
 
@@ -32,10 +29,8 @@ impl LodShaderOption {
 
     /// Checks that no file has factors as well.
     pub(crate) fn check_alone(&self, factors: &FactorsOption) -> Result<(), CliError> {
-        refuse(
-            self.lod_shader.is_some() && factors.given.is_some(),
-            "--factors and --lod-shader both take the place of LOD: choose one",
-        )
+        let has_both = self.lod_shader.is_some() && factors.given.is_some();
+        refuse(has_both, "--factors and --lod-shader both take the place of LOD: choose one")
     }
 
     /// Checks that nothing is to be computed on the CPU.

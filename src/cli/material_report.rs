@@ -4,6 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
+use geometry::choice::Choice;
 use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Slot};
 use geometry::names::shown;
 
@@ -29,8 +30,7 @@ pub(super) struct MaterialInfo {
 /// An image beside that of the base colour.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct MapInfo {
-    /// `metallic-roughness`, `normal`, `occlusion`, `emissive`, `transmission`, `sheen-color`, `sheen-roughness`, `clearcoat`,
-    /// `clearcoat-roughness`, `clearcoat-normal`, `specular` or `specular-color`.
+    /// The name of a [`Slot`].
     pub slot: &'static str,
     /// Width and height in px.
     pub size: [u32; 2],
@@ -86,25 +86,25 @@ impl MaterialInfo {
 }
 
 fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
-    let (slot, strength) = match slot {
-        Slot::MetallicRoughness => ("metallic-roughness", None),
-        Slot::Normal => ("normal", Some(look.normal_scale)),
-        Slot::Occlusion => ("occlusion", Some(look.occlusion_strength)),
-        Slot::Emissive => ("emissive", None),
-        Slot::Transmission => ("transmission", None),
-        Slot::SheenColor => ("sheen-color", None),
-        Slot::SheenRoughness => ("sheen-roughness", None),
-        Slot::Clearcoat => ("clearcoat", None),
-        Slot::ClearcoatRoughness => ("clearcoat-roughness", None),
-        Slot::ClearcoatNormal => ("clearcoat-normal", Some(look.clearcoat_normal_scale)),
-        Slot::Specular => ("specular", None),
-        Slot::SpecularColor => ("specular-color", None),
+    let strength = match slot {
+        Slot::Normal => Some(look.normal_scale),
+        Slot::Occlusion => Some(look.occlusion_strength),
+        Slot::ClearcoatNormal => Some(look.clearcoat_normal_scale),
+        Slot::MetallicRoughness
+        | Slot::Emissive
+        | Slot::Transmission
+        | Slot::SheenColor
+        | Slot::SheenRoughness
+        | Slot::Clearcoat
+        | Slot::ClearcoatRoughness
+        | Slot::Specular
+        | Slot::SpecularColor => None,
     };
     let uv_set = match map.uv {
         MapUv::Own => None,
         MapUv::Set(set, _) => Some(set),
     };
-    MapInfo { slot, size: map.texture.size, uv_set, strength }
+    MapInfo { slot: slot.name(), size: map.texture.size, uv_set, strength }
 }
 
 /// Numbers of a colour, separated by spaces.

@@ -38,6 +38,9 @@ pub(crate) use values::{
 };
 pub(crate) use view::{MeshAt, ViewOptions};
 
+/// The options about LOD, which can't be given with something that takes its place.
+pub(crate) const LOD_OPTIONS: [&str; 5] = ["lod", "factor", "pixels", "distances", "max_triangles"];
+
 /// How a mesh is tessellated, and where it is seen from.
 #[derive(Clone, Debug, Args)]
 pub struct SurfaceOptions {
@@ -96,19 +99,13 @@ impl SurfaceOptions {
         )?;
         let usual = Tessellation::default();
         let takes_heights = self.height.is_some() || own.displacement.is_on();
-        refuse(
-            !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel),
-            "--height-scale and --midlevel need --height, or --displacement",
-        )?;
+        let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);
+        refuse(is_lost, "--height-scale and --midlevel need --height, or --displacement")?;
         let has_strength = own.surface.is_phong() || other.is_some_and(Surface::is_phong);
-        refuse(
-            !has_strength && own.alpha != usual.alpha,
-            "--alpha needs --surface phong or phong-aen, whose strength it is",
-        )?;
-        refuse(
-            self.max_triangles.is_some() && !own.lod.is_by_error(),
-            "--max-triangles needs --lod error, whose tolerance it raises",
-        )
+        let is_lost = !has_strength && own.alpha != usual.alpha;
+        refuse(is_lost, "--alpha needs --surface phong or phong-aen, whose strength it is")?;
+        let is_lost = self.max_triangles.is_some() && !own.lod.is_by_error();
+        refuse(is_lost, "--max-triangles needs --lod error, whose tolerance it raises")
     }
 
     /// What is done to the mesh after it was read. Displacement without an image uses the materials' images.

@@ -81,11 +81,8 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
 /// Like [`run`], with an engine that is made once the arguments have been checked.
 pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     let files = ViewFiles::new(&args.output, ENDINGS, &args.cameras);
-    let views = files.views(
-        &args.cameras,
-        &args.shot.surface,
-        "--cameras draws several pictures: name a folder with -o, or put {} where the views' names go",
-    )?;
+    let several = "--cameras draws several pictures: name a folder with -o, or put {} where the views' names go";
+    let views = files.views(&args.cameras, &args.shot.surface, several)?;
     let mut written = files.checked(&views);
     written.push(args.stats.as_deref());
     let places: Vec<Option<PathBuf>> = views.iter().map(|view| args.reference_of(view)).collect();

@@ -82,10 +82,8 @@ impl ShotOptions {
         let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
         refuse(has_file && !needs_file, "--environment is the light of --lighting environment: choose one light")?;
         refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
-        refuse(
-            self.split_with.is_some() && self.picture.0.split.is_none(),
-            "--split-with needs --split, which shows it",
-        )?;
+        let is_hidden = self.split_with.is_some() && self.picture.0.split.is_none();
+        refuse(is_hidden, "--split-with needs --split, which shows it")?;
         let reference_shape = self.reference_shape.reference_shape.as_ref().and_then(file_of);
         let left = self.split_with.as_ref().and_then(file_of);
         let heights = file_of_heights(self.surface.height.as_ref());

@@ -99,10 +99,8 @@ impl Args {
         self.user_lod.check_alone(&self.given)?;
         self.user_surface.check(self.device == Device::Cpu, &self.gates.gates.fail_on)?;
         self.gates.check(self.device == Device::Cpu)?;
-        refuse(
-            self.gates.gates.has(GateKind::Deviation),
-            "--fail-on deviation needs a reference surface, which render and check take",
-        )
+        let compares = self.gates.gates.has(GateKind::Deviation);
+        refuse(compares, "--fail-on deviation needs a reference surface, which render and check take")
     }
 }
 

@@ -37,10 +37,8 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
     let written = turn.files(&args.output);
     let written: Vec<_> = written.iter().map(|path| Some(path.as_path())).collect();
     args.shot.check(&args.file, &[], &written)?;
-    refuse(
-        args.shot.surface.view.view_projection.is_some(),
-        "--view-projection is one view, and a turntable turns its camera: use --camera",
-    )?;
+    let stays = args.shot.surface.view.view_projection.is_some();
+    refuse(stays, "--view-projection is one view, and a turntable turns its camera: use --camera")?;
     let (subject, _) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(Engine::chosen(&args.adapter.choice())?, subject)?;
     shot.report_user_shaders()?;

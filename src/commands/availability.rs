@@ -2,111 +2,83 @@
 
 use std::path::PathBuf;
 
-use geometry::names::every;
 use inspect::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
 
 /// The greatest number of bookmarks of a file: one for each key from 1 to 9.
 pub(crate) const MOST_BOOKMARKS: usize = 9;
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Need {
-    Document,
-    /// A mesh that a file has, with axes and a unit, and not a shape that is made in code.
-    File,
-    /// Another mesh in the folder, or among those that were dropped together.
-    Neighbours,
-    /// A picture of the document.
-    Picture,
-    /// No other file is being written.
-    NoWriting,
-    /// A reference surface that was chosen for the mesh.
-    ReferenceShape,
-    /// Another mesh left of the split.
-    LeftMesh,
-    /// The mesh before its file changed.
-    Before,
-    /// Factors of a file in place of LOD's.
-    Factors,
-    LodShader,
-    SurfaceShader,
-    /// No function of the user's own in place of the surface.
-    Surface,
-    Environment,
-    Undo,
-    Redo,
-    ViewBefore,
-    ViewAfter,
-    Bookmarks,
-    RoomForBookmarks,
-    /// An edge or a triangle.
-    Selection,
-    SelectedPatch,
-    /// Heights of the mesh, which can displace it.
-    Heights,
-    TextureCoordinates,
-    /// Normals that can be evaluated at pixels.
-    NormalsAt,
-    /// An LOD that takes a tessellation factor.
-    Factor,
-    /// A partitioning that leaves a choice of LOD.
-    Lod,
-    /// Backs of the mesh that can't be seen.
-    Culling,
-    Split,
-    Frozen,
-    Deviation,
-    /// The chart's panel, with something to measure.
-    MeasurableChart,
-    /// Points in the chart.
-    Chart,
-    Clips,
+/// Declares what commands need, each with the reason why they aren't possible without it, in a sentence.
+macro_rules! needs {
+    ($($(#[$of_need:meta])* $need:ident => $why_not:expr,)+) => {
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum Need {
+            $($(#[$of_need])* $need),+
+        }
+
+        impl Need {
+            pub const ALL: [Self; [$(stringify!($need)),+].len()] = [$(Self::$need),+];
+
+            /// Why a command is not possible without it, in a sentence.
+            fn why_not(self) -> &'static str {
+                match self {
+                    $(Self::$need => $why_not,)+
+                }
+            }
+        }
+    };
 }
 
-impl Need {
-    pub const ALL: [Self; 33] = every![Need:
-        Document, File, Neighbours, Picture, NoWriting, ReferenceShape, LeftMesh, Before, Factors, LodShader, SurfaceShader, Surface, Environment, Undo, Redo, ViewBefore,
-        ViewAfter, Bookmarks, RoomForBookmarks, Selection, SelectedPatch, Heights, TextureCoordinates, NormalsAt, Factor, Lod, Culling,
-        Split, Frozen, Deviation, MeasurableChart, Chart, Clips,
-    ];
-
-    /// Why a command is not possible without it, in a sentence.
-    fn why_not(self) -> &'static str {
-        match self {
-            Self::Document => "No mesh is open.",
-            Self::File => MADE_IN_CODE,
-            Self::Neighbours => "There is no other mesh in this file's folder.",
-            Self::Picture => "Nothing is drawn yet.",
-            Self::NoWriting => "Another file is being written.",
-            Self::ReferenceShape => "No reference surface was chosen.",
-            Self::LeftMesh => "Both halves show the same mesh.",
-            Self::Before => "The file has not changed since it was opened.",
-            Self::Factors => "No file of factors is open.",
-            Self::LodShader => "No LOD shader is open.",
-            Self::SurfaceShader => "No surface shader is open.",
-            Self::Surface => "The control points come from a surface shader.",
-            Self::Environment => "No environment is open.",
-            Self::Undo => "No setting was changed.",
-            Self::Redo => "No change was undone.",
-            Self::ViewBefore => "The camera has not moved.",
-            Self::ViewAfter => "No movement of the camera was undone.",
-            Self::Bookmarks => "This file has no bookmarks.",
-            Self::RoomForBookmarks => "A file has at most nine bookmarks: forget them first.",
-            Self::Selection => "Nothing is selected.",
-            Self::SelectedPatch => "No patch is selected: click on one.",
-            Self::Heights => "The mesh has no heights: choose a height image.",
-            Self::TextureCoordinates => NO_TEXTURE_COORDINATES,
-            Self::NormalsAt => NORMALS_FOLLOW_TRIANGLES,
-            Self::Factor => "Adaptive LOD computes a factor for every edge.",
-            Self::Lod => LOD_IS_FIXED,
-            Self::Culling => BACKS_ARE_SEEN,
-            Self::Split => "Only a split view has a left half.",
-            Self::Frozen => "The LOD camera is not frozen.",
-            Self::Deviation => "Only the deviation overlay colours distances.",
-            Self::MeasurableChart => "The chart is not open, or has no surface and LOD to measure.",
-            Self::Chart => "The chart has no points yet.",
-            Self::Clips => "The mesh has no animation.",
-        }
-    }
+needs! {
+    Document => "No mesh is open.",
+    /// A mesh that a file has, with axes and a unit, and not a shape that is made in code.
+    File => MADE_IN_CODE,
+    /// Another mesh in the folder, or among those that were dropped together.
+    Neighbours => "There is no other mesh in this file's folder.",
+    /// A picture of the document.
+    Picture => "Nothing is drawn yet.",
+    /// No other file is being written.
+    NoWriting => "Another file is being written.",
+    /// A reference surface that was chosen for the mesh.
+    ReferenceShape => "No reference surface was chosen.",
+    /// Another mesh left of the split.
+    LeftMesh => "Both halves show the same mesh.",
+    /// The mesh before its file changed.
+    Before => "The file has not changed since it was opened.",
+    /// Factors of a file in place of LOD's.
+    Factors => "No file of factors is open.",
+    LodShader => "No LOD shader is open.",
+    SurfaceShader => "No surface shader is open.",
+    /// No function of the user's own in place of the surface.
+    Surface => "The control points come from a surface shader.",
+    Environment => "No environment is open.",
+    Undo => "No setting was changed.",
+    Redo => "No change was undone.",
+    ViewBefore => "The camera has not moved.",
+    ViewAfter => "No movement of the camera was undone.",
+    Bookmarks => "This file has no bookmarks.",
+    RoomForBookmarks => "A file has at most nine bookmarks: forget them first.",
+    /// An edge or a triangle.
+    Selection => "Nothing is selected.",
+    SelectedPatch => "No patch is selected: click on one.",
+    /// Heights of the mesh, which can displace it.
+    Heights => "The mesh has no heights: choose a height image.",
+    TextureCoordinates => NO_TEXTURE_COORDINATES,
+    /// Normals that can be evaluated at pixels.
+    NormalsAt => NORMALS_FOLLOW_TRIANGLES,
+    /// An LOD that takes a tessellation factor.
+    Factor => "Adaptive LOD computes a factor for every edge.",
+    /// A partitioning that leaves a choice of LOD.
+    Lod => LOD_IS_FIXED,
+    /// Backs of the mesh that can't be seen.
+    Culling => BACKS_ARE_SEEN,
+    Split => "Only a split view has a left half.",
+    Frozen => "The LOD camera is not frozen.",
+    Deviation => "Only the deviation overlay colours distances.",
+    /// The chart's panel, with something to measure.
+    MeasurableChart => "The chart is not open, or has no surface and LOD to measure.",
+    /// Points in the chart.
+    Chart => "The chart has no points yet.",
+    Clips => "The mesh has no animation.",
 }
 
 /// Why a shape has neither axis nor unit.

@@ -34,6 +34,9 @@ const SURFACE_SHADER: &str = "Opens a WGSL file with your own function for the c
 pub const ENVIRONMENT: &str =
     "Opens a panorama (.hdr or .exr) whose light shines on the mesh in place of the studio's.";
 
+pub(crate) const CLOSE_LOD_SHADER: &str = "Closes the LOD shader. LOD computes factors again.";
+pub(crate) const CLOSE_SURFACE_SHADER: &str = "Closes the surface shader. The surface that was chosen before is back.";
+pub(crate) const CLOSE_ENVIRONMENT: &str = "Close the environment map; studio light is used again.";
 pub(crate) const LEFT_MESH: &str = "The mesh left of the split: the same one, or that of another file, such as an earlier export or the high-poly original.";
 const REFERENCE_SURFACE: &str =
     "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
@@ -47,6 +50,9 @@ fn file() -> Vec<Command> {
     let close = |beside, need: &'static [Need], name: &'static str, text: &'static str| {
         Command::new(FileAction::Close(beside), name).text(text).needs(need)
     };
+    let usual_surface = "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.";
+    let same_mesh = "Shows the mesh that is open in both halves.";
+    let lod_factors = "Closes the file of factors. LOD computes them again.";
     let path_text = "Opens a mesh file, a shape, a height image or an environment by its typed path.";
     let mut commands = vec![
         ask(Purpose::Open, "Open…", "Opens a mesh file.").keys([ctrl(Key::O)]).menu(File, 0),
@@ -69,55 +75,22 @@ fn file() -> Vec<Command> {
             .menu(File, 0)
             .needs(&[Need::Neighbours]),
         beside(CompanionFile::ReferenceShape, "Reference surface…", REFERENCE_SURFACE).menu(File, 2),
-        close(
-            CompanionFile::ReferenceShape,
-            &[Need::ReferenceShape],
-            "Forget reference surface",
-            "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.",
-        )
-        .menu(File, 2),
+        close(CompanionFile::ReferenceShape, &[Need::ReferenceShape], "Forget reference surface", usual_surface)
+            .menu(File, 2),
         beside(CompanionFile::LeftMesh, "Mesh left of the split…", LEFT_MESH).needs(document),
-        close(
-            CompanionFile::LeftMesh,
-            &[Need::LeftMesh],
-            "The same mesh left of the split",
-            "Shows the mesh that is open in both halves.",
-        ),
+        close(CompanionFile::LeftMesh, &[Need::LeftMesh], "The same mesh left of the split", same_mesh),
         Command::new(FileAction::CompareWithBefore, "Compare with before the change")
             .text("Shows the mesh as it was before its file changed left of the split, tessellated as the new one is.")
             .needs(&[Need::Before]),
         beside(CompanionFile::Factors, "Factors of a file…", FACTORS).menu(File, 2).needs(document),
-        close(
-            CompanionFile::Factors,
-            &[Need::Factors],
-            "Close the factors file",
-            "Closes the file of factors. LOD computes them again.",
-        )
-        .menu(File, 2),
+        close(CompanionFile::Factors, &[Need::Factors], "Close the factors file", lod_factors).menu(File, 2),
         beside(CompanionFile::LodShader, "LOD shader…", LOD_SHADER).menu(Edit, 2).needs(document),
-        close(
-            CompanionFile::LodShader,
-            &[Need::LodShader],
-            "Close the LOD shader",
-            "Closes the LOD shader. LOD computes factors again.",
-        )
-        .menu(Edit, 2),
+        close(CompanionFile::LodShader, &[Need::LodShader], "Close the LOD shader", CLOSE_LOD_SHADER).menu(Edit, 2),
         beside(CompanionFile::SurfaceShader, "Surface shader…", SURFACE_SHADER).menu(Edit, 2).needs(document),
-        close(
-            CompanionFile::SurfaceShader,
-            &[Need::SurfaceShader],
-            "Close the surface shader",
-            "Closes the surface shader. The surface that was chosen before is back.",
-        )
-        .menu(Edit, 2),
+        close(CompanionFile::SurfaceShader, &[Need::SurfaceShader], "Close the surface shader", CLOSE_SURFACE_SHADER)
+            .menu(Edit, 2),
         beside(CompanionFile::Environment, "Open environment…", ENVIRONMENT).menu(File, 2),
-        close(
-            CompanionFile::Environment,
-            &[Need::Environment],
-            "Close environment",
-            "Close the environment map; studio light is used again.",
-        )
-        .menu(File, 2),
+        close(CompanionFile::Environment, &[Need::Environment], "Close environment", CLOSE_ENVIRONMENT).menu(File, 2),
     ];
     commands.extend(Shape::ALL.map(|shape| {
         let text = format!("Opens the shape {}, made in code.", shape.name());

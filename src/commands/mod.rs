@@ -7,7 +7,7 @@ mod files;
 mod fixed;
 mod generated;
 #[cfg(test)]
-mod page;
+mod page_tests;
 
 use std::borrow::Cow;
 use std::path::PathBuf;
@@ -23,7 +23,9 @@ pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_T
 pub use change::Change;
 pub use files::{CompanionFile, Purpose, Written};
 pub use fixed::ENVIRONMENT;
-pub(crate) use fixed::{HEIGHT_IMAGE, LEFT_MESH, MATCAP_IMAGE};
+pub(crate) use fixed::{
+    CLOSE_ENVIRONMENT, CLOSE_LOD_SHADER, CLOSE_SURFACE_SHADER, HEIGHT_IMAGE, LEFT_MESH, MATCAP_IMAGE,
+};
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,29 +73,18 @@ pub enum Action {
     WhitePaper,
 }
 
-impl From<FileAction> for Action {
-    fn from(action: FileAction) -> Self {
-        Self::File(action)
-    }
+/// Lets commands name what they do without the variant of [`Action`] that holds it.
+macro_rules! actions_from {
+    ($($variant:ident($of:ty)),+) => {
+        $(impl From<$of> for Action {
+            fn from(of: $of) -> Self {
+                Self::$variant(of)
+            }
+        })+
+    };
 }
 
-impl From<CameraAction> for Action {
-    fn from(action: CameraAction) -> Self {
-        Self::Camera(action)
-    }
-}
-
-impl From<Change> for Action {
-    fn from(change: Change) -> Self {
-        Self::Setting(change)
-    }
-}
-
-impl From<Preparing> for Action {
-    fn from(preparing: Preparing) -> Self {
-        Self::Prepare(preparing)
-    }
-}
+actions_from!(File(FileAction), Camera(CameraAction), Setting(Change), Prepare(Preparing));
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FileAction {

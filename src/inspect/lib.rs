@@ -4,6 +4,7 @@ pub mod adjacency_file;
 pub mod engine;
 pub mod export;
 pub mod gates;
+pub mod html;
 pub mod measure;
 pub mod plot;
 pub mod reference_shape;

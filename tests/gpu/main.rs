@@ -25,6 +25,7 @@ mod looks;
 mod masks;
 mod materials;
 mod moving_lights;
+mod optimum;
 mod orientation;
 mod passes;
 mod picking;

@@ -34,8 +34,8 @@ enum OutlineComparison {
     Finding(BackgroundJob<Option<(Silhouette, RgbaImage)>>),
 }
 
-struct MeasuredOutlines {
-    silhouette: Silhouette,
+pub(crate) struct MeasuredOutlines {
+    pub silhouette: Silhouette,
     picture: RgbaImage,
     texture: TextureHandle,
 }
@@ -158,15 +158,11 @@ impl App {
         document.silhouette.go_on(context, &self.engine, &document.scene, tessellation, view, screen)
     }
 
-    fn found_outlines(&self) -> Option<&MeasuredOutlines> {
+    /// The outlines of what is shown, once they are compared.
+    pub(in crate::app) fn found_outlines(&self) -> Option<&MeasuredOutlines> {
         let document = self.document.as_ref().filter(|_| self.shows_silhouette())?;
         let view = self.viewport.picture.seen_from()?;
         document.silhouette.found((document.scene.tessellator.generation(), view))
-    }
-
-    /// The outlines of what is shown, once they are compared.
-    pub(in crate::app) fn silhouette_shown(&self) -> Option<&Silhouette> {
-        self.found_outlines().map(|found| &found.silhouette)
     }
 
     /// The texture of the outlines that lie over the picture.

@@ -63,14 +63,13 @@ impl App {
     fn chart_of(&self) -> Option<ChartBasis> {
         let document = self.document.as_ref()?;
         let size = self.viewport.picture.target.as_ref()?.0.size;
-        let (moment, reference_shape, base) = (self.moment(), self.yardstick().0, base(&self.settings));
         Some(ChartBasis {
             document: document.generation,
-            moment,
-            reference_shape,
+            moment: self.moment(),
+            reference_shape: self.yardstick().0,
             camera: self.viewport.camera,
             size,
-            base,
+            base: base(&self.settings),
         })
     }
 
@@ -91,13 +90,8 @@ impl App {
         let starts_over = missing.is_empty() || self.panels.chart.charted().is_none_or(|charted| charted.of != of);
         if starts_over {
             let (title, adapter) = (loaded.source.title(), self.engine.gpu.info.name.clone());
-            let charted = Charted::new(
-                of,
-                title,
-                reference_shape.as_deref().map(|reference_shape| (reference_shape, words)),
-                adapter,
-            );
-            self.panels.chart.charting.charted = Some(charted);
+            let compared = reference_shape.as_deref().map(|reference_shape| (reference_shape, words));
+            self.panels.chart.charting.charted = Some(Charted::new(of, title, compared, adapter));
         }
         let mut settings = if starts_over { all } else { missing };
         // The window's own setting comes first.

@@ -156,8 +156,8 @@ impl Canvas {
 pub(super) struct Inks {
     /// Drawn around points, to set them off from what is under them.
     halo: Color32,
-    front: Color32,
-    text: Color32,
+    pub front: Color32,
+    pub text: Color32,
     /// The colour of all methods if the chart is out of date.
     stale: Option<Color32>,
 }
@@ -168,14 +168,6 @@ impl Inks {
         let front = Color32::from_gray(if visuals.dark_mode { 62 } else { 222 });
         let stale = is_stale.then(|| Color32::from_gray(if visuals.dark_mode { 112 } else { 165 }));
         Self { halo: visuals.extreme_bg_color, front, text: visuals.strong_text_color(), stale }
-    }
-
-    pub(super) fn front(&self) -> Color32 {
-        self.front
-    }
-
-    pub(super) fn text(&self) -> Color32 {
-        self.text
     }
 
     /// The chart's ink is the theme's.

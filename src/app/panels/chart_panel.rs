@@ -195,13 +195,8 @@ fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
             format!("The window's settings\n{}", facts(diagram.charted, &measured))
         }
     };
-    egui::Tooltip::always_open(
-        ui.ctx().clone(),
-        ui.layer_id(),
-        ui.scope_id().with("point"),
-        egui::PopupAnchor::Pointer,
-    )
-    .show(|ui| ui.label(text));
+    let (layer, id) = (ui.layer_id(), ui.scope_id().with("point"));
+    egui::Tooltip::always_open(ui.ctx().clone(), layer, id, egui::PopupAnchor::Pointer).show(|ui| ui.label(text));
     match spot {
         Spot::Row(row) if is_clicked => Some(row.setting),
         _ => None,
@@ -258,10 +253,10 @@ fn legend(ui: &mut egui::Ui, charted: &Charted, plan: Option<&Plan>, is_stale: b
         };
         for lod in LodKind::ALL.into_iter().filter(|lod| has_lod(*lod)) {
             let place = legend_entry(ui, 30.0, lod_name(lod), "The dashes of lines between settings with this LOD.");
-            sample(ui, place, egui::Stroke::new(1.4, inks.text()), dash(lod));
+            sample(ui, place, egui::Stroke::new(1.4, inks.text), dash(lod));
         }
         let place = legend_entry(ui, 26.0, "Front", "Settings that no other setting beats in both error and cost.");
-        sample(ui, place, egui::Stroke::new(9.0, inks.front()), None);
+        sample(ui, place, egui::Stroke::new(9.0, inks.front), None);
     });
 }
 
@@ -273,13 +268,8 @@ fn legend_entry(ui: &mut egui::Ui, sample: f32, name: &str, hover: &str) -> egui
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, name));
     response.on_hover_text(hover);
     let (font, color) = (egui::TextStyle::Body.resolve(ui.style()), ui.visuals().text_color());
-    ui.painter().text(
-        place.left_center() + egui::vec2(sample + gap, 0.0),
-        egui::Align2::LEFT_CENTER,
-        name,
-        font,
-        color,
-    );
+    let start = place.left_center() + egui::vec2(sample + gap, 0.0);
+    ui.painter().text(start, egui::Align2::LEFT_CENTER, name, font, color);
     place.with_max_x(place.left() + sample)
 }
 

@@ -83,12 +83,8 @@ impl App {
             if let Some((results, crack)) = results.and_then(|own| Some((own, crack_in(&own.found, edge)?))) {
                 let (px, ulps) = (results.gap_px(crack), crack.gap / ulp(topology));
                 fact(ui, "Gap", &format!("{} units", short(crack.gap)), "Largest distance between two sides.");
-                fact(
-                    ui,
-                    "",
-                    &format!("{} ULP", short(ulps)),
-                    "In units of the last place of the mesh's largest coordinate.",
-                );
+                let hover = "In units of the last place of the mesh's largest coordinate.";
+                fact(ui, "", &format!("{} ULP", short(ulps)), hover);
                 fact(ui, "", &format!("{} px", short(px)), "The gap as the camera of LOD sees it.");
                 let hover = "Points whose normals differ although the mesh's normals agree.";
                 fact(ui, "Normals differ", &grouped(crack.different_normals.into()), hover);
@@ -184,12 +180,8 @@ impl App {
         let sides = self.found(half).map(|found| found.outlines.edge(topology, edge)).unwrap_or_default();
         let mut polylines: Vec<Vec<Vec3>> = sides.iter().map(|side| side.positions().collect()).collect();
         if polylines.iter().all(|points| points.len() < 2) {
-            polylines = vec![
-                topology
-                    .edge_points(&topology.edges[edge as usize])
-                    .map(|point| topology.points[point as usize])
-                    .to_vec(),
-            ];
+            let ends = topology.edge_points(&topology.edges[edge as usize]);
+            polylines = vec![ends.map(|point| topology.points[point as usize]).to_vec()];
         }
         let strip = |points: &[Vec3], color, half_width| {
             let ends = points.windows(2).map(move |ends| [ends[0], ends[1]]);
@@ -252,9 +244,8 @@ fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     list(ui, "points", count, first.triangle, |ui, index| {
         let place = |side: &EdgeSide| side.positions().nth(index);
         let gaps = others.iter().map(|other| Some(f64::from(place(first)?.distance(place(other)?))));
-        let gap = gaps
-            .map(|gap| gap.map_or(f64::NAN, |gap| gap))
-            .fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
+        let gap =
+            gaps.map(|gap| gap.unwrap_or(f64::NAN)).fold(0.0, |a: f64, b| if b.is_nan() || b > a { b } else { a });
         let text = if gap.is_nan() { "not on all sides".to_owned() } else { short(gap) };
         columns(ui, &format!("{index:<6}{text:>23}"), false).on_hover_ui(|ui| {
             for side in sides {

@@ -134,7 +134,7 @@ impl App {
         let known = |half| self.known_deviation(half);
         let is_partial = SplitSide::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
         let measured = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half)?.fraction()).reduce(f32::min);
-        let outlines = self.silhouette_shown().map(|silhouette| silhouette.distances);
+        let outlines = self.found_outlines().map(|found| found.silhouette.distances);
         Distances { unit, scale, is_partial, measured, outlines }
     }
 

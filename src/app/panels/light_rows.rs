@@ -2,7 +2,7 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
-use crate::commands::{CompanionFile, ENVIRONMENT, Purpose};
+use crate::commands::{CLOSE_ENVIRONMENT, CompanionFile, ENVIRONMENT, Purpose};
 use inspect::settings::{Lighting, options};
 
 impl App {
@@ -57,8 +57,7 @@ impl App {
         ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
         ui.end_row();
         ui.label("");
-        let hover = "Close the environment map; studio light is used again.";
-        if ui.button("Close environment").on_hover_text(hover).clicked() {
+        if ui.button("Close environment").on_hover_text(CLOSE_ENVIRONMENT).clicked() {
             self.close_environment();
         }
         ui.end_row();

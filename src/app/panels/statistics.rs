@@ -177,28 +177,16 @@ impl App {
         egui::Grid::new("mesh").num_columns(2).min_col_width(104.0).show(ui, |ui| {
             fact(ui, "Triangles", &grouped(mesh.triangles.len() as u64), "Triangles as loaded.");
             fact(ui, "Patches", &grouped(topology.patches.len() as u64), "Triangles that are tessellated.");
-            fact(
-                ui,
-                "Degenerate",
-                &grouped(u64::from(topology.degenerate)),
-                "Triangles that are left out because two of their corners lie on one point.",
-            );
+            let hover = "Triangles that are left out because two of their corners lie on one point.";
+            fact(ui, "Degenerate", &grouped(u64::from(topology.degenerate)), hover);
             fact(ui, "Points", &grouped(topology.points.len() as u64), "Distinct positions, after welding.");
-            fact(
-                ui,
-                "Corners",
-                &grouped(mesh.corners.len() as u64),
-                "Distinct combinations of position, normal and uv.",
-            );
+            let hover = "Distinct combinations of position, normal and uv.";
+            fact(ui, "Corners", &grouped(mesh.corners.len() as u64), hover);
             self.normal_facts(ui);
             fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
+            let hover = "Extent of the mesh in object units; over the whole clip, if one is chosen.";
             for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
-                fact(
-                    ui,
-                    axis,
-                    &format!("{} units", short(f64::from(length))),
-                    "Extent of the mesh in object units; over the whole clip, if one is chosen.",
-                );
+                fact(ui, axis, &format!("{} units", short(f64::from(length))), hover);
             }
         });
     }
@@ -208,13 +196,9 @@ impl App {
             return;
         }
         egui::Grid::new("passes").num_columns(2).min_col_width(104.0).show(ui, |ui| {
+            let hover = "The time of this pass's last run, by the GPU's clock.";
             for time in &self.viewport.picture.times {
-                fact(
-                    ui,
-                    time.pass,
-                    &format!("{:.3} ms", time.ms),
-                    "The time of this pass's last run, by the GPU's clock.",
-                );
+                fact(ui, time.pass, &format!("{:.3} ms", time.ms), hover);
             }
         });
     }

@@ -40,32 +40,20 @@ impl App {
             // A field has the width of the largest numbers that this mesh can have.
             let widest = |ui: &egui::Ui, text: String| text_width(ui, &text).max(120.0);
             let most = grouped(patches * u64::from(triangle_count(largest_patch())));
-            status(
-                ui,
-                widest(ui, format!("{} to {most} triangles", grouped(before.0))),
-                format!("{} to {triangles}", grouped(before.0)),
-                "Triangles before and after tessellation.",
-            );
+            let width = widest(ui, format!("{} to {most} triangles", grouped(before.0)));
+            let hover = "Triangles before and after tessellation.";
+            status(ui, width, format!("{} to {triangles}", grouped(before.0)), hover);
             self.status_of_cracks(ui);
-            status(
-                ui,
-                widest(ui, format!("{0} of {0} patches", grouped(patches))),
-                format!("{drawn} of {} patches", grouped(patches)),
-                "Patches that are drawn, out of all, counted while the picture rests. The others are out of view or face away.",
-            );
+            let width = widest(ui, format!("{0} of {0} patches", grouped(patches)));
+            let hover =
+                "Patches that are drawn, out of all, counted while the picture rests. The others are out of view or face away.";
+            status(ui, width, format!("{drawn} of {} patches", grouped(patches)), hover);
             let most = grouped(patches * u64::from(point_count(largest_patch())));
-            status(
-                ui,
-                widest(ui, format!("{} to {most} vertices", grouped(before.1))),
-                format!("{} to {} vertices", grouped(before.1), vertices),
-                "Vertices before and after tessellation.",
-            );
-            status(
-                ui,
-                76.0,
-                mebibytes(document.bytes() + self.viewport.picture.bytes()),
-                "Memory on the device: topology, output and picture.",
-            );
+            let width = widest(ui, format!("{} to {most} vertices", grouped(before.1)));
+            let hover = "Vertices before and after tessellation.";
+            status(ui, width, format!("{} to {vertices} vertices", grouped(before.1)), hover);
+            let memory = mebibytes(document.bytes() + self.viewport.picture.bytes());
+            status(ui, 76.0, memory, "Memory on the device: topology, output and picture.");
             let (ms, hover) = self.times();
             status(ui, 112.0, ms, &hover);
             self.thaw_button(ui);

@@ -4,6 +4,7 @@ use egui::RichText;
 
 use crate::app::App;
 use crate::app::jobs::user_shader_job::UserShaderSlot;
+use crate::commands::{CLOSE_LOD_SHADER, CLOSE_SURFACE_SHADER};
 use gpu::{LodShader, SurfaceShader};
 
 /// What the rows of a file say.
@@ -21,7 +22,7 @@ const OF_LOD: Texts = Texts {
     hover: "Functions of this file compute factors in place of LOD.",
     stays: "The LOD is still used.",
     close: "Close the shader",
-    close_hover: "Closes the LOD shader. LOD computes factors again.",
+    close_hover: CLOSE_LOD_SHADER,
 };
 
 const OF_SURFACE: Texts = Texts {
@@ -29,7 +30,7 @@ const OF_SURFACE: Texts = Texts {
     hover: "A function of this file computes the control points of edges in place of a surface. Left of a split, it doesn't.",
     stays: "The surface stays.",
     close: "Close the surface",
-    close_hover: "Closes the surface shader. The surface that was chosen before is back.",
+    close_hover: CLOSE_SURFACE_SHADER,
 };
 
 impl App {

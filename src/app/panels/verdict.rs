@@ -111,11 +111,8 @@ impl App {
     /// The line of what isn't measured yet, or can't be, since its picture isn't drawn.
     fn unknown(&self, what: &str, hover: &'static str, leads: Destination) -> Line {
         if self.viewport.picture.cancelled.is_some() {
-            return Line::dim(
-                format!("{what}: not measured"),
-                "The picture isn't drawn, so nothing is measured in it.",
-                leads,
-            );
+            let why = "The picture isn't drawn, so nothing is measured in it.";
+            return Line::dim(format!("{what}: not measured"), why, leads);
         }
         Line::dim(format!("{what} \u{2026}"), hover, leads)
     }
@@ -128,12 +125,9 @@ impl App {
             return self.unknown("Checked", hover, Destination::Patches);
         };
         let patches = document.loaded.topology.patches.len() as u64;
+        let whole = "All patches are drawn, and checked for cracks, leaks and folds.";
         match u64::from(results.found.culled.total()) {
-            0 => Line::dim(
-                format!("Checked: {}", counted(patches, "patch")),
-                "All patches are drawn, and checked for cracks, leaks and folds.",
-                Destination::Patches,
-            ),
+            0 => Line::dim(format!("Checked: {}", counted(patches, "patch")), whole, Destination::Patches),
             left_out => {
                 let text = format!("Checked: {} of {}", grouped(patches - left_out), counted(patches, "patch"));
                 Line::bad(text, color, hover, Destination::Patches)
@@ -148,11 +142,8 @@ impl App {
             return self.unknown("Cracks", "Cracks are measured while the picture rests.", Destination::Cracks);
         };
         let Some((_, px)) = results.widest_crack else {
-            return Line::dim(
-                "No cracks",
-                "Every shared edge of what is drawn matches bit for bit.",
-                Destination::Cracks,
-            );
+            let why = "Every shared edge of what is drawn matches bit for bit.";
+            return Line::dim("No cracks", why, Destination::Cracks);
         };
         let edges = counted(results.found.cracks.cracked().len() as u64, "cracked edge");
         let text = format!("{edges}, widest {} px", short(px));

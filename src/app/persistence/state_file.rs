@@ -49,12 +49,8 @@ pub(super) fn read(folder: &Path) -> StoredState {
         Ok(file) if !file.is_file() => return unread("it is not a file".into()),
         Ok(_) => {}
     }
-    let kept = match read_file(
-        &place,
-        &Limits { file: MAX_BYTES, ..Limits::default() },
-        |_| Ok::<(), FileError>(()),
-        &Progress::new(),
-    ) {
+    let limits = Limits { file: MAX_BYTES, ..Limits::default() };
+    let kept = match read_file(&place, &limits, |_| Ok::<(), FileError>(()), &Progress::new()) {
         Ok(bytes) => SavedState::read(&bytes),
         Err(FileError::Io { source, .. }) => return unread(source.to_string()),
         Err(_) => None,

@@ -9,7 +9,6 @@ use crate::app::App;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::scenes::scene_of;
 use crate::app::painting::Painting;
-use crate::app::persistence::WindowGeometry;
 use crate::app::style::style;
 use crate::app::viewport::picture::Picture;
 use crate::app::viewport::preview::Preview;
@@ -56,26 +55,17 @@ impl App {
 
     /// The message of the screen that is shown if a lost device isn't replaced.
     pub fn fatal_message(&self) -> Option<&str> {
-        self.window.fatal_screen.as_ref().map(FatalScreen::why)
+        self.window.fatal_screen.as_ref().map(|screen| &*screen.why)
     }
 
     pub(in crate::app) fn next(&self) -> Next {
         match (&self.window.fatal_screen, self.gpu().lost()) {
             (None, None) => Next::Quit,
             (None, Some(_)) => Next::Anew,
-            (Some(screen), None) => {
-                if screen.tries_again() {
-                    Next::Anew
-                } else {
-                    Next::Quit
-                }
-            }
+            (Some(screen), None) if screen.tries_again => Next::Anew,
+            (Some(_), None) => Next::Quit,
             (Some(_), Some(why)) => Next::GiveUp(why.to_owned()),
         }
-    }
-
-    pub(in crate::app) fn frame_kept(&self) -> &WindowGeometry {
-        self.persistence.frame()
     }
 
     /// Moves the state to another window with a new device; `before` is the context of the window before. If the new device

@@ -15,25 +15,17 @@ use inspect::export::Exported;
 pub(crate) struct FatalScreen {
     /// The device that this screen alone is drawn with.
     pub gpu: Gpu,
-    why: String,
+    pub why: String,
     /// The path that is typed for saving the mesh.
     path: Option<String>,
     saving: Option<BackgroundJob<Result<String, String>>>,
     said: Option<String>,
-    tries_again: bool,
+    pub tries_again: bool,
 }
 
 impl FatalScreen {
     pub(crate) fn new(gpu: Gpu, why: String) -> Self {
         Self { gpu, why, path: None, saving: None, said: None, tries_again: false }
-    }
-
-    pub(crate) fn why(&self) -> &str {
-        &self.why
-    }
-
-    pub(crate) fn tries_again(&self) -> bool {
-        self.tries_again
     }
 }
 

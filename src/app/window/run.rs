@@ -93,7 +93,7 @@ fn run_opening(
             Next::Anew => {}
         }
         let place = context.input(|input| input.viewport().outer_rect);
-        let sized = sized(app.frame_kept());
+        let sized = sized(app.persistence.frame());
         let place = match place {
             Some(place) => sized.with_position(place.min),
             None => sized,

@@ -43,11 +43,8 @@ impl Report<'_> {
         );
         let _ = writeln!(text, "Largest distance of a vertex from the surface: {}.", self.distance(found.from_surface));
         if let Some(farthest) = found.farthest {
-            let _ = writeln!(
-                text,
-                "Largest distance from our vertex at the same domain point: {}.",
-                self.distance(farthest.distance)
-            );
+            let distance = self.distance(farthest.distance);
+            let _ = writeln!(text, "Largest distance from our vertex at the same domain point: {distance}.");
         }
         let _ = writeln!(text, "Vertices are the same within {}.", self.distance(self.exactness.within));
         self.write_sides(&mut text);
@@ -57,12 +54,8 @@ impl Report<'_> {
     /// A distance in object units, ULP, and as a part of the diagonal.
     fn distance(&self, distance: f64) -> String {
         let Comparison { ulp, diagonal, .. } = self.comparison;
-        format!(
-            "{} object units ({} ULP, {} of the diagonal)",
-            short(distance),
-            short(distance / ulp),
-            short(distance / diagonal)
-        )
+        let [units, ulps, part] = [distance, distance / ulp, distance / diagonal].map(short);
+        format!("{units} object units ({ulps} ULP, {part} of the diagonal)")
     }
 
     /// Lists the sides that are cut differently.

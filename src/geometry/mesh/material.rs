@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use crate::choice::choices;
+
 /// The look of some of a mesh's patches.
 #[derive(Clone, Debug)]
 pub struct Material {
@@ -156,43 +158,28 @@ pub enum Alpha {
     Blend,
 }
 
-/// What an image of a material says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slot {
-    /// Roughness in green and metalness in blue, linear.
-    MetallicRoughness,
-    /// Normals in tangent space, linear.
-    Normal,
-    /// Occlusion of light from all around in red, linear.
-    Occlusion,
-    /// Emitted colour, sRGB.
-    Emissive,
-    /// How much light goes through in red, linear.
-    Transmission,
-    /// Colour of the sheen, sRGB.
-    SheenColor,
-    /// Roughness of the sheen in alpha, linear.
-    SheenRoughness,
-    /// How much of the surface the clear coat covers in red, linear.
-    Clearcoat,
-    /// Roughness of the coat in green, linear.
-    ClearcoatRoughness,
-    /// Normals of the coat in tangent space, linear.
-    ClearcoatNormal,
-    /// Strength of a dielectric's reflection in alpha, linear.
-    Specular,
-    /// Colour of a dielectric's reflection seen head-on, sRGB.
-    SpecularColor,
+choices! {
+    /// What an image of a material says. Messages call it by its label.
+    pub enum Slot {
+        MetallicRoughness => "metallic-roughness", "metallic-roughness map",
+            "Roughness in green and metalness in blue, linear.";
+        Normal => "normal", "normal map", "Normals in tangent space, linear.";
+        Occlusion => "occlusion", "occlusion map", "Occlusion of light from all around in red, linear.";
+        Emissive => "emissive", "emissive map", "Emitted colour, sRGB.";
+        Transmission => "transmission", "transmission map", "How much light goes through in red, linear.";
+        SheenColor => "sheen-color", "sheen colour map", "Colour of the sheen, sRGB.";
+        SheenRoughness => "sheen-roughness", "sheen roughness map", "Roughness of the sheen in alpha, linear.";
+        Clearcoat => "clearcoat", "clear coat map", "How much of the surface the clear coat covers in red, linear.";
+        ClearcoatRoughness => "clearcoat-roughness", "clear coat roughness map", "Roughness of the coat in green, linear.";
+        ClearcoatNormal => "clearcoat-normal", "clear coat normal map", "Normals of the coat in tangent space, linear.";
+        Specular => "specular", "specular map", "Strength of a dielectric's reflection in alpha, linear.";
+        SpecularColor => "specular-color", "specular colour map", "Colour of a dielectric's reflection seen head-on, sRGB.";
+    }
 }
 
 impl Slot {
-    /// How many there are.
-    pub const COUNT: usize = 12;
-    /// All of them, in the order of [`Look::maps`].
-    pub const ALL: [Self; Self::COUNT] = crate::names::every!(Slot:
-        MetallicRoughness, Normal, Occlusion, Emissive, Transmission, SheenColor, SheenRoughness, Clearcoat,
-        ClearcoatRoughness, ClearcoatNormal, Specular, SpecularColor
-    );
+    /// How many there are. [`Look::maps`] has them in the order of [`Self::ALL`].
+    pub const COUNT: usize = Self::ALL.len();
 }
 
 /// An image on a surface.

@@ -14,38 +14,33 @@ use glam::{Vec2, Vec3};
 
 use super::mesh_builder::MeshBuilder;
 use super::{Corner, Material, Mesh};
-use crate::names::every;
+use crate::choice::{Choice, choices};
 use crate::progress::Progress;
 
-/// A mesh that is made in code.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-pub enum Shape {
-    /// 12 triangles, with normals and a uv square for each face: all edges between faces are split. The normals lean
-    /// outwards at the corners. If they were at right angles to the faces, PN triangles would leave faces flat and
-    /// edges straight, and nothing would tear.
-    #[default]
-    CubeSplit,
-    /// 12 triangles; all corners on one point have the same normal.
-    CubeSmooth,
-    /// 20 triangles with smooth normals.
-    Icosahedron,
-    /// 80 triangles with the normals of the sphere.
-    Icosphere,
-    /// The icosphere, scaled to three different radii, with the normals of the ellipsoid.
-    Ellipsoid,
-    /// 16 by 8 quads with the normals of the torus, and uv seams around both circles.
-    Torus,
-    /// 12 sides and two caps, with creases between sides and caps.
-    Cylinder,
-    /// 12 sides, each with a normal of its own at the apex, and a cap.
-    Cone,
-    /// The open surface y = (x^2 - z^2) / 2 over 6 by 6 quads.
-    Saddle,
-    /// A leaning vase without lid or bottom: 5 by 3 bicubic patches, each sampled at 2 by 2 quads, with the surface's
-    /// normals.
-    Bicubic,
-    /// A strip with half a twist. It has one side and one boundary, and its normals flip where its ends meet.
-    Moebius,
+choices! {
+    /// A mesh that is made in code. The order is that of the menu.
+    #[derive(Default, Hash)]
+    pub enum Shape {
+        #[default]
+        CubeSplit => "cube-split", "Cube, split normals",
+            "12 triangles, with normals and a uv square for each face: all edges between faces are split. The normals lean \
+             outwards at the corners. If they were at right angles to the faces, PN triangles would leave faces flat and edges \
+             straight, and nothing would tear.";
+        CubeSmooth => "cube-smooth", "Cube, smooth normals", "12 triangles; all corners on one point have the same normal.";
+        Icosahedron => "icosahedron", "Icosahedron", "20 triangles with smooth normals.";
+        Icosphere => "icosphere", "Icosphere", "80 triangles with the normals of the sphere.";
+        Ellipsoid => "ellipsoid", "Ellipsoid",
+            "The icosphere, scaled to three different radii, with the normals of the ellipsoid.";
+        Torus => "torus", "Torus", "16 by 8 quads with the normals of the torus, and uv seams around both circles.";
+        Cylinder => "cylinder", "Cylinder with caps", "12 sides and two caps, with creases between sides and caps.";
+        Cone => "cone", "Cone", "12 sides, each with a normal of its own at the apex, and a cap.";
+        Saddle => "saddle", "Saddle", "The open surface y = (x^2 - z^2) / 2 over 6 by 6 quads.";
+        Bicubic => "bicubic", "Bicubic patches",
+            "A leaning vase without lid or bottom: 5 by 3 bicubic patches, each sampled at 2 by 2 quads, with the surface's \
+             normals.";
+        Moebius => "moebius", "Moebius strip",
+            "A strip with half a twist. It has one side and one boundary, and its normals flip where its ends meet.";
+    }
 }
 
 /// The highest level of a shape with levels.
@@ -68,35 +63,14 @@ pub enum ShapeError {
 }
 
 impl Shape {
-    /// All shapes, in the order of the menu.
-    pub const ALL: [Self; 11] = every![Shape:
-        CubeSplit, CubeSmooth, Icosahedron, Icosphere, Ellipsoid, Torus, Cylinder, Cone, Saddle, Bicubic, Moebius,
-    ];
-
     /// Returns the name in commands, as in `shape:torus`.
     pub fn name(self) -> &'static str {
-        self.names().0
+        self.description().name
     }
 
     /// Returns the name for menus.
     pub fn title(self) -> &'static str {
-        self.names().1
-    }
-
-    fn names(self) -> (&'static str, &'static str) {
-        match self {
-            Self::CubeSplit => ("cube-split", "Cube, split normals"),
-            Self::CubeSmooth => ("cube-smooth", "Cube, smooth normals"),
-            Self::Icosahedron => ("icosahedron", "Icosahedron"),
-            Self::Icosphere => ("icosphere", "Icosphere"),
-            Self::Ellipsoid => ("ellipsoid", "Ellipsoid"),
-            Self::Torus => ("torus", "Torus"),
-            Self::Cylinder => ("cylinder", "Cylinder with caps"),
-            Self::Cone => ("cone", "Cone"),
-            Self::Saddle => ("saddle", "Saddle"),
-            Self::Bicubic => ("bicubic", "Bicubic patches"),
-            Self::Moebius => ("moebius", "Moebius strip"),
-        }
+        self.description().label
     }
 
     /// Returns whether the shape's corners are samples of a curved surface, which can be sampled more densely.
@@ -150,8 +124,7 @@ impl FromStr for Shape {
     type Err = ShapeError;
 
     fn from_str(name: &str) -> Result<Self, ShapeError> {
-        let found = Self::ALL.into_iter().find(|shape| shape.name() == name);
-        found.ok_or_else(|| ShapeError::Unknown { name: name.to_owned() })
+        Self::named(name).ok_or_else(|| ShapeError::Unknown { name: name.to_owned() })
     }
 }
 

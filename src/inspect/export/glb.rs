@@ -152,10 +152,8 @@ impl Writer {
     fn primitive(&mut self, attributes: Value, triangles: &[[u32; 3]], material: usize) -> Value {
         let view = self.view(bytemuck::cast_slice(triangles), Some(ELEMENT_ARRAY_BUFFER));
         let count = triangles.len() * 3;
-        let indices = pushed(
-            &mut self.accessors,
-            json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" }),
-        );
+        let accessor = json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" });
+        let indices = pushed(&mut self.accessors, accessor);
         json!({ "attributes": attributes, "indices": indices, "material": material, "mode": TRIANGLES })
     }
 

@@ -4,6 +4,7 @@ use glam::Vec4;
 
 use super::Exported;
 use geometry::mesh::{Material, Mesh};
+use load::markdown::listed;
 
 /// Returns the text of a file.
 pub(super) fn encode(mesh: &Exported) -> Vec<u8> {
@@ -31,8 +32,7 @@ pub(super) fn left_out(mesh: &Mesh, path: &str) -> Option<String> {
         (has_colors, "the colours of its vertices"),
         (!mesh.lights.is_empty(), "its lights"),
     ];
-    let parts: Vec<&str> = parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part).collect();
-    let (last, others) = parts.split_last()?;
-    let all = if others.is_empty() { (*last).to_owned() } else { format!("{} and {last}", others.join(", ")) };
-    Some(format!("{path}: the mesh is written without {all}; a .glb file holds them."))
+    let parts: Vec<String> = parts.into_iter().filter(|(has, _)| *has).map(|(_, part)| part.to_owned()).collect();
+    let said = || format!("{path}: the mesh is written without {}; a .glb file holds them.", listed(&parts));
+    (!parts.is_empty()).then(said)
 }

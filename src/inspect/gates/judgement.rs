@@ -181,10 +181,10 @@ fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
             let (count, text) = warnings(known(facts.warnings)?);
             Ok(Counted { text, ..Counted::new(count, [""; 2], || None) })
         }
-        GateKind::NonManifold => defects(
-            Defects::non_manifold,
-            ["# edge has three triangles or more", "# edges have three triangles or more"],
-        ),
+        GateKind::NonManifold => {
+            let words = ["# edge has three triangles or more", "# edges have three triangles or more"];
+            defects(Defects::non_manifold, words)
+        }
         GateKind::Boundary => defects(Defects::boundary, ["# edge is open", "# edges are open"]),
         GateKind::Winding => {
             let words = ["# edge has triangles wound opposite ways", "# edges have triangles wound opposite ways"];

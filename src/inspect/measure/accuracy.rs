@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use glam::{DVec3, Vec3};
+use serde::Serialize;
 
 use super::screen_error::Screen;
 use super::visitor::{EmittedChunk, Visitor};
@@ -72,9 +73,10 @@ pub struct Distances {
 }
 
 /// Angles between normals, in degrees, from samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Angles {
     /// The largest one of the samples.
+    #[serde(rename = "max")]
     pub largest: f64,
     /// Root mean square over the area of what was emitted.
     pub rms: Rms,

@@ -9,7 +9,6 @@ mod distance_transform;
 mod folds;
 mod indices;
 mod mapped_normals;
-pub mod optimum;
 mod outlines;
 mod points_agreement;
 mod pops;

@@ -221,12 +221,8 @@ impl States<'_> {
     }
 
     fn at(&self, factor: f32) -> State {
-        let out = tessellate(
-            self.mesh,
-            self.topology,
-            &Inputs { tessellation: Tessellation { factor, ..self.inputs.tessellation }, ..self.inputs },
-            None,
-        );
+        let tessellation = Tessellation { factor, ..self.inputs.tessellation };
+        let out = tessellate(self.mesh, self.topology, &Inputs { tessellation, ..self.inputs }, None);
         let patches = self.topology.patches.len().max(1);
         let (points, triangles) = (out.vertices.len() / patches, out.triangles.len() / patches);
         let domain: Vec<_> = out.vertices[..points].iter().map(Vertex::domain).collect();

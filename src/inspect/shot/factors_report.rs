@@ -104,11 +104,8 @@ fn order_text(agreement: &Agreement, convention: Convention) -> Option<String> {
             .then(|| format!("the file is consistent as {others} too, so it doesn't tell which convention it has"));
     }
     if !names.is_empty() {
-        return Some(format!(
-            "the file is consistent as {}: pass --convention {}",
-            names.join(" and as "),
-            names.join(" or ")
-        ));
+        let (all, any) = (names.join(" and as "), names.join(" or "));
+        return Some(format!("the file is consistent as {all}: pass --convention {any}"));
     }
     if let Some(order) = agreement.consistent().next() {
         let edges = order.sides.map(|side| format!("({side}, {})", (side + 1) % 3)).join(", ");
@@ -121,11 +118,8 @@ fn order_text(agreement: &Agreement, convention: Convention) -> Option<String> {
     }
     let (nearest, different) = agreement.nearest()?;
     let differ = if different == 1 { "edge that differs" } else { "edges that differ" };
-    Some(format!(
-        "no convention makes the file consistent; {} comes nearest, with {} {differ}",
-        nearest.name(),
-        different
-    ))
+    let nearest = nearest.name();
+    Some(format!("no convention makes the file consistent; {nearest} comes nearest, with {different} {differ}"))
 }
 
 /// The report as JSON.

@@ -50,7 +50,7 @@ pub(super) struct AccuracyStats {
     /// The largest distance on screen, in px, of the samples and the worst place; none if none of these is in view.
     max_px: Option<f64>,
     /// Between shading normals and those of the reference surface, in degrees; the largest one of the samples.
-    normals: AngleStats,
+    normals: Angles,
     /// The number of points that means and angles were sampled at.
     samples: u64,
 }
@@ -67,12 +67,6 @@ struct DistanceStats {
     worst: WorstStats,
 }
 
-#[derive(Debug, Serialize)]
-struct AngleStats {
-    max: f64,
-    rms: Rms,
-}
-
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
     pub(super) fn new(reference_shape: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
@@ -81,7 +75,6 @@ impl AccuracyStats {
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
             DistanceStats { max, rms, max_of_diagonal, rms_of_diagonal, worst: worst.into() }
         };
-        let Angles { largest, rms } = accuracy.normals;
         let from_reference = accuracy.from_reference.filter(|_| is_whole);
         Self {
             reference_surface: reference_shape.to_owned(),
@@ -89,7 +82,7 @@ impl AccuracyStats {
             to_reference: distances(accuracy.to_reference, accuracy.worst_to_reference),
             from_reference: from_reference.map(|(from, worst)| distances(from, worst)),
             max_px: accuracy.worst_px.map(|worst| worst.value),
-            normals: AngleStats { max: largest, rms },
+            normals: accuracy.normals,
             samples: accuracy.samples,
         }
     }

@@ -13,20 +13,15 @@ use super::files::write_text;
 use super::picture_file::png_bytes;
 use super::{Shot, ShotError, StatsWanted};
 use crate::gates::{Gate, GateKind, Judgement, Limit};
+use crate::html;
 use crate::settings::{Settings, SplitSide, SplitView};
-use geometry::names::on_one_line;
 use geometry::numbers::{grouped, short};
 use geometry::progress::Progress;
 
-/// Colours of both themes. Texts have a contrast of at least 4.5 to 1 against what is behind them.
+/// What this page has besides what all pages have.
 const STYLE: &str = "
-:root { color-scheme: light dark; --ink: #24272c; --dim: #5a616b; --bad: #b3261e; --good: #1f6f43; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e4e4e0; --dim: #a3a9b2; --bad: #ff9f94; --good: #7fce9f; } }
-body { margin: 2rem auto; max-width: 72rem; padding: 0 1rem; color: var(--ink); font: 16px/1.5 system-ui, sans-serif; }
-.pictures { display: flex; flex-wrap: wrap; gap: 1rem; } figure { margin: 0; flex: 1 1 20rem; }
-img { width: 100%; height: auto; } figcaption { white-space: pre-line; color: var(--dim); }
-pre { white-space: pre-wrap; overflow-wrap: anywhere; } th { text-align: left; font-weight: normal; color: var(--dim); }
-td, th { padding: 0.1rem 1rem 0.1rem 0; vertical-align: top; } .failed { color: var(--bad); } .passed { color: var(--good); }
+.pictures { display: flex; flex-wrap: wrap; gap: 1rem; } figure { flex: 1 1 20rem; } img { width: 100%; }
+figcaption { white-space: pre-line; } pre { white-space: pre-wrap; overflow-wrap: anywhere; }
 ";
 
 /// Longer lists have their length in the table.
@@ -73,10 +68,8 @@ impl Shot {
 
 fn page(title: &str, command: &str, figures: &[(String, Vec<u8>)], judged: &[Judgement], stats: Value) -> String {
     let title = escaped(title);
-    let mut text = format!(
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title} - pnaen</title>\n\
-         <style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n<div class=\"pictures\">\n"
-    );
+    let mut text = html::begin(&format!("{title} - pnaen"), STYLE);
+    let _ = write!(text, "<h1>{title}</h1>\n<div class=\"pictures\">\n");
     for (caption, png) in figures {
         let (caption, data) = (escaped(caption), BASE64_STANDARD.encode(png));
         let picture = format!("<img src=\"data:image/png;base64,{data}\" alt=\"{caption}\">");
@@ -94,7 +87,7 @@ fn page(title: &str, command: &str, figures: &[(String, Vec<u8>)], judged: &[Jud
     }
     let _ = write!(text, "</ul>\n<h2>Command</h2>\n<pre>{}</pre>\n<h2>Numbers</h2>\n<table>\n", escaped(command));
     rows(&mut text, "", &stats);
-    text + "</table>\n</body>\n</html>\n"
+    text + "</table>\n" + html::END
 }
 
 /// A row for each number and word in a value, by the names that lead to it. What isn't known has none.
@@ -129,7 +122,5 @@ fn plain(value: &Value) -> String {
 
 /// A text as HTML. Its lines stay.
 fn escaped(text: &str) -> String {
-    let lines = text.lines().map(on_one_line).collect::<Vec<_>>().join("\n");
-    let plain = lines.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    plain.replace('"', "&quot;").replace('\'', "&#39;")
+    text.lines().map(html::escaped).collect::<Vec<_>>().join("\n")
 }

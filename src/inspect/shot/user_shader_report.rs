@@ -92,10 +92,8 @@ fn agreement(engine: &Engine, scene: &Scene) -> Result<Option<Agreement>, GpuErr
 
 fn edge_text(topology: &Topology, edge: &PointsDisagreement) -> String {
     let ([a, b], [one, other]) = (end_points(topology, edge.edge).map(point_text), edge.triangles);
-    format!(
-        "{a} to {b}: {} object units between the control points of triangles {one} and {other}",
-        short(edge.distance)
-    )
+    let distance = short(edge.distance);
+    format!("{a} to {b}: {distance} object units between the control points of triangles {one} and {other}")
 }
 
 /// How the factors of an LOD shader disagree, as JSON.

@@ -3,26 +3,23 @@
 use std::fmt;
 
 use super::distinct;
-use geometry::names::every;
+use geometry::choice::choices;
 use geometry::tessellate::{Lod, Normals, Partitioning, Surface, Tessellation};
-use inspect::settings::{Choice, Description, Settings};
+use inspect::settings::{Choice, Settings};
 
-/// The kinds of LOD that a chart tries, and the number that says how fine each is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum LodKind {
-    /// One factor for all edges.
-    Uniform,
-    /// The white paper's LOD, in px per segment.
-    Paper,
-    /// LOD by error, in px on screen.
-    Error,
-    /// LOD by error with patches that are cut into rows, in px on screen.
-    ErrorRows,
+choices! {
+    /// The kinds of LOD that a chart tries, and the number that says how fine each is.
+    #[derive(Hash)]
+    pub enum LodKind {
+        Uniform => "uniform", "Uniform", "All edges have the same factor.";
+        Paper => "paper", "White paper",
+            "The white paper's length of an edge on screen, divided by the length of a segment in px.";
+        Error => "error", "Screen error", "The error on screen, in px.";
+        ErrorRows => "error-rows", "Error under rows", "The error on screen, in px, with patches that are cut into rows.";
+    }
 }
 
 impl LodKind {
-    pub const ALL: [Self; 4] = every![LodKind: Uniform, Paper, Error, ErrorRows];
-
     /// The kind of an LOD with a partitioning; `None` for one that isn't tried.
     fn new(lod: Lod, partitioning: Partitioning) -> Option<Self> {
         let has_rows = partitioning.has_rows() && lod.is_by_error();
@@ -43,27 +40,6 @@ impl LodKind {
             Self::Uniform | Self::Paper => Partitioning::FractionalOdd,
             Self::Error => Partitioning::Integer,
             Self::ErrorRows => Partitioning::Rows,
-        }
-    }
-}
-
-impl Choice for LodKind {
-    const ALL: &'static [Self] = &LodKind::ALL;
-
-    fn description(self) -> Description {
-        match self {
-            Self::Uniform => Description::new("uniform", "Uniform", "All edges have the same factor."),
-            Self::Paper => Description::new(
-                "paper",
-                "White paper",
-                "The white paper's length of an edge on screen, divided by the length of a segment in px.",
-            ),
-            Self::Error => Description::new("error", "Screen error", "The error on screen, in px."),
-            Self::ErrorRows => Description::new(
-                "error-rows",
-                "Error under rows",
-                "The error on screen, in px, with patches that are cut into rows.",
-            ),
         }
     }
 }

@@ -3,29 +3,22 @@
 use std::fmt::Write;
 
 use super::report::{Asset, GateResult, Report, Status, View, gate_title};
-use geometry::names::on_one_line;
 use geometry::numbers::grouped;
+use inspect::html::{END, begin, escaped};
 
-/// Colours of both themes and the layout. Texts have a contrast of at least 4.5 to 1 against what is behind them.
+/// What this page has besides what all pages have.
 const STYLE: &str = "
-:root { color-scheme: light dark; --ink: #24272c; --dim: #5a616b; --back: #f7f7f5; --card: #ffffff; --line: #dcdcd7;
-  --good: #1f6f43; --bad: #b3261e; }
-@media (prefers-color-scheme: dark) { :root { --ink: #e4e4e0; --dim: #a3a9b2; --back: #1d1f23; --card: #26292e;
-  --line: #3a3e45; --good: #7fce9f; --bad: #ff9f94; } }
-body { margin: 2rem auto; max-width: 72rem; padding: 0 1rem; background: var(--back); color: var(--ink);
-  font: 16px/1.5 system-ui, sans-serif; }
+body { background: var(--back); }
 h1 { font-size: 1.5rem; } h2 { font-size: 1.1rem; margin: 0; overflow-wrap: anywhere; }
 .asset { background: var(--card); border: 1px solid var(--line); border-radius: 6px; margin: 1rem 0; padding: 1rem; }
 .view { display: flex; flex-wrap: wrap; gap: 1rem; margin-top: 0.75rem; }
-.view > div { flex: 1 1 18rem; }
-figure { margin: 0; } figcaption { color: var(--dim); font-size: 0.9rem; }
-img { display: block; max-width: 100%; width: 22rem; height: auto; border-radius: 4px; }
-table { border-collapse: collapse; } td, th { padding: 0.1rem 1rem 0.1rem 0; text-align: left; vertical-align: top;
-  font-weight: normal; } th { color: var(--dim); } td.number { text-align: right; }
+.view > div { flex: 1 1 18rem; } figcaption { font-size: 0.9rem; }
+img { display: block; max-width: 100%; width: 22rem; border-radius: 4px; }
+table { border-collapse: collapse; } td.number { text-align: right; }
 ul { margin: 0.5rem 0; padding-left: 1.2rem; } .dim { color: var(--dim); }
 .filter { font: inherit; width: min(100%, 22rem); padding: 0.3rem 0.5rem; color: inherit; background: var(--card);
   border: 1px solid var(--dim); border-radius: 4px; } [hidden] { display: none; }
-.passed { color: var(--good); } .failed, .broken { color: var(--bad); } .status { font-weight: 600; }
+.broken { color: var(--bad); } .status { font-weight: 600; }
 ";
 
 /// Hides the assets that don't have all words of the filter. Without it, the page shows them all.
@@ -65,20 +58,12 @@ fn file_name(picture: &str) -> String {
 
 /// Writes the page. What failed comes first.
 pub fn page(report: &Report) -> String {
-    let mut text = String::from("<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-    text += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>pnaen check</title>\n";
-    let _ = write!(text, "<style>{STYLE}</style>\n</head>\n<body>\n<h1>pnaen check</h1>\n");
-    let _ = writeln!(text, "<p>{}.</p>{FILTER}", escaped(&report.summary()));
+    let mut text = begin("pnaen check", STYLE);
+    let _ = write!(text, "<h1>pnaen check</h1>\n<p>{}.</p>{FILTER}\n", escaped(&report.summary()));
     for status in [Status::Broken, Status::Failed, Status::Passed] {
         report.assets.iter().filter(|asset| asset.status() == status).for_each(|asset| text += &section(asset));
     }
-    text + "</body>\n</html>\n"
-}
-
-/// A text as HTML.
-fn escaped(text: &str) -> String {
-    let plain = on_one_line(text).replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-    plain.replace('"', "&quot;").replace('\'', "&#39;")
+    text + END
 }
 
 fn section(asset: &Asset) -> String {

@@ -337,17 +337,11 @@ fn displaced_text(displaced: &Displaced) -> String {
     let other = if ours.is_on() { " otherwise than ours" } else { "" };
     let start =
         format!("It is displaced{other}: {} of {} vertices are off the surface", grouped(*vertices), grouped(*of));
+    let [largest, outward, inward] = [*largest, *outward, *inward].map(short);
     if *is_along_normals {
-        return format!(
-            "{start}, along the normals, by up to {} object units outward and {} inward.",
-            short(*outward),
-            short(*inward)
-        );
+        return format!("{start}, along the normals, by up to {outward} object units outward and {inward} inward.");
     }
-    format!(
-        "{start}, by up to {} object units, but not along the normals, and on none of our surfaces.",
-        short(*largest)
-    )
+    format!("{start}, by up to {largest} object units, but not along the normals, and on none of our surfaces.")
 }
 
 fn factors_text(ours: Partitioning, convention: Convention, all: &[Explanation], patches: [u64; 2]) -> String {
@@ -420,11 +414,8 @@ fn unknown_text(found: &UnknownFactors) -> String {
 }
 
 fn triangles_text(count: u64, patches: u64, order: Option<CornerOrder>) -> String {
-    let start = format!(
-        "The points are the same, but {} other points than ours, in {}",
-        plural(count, "triangle joins", "triangles join"),
-        patches_text(patches)
-    );
+    let (join, patches) = (plural(count, "triangle joins", "triangles join"), patches_text(patches));
+    let start = format!("The points are the same, but {join} other points than ours, in {patches}");
     let turned = match order.map(CornerOrder::convention) {
         None => "diagonals are turned".to_owned(),
         Some(Some(own)) => format!("the tessellator's pattern is turned, as under --convention {}", own.name()),

@@ -197,11 +197,8 @@ impl<'a> Running<'a> {
             let pose = self.pose(moment);
             let (mesh, topology) = PosedMesh::new(self.mesh.clone(), self.topology.clone(), pose).deformed();
             let out = tessellate(&mesh, &topology, &settings.inputs(view), None);
-            let asked = RequestedFactors::new(
-                settings.tessellation.edges,
-                settings.tessellation.convention,
-                out.edge_factors.clone(),
-            );
+            let own = settings.tessellation;
+            let asked = RequestedFactors::new(own.edges, own.convention, out.edge_factors.clone());
             let measured = Measured::new(&mesh, &topology, asked, &out);
             self.take(&mut worst, &measured, tried, &view, effort);
         }

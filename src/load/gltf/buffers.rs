@@ -54,10 +54,8 @@ impl<'a> Buffers<'a> {
             None if self.fallback[i] => Ok(Vec::new()),
             None => {
                 let chunk = if self.owner == Some(i) { self.chunk.take() } else { None };
-                cut(
-                    chunk.ok_or("the document has no binary chunk for it; export the model again")?,
-                    buffer.byte_length.0,
-                )
+                let chunk = chunk.ok_or("the document has no binary chunk for it; export the model again")?;
+                cut(chunk, buffer.byte_length.0)
             }
         });
         // A cancelled read isn't an error of the buffer.

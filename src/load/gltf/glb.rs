@@ -29,10 +29,8 @@ pub(super) struct Parts {
 pub(super) fn parts(bytes: &[u8]) -> Result<Parts, GltfError> {
     let fail = |reason: String| GltfError::NotGltf { reason };
     if bytes.len() < HEADER {
-        return Err(fail(format!(
-            "the file ends within its header, which takes {HEADER} bytes: it has {}",
-            bytes.len()
-        )));
+        let has = bytes.len();
+        return Err(fail(format!("the file ends within its header, which takes {HEADER} bytes: it has {has}")));
     }
     let [version, length] = [4, 8].map(|at| number(bytes, at));
     if version != 2 {

@@ -19,6 +19,7 @@ use crate::memory_budget::Budget;
 use crate::packing::roughness;
 use crate::texture_room::{Scaling, TextureRoom};
 use crate::uri::Files;
+use geometry::choice::Choice;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, Sampling, Slot, Texture};
@@ -229,7 +230,7 @@ impl<'a> Materials<'a> {
     }
 
     fn map(&mut self, map: MapSource, slot: Slot, own: Uvs, material: &str) -> Option<Map> {
-        let what = slot_name(slot);
+        let what = slot.label();
         let (texture, sampling) = self.texture(map.texture, MipFilter::from_map(slot), what, material)?;
         let Uvs { set, transform } = map.uvs;
         let uv = match set {
@@ -336,24 +337,6 @@ impl DetailNeeds {
             }
         }
         needs
-    }
-}
-
-/// What a map is, for people.
-fn slot_name(slot: Slot) -> &'static str {
-    match slot {
-        Slot::MetallicRoughness => "metallic-roughness map",
-        Slot::Normal => "normal map",
-        Slot::Occlusion => "occlusion map",
-        Slot::Emissive => "emissive map",
-        Slot::Transmission => "transmission map",
-        Slot::SheenColor => "sheen colour map",
-        Slot::SheenRoughness => "sheen roughness map",
-        Slot::Clearcoat => "clear coat map",
-        Slot::ClearcoatRoughness => "clear coat roughness map",
-        Slot::ClearcoatNormal => "clear coat normal map",
-        Slot::Specular => "specular map",
-        Slot::SpecularColor => "specular colour map",
     }
 }
 

@@ -118,19 +118,16 @@ impl Settled<'_> {
 
     fn verdict_of_mesh(&self, root: &Root, mesh: usize, pointer: &str, inside: &[&str]) -> Verdict {
         let used = |is: bool| if is { Verdict::Refused } else { Verdict::Unused };
+        let (accessors, materials) = (root.accessors.len(), self.materials);
         let left_out = |is_needed: bool| match is_needed {
             true => Verdict::Refused,
-            false => Verdict::LeftOut(format!(
-                "{pointer} isn't one of the {} accessors; it is left out.",
-                root.accessors.len()
-            )),
+            false => Verdict::LeftOut(format!("{pointer} isn't one of the {accessors} accessors; it is left out.")),
         };
         let primitive = |k: &str| k.parse::<usize>().ok().and_then(|k| root.meshes[mesh].primitives.get(k));
         match inside {
             ["weights", ..] => used(has_targets(root, mesh)),
             ["primitives", _, "material"] => Verdict::LeftOut(format!(
-                "{pointer} isn't one of the {} materials; the default material is used.",
-                self.materials
+                "{pointer} isn't one of the {materials} materials; the default material is used."
             )),
             ["primitives", k, "extensions", ..] => {
                 used(self.requires_draco || !primitive(k).is_some_and(|own| has_data(root, own)))

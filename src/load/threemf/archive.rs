@@ -122,10 +122,8 @@ impl<'a> Archive<'a> {
         }
         if entry.unpacked > ANY_RATIO && entry.unpacked / MAX_RATIO > entry.packed {
             let Entry { packed, unpacked, .. } = entry;
-            return Err(broken(
-                name,
-                format!("its {packed} bytes unpack to {unpacked}, as those of no model or image do"),
-            ));
+            let reason = format!("its {packed} bytes unpack to {unpacked}, as those of no model or image do");
+            return Err(broken(name, reason));
         }
         self.unpacked.set(total);
         let data = self.data(entry).map_err(|reason| broken(name, reason))?;

@@ -7,6 +7,7 @@
 //! a GPU emits.
 
 mod meshes;
+mod search;
 
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -20,10 +21,10 @@ use glam::{Vec2, Vec3};
 use gpu::recorder::Timing;
 use inspect::engine::Engine;
 use inspect::engine::measurements::Measurements;
-use inspect::measure::optimum::{Compared, Optimum, compare_with_optimum};
 use inspect::render::camera::Camera;
 use inspect::render::scene::Scene;
 use inspect::settings::ARENA_BYTES;
+use search::{Compared, Optimum, compare_with_optimum};
 
 const VIEWPORT: Vec2 = Vec2::new(1280.0, 720.0);
 /// In px.

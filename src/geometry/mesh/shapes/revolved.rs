@@ -65,11 +65,9 @@ pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
     };
     let side = |i: usize| {
         // At the apex, a side has the normal of its middle, half a column farther.
-        let apex = corner(
-            Vec3::Y * HALF_HEIGHT,
-            normal(around(2 * i + 1, 2 * sides)),
-            Vec2::new(fraction(2 * i + 1, 2 * sides), 0.0),
-        );
+        let (middle, halves) = (2 * i + 1, 2 * sides);
+        let uv = Vec2::new(fraction(middle, halves), 0.0);
+        let apex = corner(Vec3::Y * HALF_HEIGHT, normal(around(middle, halves)), uv);
         let rest =
             (1..rows).flat_map(move |j| quad([slope(i, j + 1), slope(i + 1, j + 1), slope(i + 1, j), slope(i, j)]));
         std::iter::once([slope(i, 1), slope(i + 1, 1), apex]).chain(rest)

@@ -88,12 +88,8 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
     let name = surface.name();
     let against = Range::from_ratios(&ratios)
         .map_or_else(String::new, |range| format!(" It is {}.", closer(&range, ratios.len())));
-    let on = reached.len();
-    Some(format!(
-        "However fine, `{name}` comes no closer than {range}, on {on} of {}: {}.{against}",
-        meshes(tried),
-        reason(surface)
-    ))
+    let (on, of, why) = (reached.len(), meshes(tried), reason(surface));
+    Some(format!("However fine, `{name}` comes no closer than {range}, on {on} of {of}: {why}.{against}"))
 }
 
 /// Compares a surface's error with that of flat triangles, in words.

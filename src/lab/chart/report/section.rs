@@ -20,11 +20,8 @@ pub(super) fn section(part: &Part) -> String {
         let of = race
             .surface
             .map_or_else(String::new, |surface| format!(" (`{}`, compared with its own limit)", surface.name()));
-        let _ = write!(
-            text,
-            "\nSettings that no other setting beats, in triangles or in ms{of}:\n\n{}",
-            front(part, &race)
-        );
+        let front = front(part, &race);
+        let _ = write!(text, "\nSettings that no other setting beats, in triangles or in ms{of}:\n\n{front}");
         let (table, missing) = best(part, &race);
         if !table.is_empty() {
             let _ = write!(text, "\nThe fewest triangles with which each method reaches an error{of}:\n\n{table}");

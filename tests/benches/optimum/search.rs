@@ -7,29 +7,25 @@
 
 use std::collections::HashMap;
 
-use glam::{DMat4, DVec2, DVec4, Vec2};
-
-use super::screen_error::ScreenErrorMeasurement;
-use super::visitor::{EmittedChunk, Visitor};
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{
     ControlNet, FIXED_ONE, HullFactors, Inputs, LimitSurface, NOT_CULLED, Partitioning, SeenPatch, cull_reason,
     domain_plan, domain_point, domain_triangle, hull_factors, piece_error, process, tessellate,
 };
+use glam::{DMat4, DVec2, DVec4, Vec2};
+use inspect::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
 
 /// The number of steps of the grid that each triangle is sampled on.
 const STEPS: u32 = 8;
 
 /// The fewest triangles that were found.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Optimum {
-    pub triangles: u64,
-    /// With these factors of the edges.
-    pub edges: Vec<u32>,
+pub(crate) struct Optimum {
+    pub(crate) triangles: u64,
     /// No factors need fewer triangles than this, as far as sampling tells.
-    pub lower_bound: u64,
+    pub(crate) lower_bound: u64,
     /// The least factor that, used everywhere, keeps the tolerance, and its number of triangles; `None` if none does.
-    pub uniform: Option<(u32, u64)>,
+    pub(crate) uniform: Option<(u32, u64)>,
 }
 
 /// A patch whose factors are searched.
@@ -227,7 +223,7 @@ fn ring_triangles(inside: u32) -> u64 {
 
 /// Searches the fewest triangles for these inputs. `starts` are factors of all edges to start from; the search always
 /// starts from what the patches would choose by themselves, too.
-fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>]) -> Optimum {
+pub(crate) fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>]) -> Optimum {
     let levels = levels(inputs.tessellation.partitioning);
     let limit = LimitSurface::new(mesh, topology, inputs);
     let mut patches = Vec::new();
@@ -253,30 +249,24 @@ fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts: &[Vec<u32>
     }
     let uniform = search.uniform();
     let uniform_start = uniform.map(|(factor, _)| vec![factor; topology.edges.len()]);
-    let mut best: Option<(u64, Vec<u32>)> = None;
-    for start in starts.iter().cloned().chain([separate_start]).chain(uniform_start) {
-        let (triangles, edges) = search.improve(start);
-        if best.as_ref().is_none_or(|(fewest, _)| triangles < *fewest) {
-            best = Some((triangles, edges));
-        }
-    }
-    let (triangles, edges) = best.unwrap_or_default();
-    Optimum { triangles, edges, lower_bound, uniform }
+    let starts = starts.iter().cloned().chain([separate_start]).chain(uniform_start);
+    let triangles = starts.map(|start| search.improve(start)).min().unwrap_or_default();
+    Optimum { triangles, lower_bound, uniform }
 }
 
 /// LOD by error beside the optimum.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Compared {
+pub(crate) struct Compared {
     /// The triangles of LOD by error.
-    pub triangles: u64,
+    pub(crate) triangles: u64,
     /// None if it wasn't searched for.
-    pub best: Option<Optimum>,
+    pub(crate) best: Option<Optimum>,
     /// The largest error in px; `None` where a factor is capped.
-    pub error_px: Option<f64>,
+    pub(crate) error_px: Option<f64>,
 }
 
 /// Tessellates a mesh under these inputs, whose LOD is by error, measures the error, and searches the optimum if asked to.
-pub fn compare_with_optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, searches: bool) -> Compared {
+pub(crate) fn compare_with_optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, searches: bool) -> Compared {
     let own = tessellate(mesh, topology, inputs, None);
     let triangles = own.triangles.len() as u64;
     let capped = |factors: &HullFactors| factors.is_capped(inputs.tessellation.partitioning);
@@ -327,8 +317,9 @@ impl Search {
         None
     }
 
-    /// Changes the factors of single edges, and of all edges of single patches, as long as that saves triangles.
-    fn improve(&mut self, mut edges: Vec<u32>) -> (u64, Vec<u32>) {
+    /// Changes the factors of single edges, and of all edges of single patches, as long as that saves triangles, and
+    /// returns how many are left.
+    fn improve(&mut self, mut edges: Vec<u32>) -> u64 {
         for _ in 0..40 {
             let mut saved = self.change_edges(&mut edges);
             saved += self.change_patches(&mut edges);
@@ -336,8 +327,7 @@ impl Search {
                 break;
             }
         }
-        let total = (0..self.patches.len()).map(|patch| self.cost(patch, &edges)).sum();
-        (total, edges)
+        (0..self.patches.len()).map(|patch| self.cost(patch, &edges)).sum()
     }
 
     fn change_edges(&mut self, edges: &mut [u32]) -> u64 {
@@ -408,58 +398,5 @@ impl Search {
             saved += before - fewest;
         }
         saved
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::render::camera::Camera;
-    use geometry::mesh::Shape;
-    use geometry::progress::Progress;
-    use geometry::tessellate::{Lod, Tessellation};
-    use glam::Vec2;
-
-    /// The optimum, and the triangles of LOD by error.
-    fn compared(shape: Shape, tolerance: f32, partitioning: Partitioning) -> (Optimum, u64) {
-        let (mesh, viewport) = (shape.build(), Vec2::new(640.0, 360.0));
-        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
-        let tessellation = Tessellation { lod: Lod::Error, tolerance, partitioning, ..Tessellation::default() };
-        let view = Camera::framing(&mesh.bounds(), viewport).lod_view(viewport, &mesh.bounds());
-        let inputs = Inputs::new(&tessellation, view);
-        let own = tessellate(&mesh, &topology, &inputs, None);
-        (optimum(&mesh, &topology, &inputs, &[]), own.triangles.len() as u64)
-    }
-
-    #[test]
-    fn lod_by_error_has_hardly_more_triangles_than_the_optimum_and_never_more_than_one_factor() {
-        for (shape, tolerance, partitioning) in [
-            (Shape::CubeSplit, 1.0, Partitioning::Integer),
-            (Shape::Icosahedron, 2.0, Partitioning::Integer),
-            (Shape::Cylinder, 0.5, Partitioning::Integer),
-            (Shape::Saddle, 0.25, Partitioning::FractionalOdd),
-            (Shape::Cone, 1.0, Partitioning::FractionalEven),
-            (Shape::CubeSmooth, 1.0, Partitioning::Pow2),
-        ] {
-            let (best, own) = compared(shape, tolerance, partitioning);
-            let what = format!("{shape:?} {tolerance} px {partitioning:?}: {own} triangles, {best:?}");
-            assert!(own as f64 <= 1.2 * best.triangles as f64 && own as f64 >= 0.97 * best.triangles as f64, "{what}");
-            assert!(
-                best.lower_bound <= best.triangles && best.triangles as f64 <= 1.1 * best.lower_bound as f64,
-                "{what}"
-            );
-            assert!(best.uniform.is_none_or(|(_, triangles)| own <= triangles), "{what}");
-        }
-    }
-
-    #[test]
-    fn what_is_flat_needs_one_triangle_a_patch() {
-        let (mesh, viewport) = (Shape::CubeSplit.build(), Vec2::new(640.0, 360.0));
-        let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
-        let tessellation =
-            Tessellation { surface: geometry::tessellate::Surface::Flat, lod: Lod::Error, ..Tessellation::default() };
-        let view = Camera::framing(&mesh.bounds(), viewport).lod_view(viewport, &mesh.bounds());
-        let best = optimum(&mesh, &topology, &Inputs::new(&tessellation, view), &[]);
-        assert_eq!((best.triangles, best.lower_bound, best.uniform), (12, 12, Some((1, 12))));
     }
 }
