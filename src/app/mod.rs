@@ -292,6 +292,7 @@ impl eframe::App for App {
         self.side_panels(ui);
         self.chart_panel(ui);
         egui::Panel::top("toolbar").frame(frame).show(ui, |ui| self.toolbar(ui));
+        self.timeline(ui);
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
         self.hold_chart();

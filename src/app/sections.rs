@@ -30,7 +30,6 @@ sections! {
     LevelOfDetail => "Level of detail", true;
     Displacement => "Displacement", false;
     Parts => "Parts", true;
-    Animation => "Animation", true;
     Look => "Look", false;
     Import => "Import", false;
     Advanced => "Advanced", false;

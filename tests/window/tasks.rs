@@ -7,7 +7,7 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, Queryable};
 use geometry::tessellate::{Lod, Partitioning, Surface, Tessellation};
-use inspect::settings::Colors;
+use inspect::settings::{Colors, SplitView};
 use load::markdown::table;
 use load::{NormalSource, Source};
 use pnaen::app::App;
@@ -49,7 +49,7 @@ fn is_written(folder: &Path, name: &str) -> bool {
     std::fs::metadata(folder.join(name)).is_ok_and(|file| file.len() > 0)
 }
 
-const TASKS: [Task; 27] = [
+const TASKS: [Task; 30] = [
     Task {
         what: "open a mesh",
         steps: &[Click("File"), Click("Open…"), Type("other.glb")],
@@ -81,10 +81,21 @@ const TASKS: [Task; 27] = [
         },
     },
     Task {
-        what: "compare two surfaces side by side",
+        what: "compare two surfaces",
         steps: &[List("Left", "PN")],
         done: |window, _| window.state().settings().has_left_tessellation(),
     },
+    Task {
+        what: "see both halves side by side",
+        steps: &[List("Shown as", "Side by side")],
+        done: |window, _| window.state().settings().split_view == SplitView::Beside,
+    },
+    Task {
+        what: "see where both halves differ",
+        steps: &[List("Shown as", "Difference")],
+        done: |window, _| window.state().settings().split_view == SplitView::Difference,
+    },
+    Task { what: "see all of the mesh", steps: &[Click("Frame all")], done: |window, _| window.state().is_framed() },
     Task {
         what: "compare with another file",
         steps: &[List("Left mesh", "Another file…"), Type("other.glb")],

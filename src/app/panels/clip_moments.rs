@@ -14,8 +14,8 @@ use inspect::engine::{ClipFinding, MomentFound, worst_moment};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR};
 use inspect::settings::Choice;
 
-/// The height of the strip, in points.
-const HEIGHT: f32 = 28.0;
+/// The height of the strip, in points: that of the button that was there before.
+const HEIGHT: f32 = 18.0;
 
 /// What was found in a clip.
 pub(crate) struct ClipMoments {
@@ -29,9 +29,9 @@ type Measured = (usize, Tessellation, Option<LodView>, FromFiles);
 impl App {
     /// The strip of moments and the worst of them; before they are measured, the button that starts it.
     pub(in crate::app) fn clip_moments(&mut self, ui: &mut egui::Ui) {
-        let Some(clip) = self.moment().map(|moment| moment.clip) else { return };
+        let clip = self.moment().map(|moment| moment.clip);
         let drawn = self.viewport.picture.drawn.as_ref().map(|drawn| (drawn.inputs, drawn.from_files));
-        let of = drawn.map(|(Inputs { tessellation, view, .. }, from_files)| {
+        let of = drawn.zip(clip).map(|((Inputs { tessellation, view, .. }, from_files), clip)| {
             (clip, tessellation, tessellation.follows_view().then_some(view), from_files)
         });
         let known = self.document.as_ref().and_then(|document| document.clip_moments.as_ref());
@@ -40,34 +40,41 @@ impl App {
                          cracked edges and triangles.";
             let button =
                 ui.add_enabled(of.is_some() && !self.jobs.has(Work::Clip), egui::Button::new("Find the worst moments"));
-            let is_clicked = button.on_hover_text(hover).clicked();
+            let is_clicked = button.on_hover_text(hover).on_disabled_hover_text("Choose a clip.").clicked();
             if let Some((of, (inputs, _))) = of.zip(drawn).filter(|_| is_clicked) {
                 self.survey_clip(ui.ctx(), of, inputs);
             }
             return;
         };
-        let chosen = self.strip(ui, &found);
         let worst = |finding| worst_moment(&found, finding).map(|worst| (finding, worst));
-        let mut time = chosen;
-        for (finding, MomentFound { time: at, counts }) in ClipFinding::ALL.into_iter().filter_map(worst) {
-            let count = counts[finding as usize];
-            let text = match count {
-                0 => format!("No {}", finding.label()),
-                count => format!("Most {}: {} at {at:.3} s", finding.label(), grouped(count)),
-            };
-            let button = ui.add_enabled(count > 0, egui::Button::new(text).truncate());
-            if button.on_hover_text(finding.text()).on_disabled_hover_text("There are none in this clip.").clicked() {
-                time = Some(at);
+        ui.horizontal(|ui| {
+            let mut time = None;
+            for (finding, MomentFound { time: at, counts }) in ClipFinding::ALL.into_iter().filter_map(worst) {
+                let count = counts[finding as usize];
+                let (shown, name) = match count {
+                    0 => (format!("No {}", finding.label()), format!("No {}", finding.label())),
+                    count => {
+                        let shown = format!("Most {}: {}", finding.label(), grouped(count));
+                        let name = format!("{shown} at {at:.3} s");
+                        (shown, name)
+                    }
+                };
+                let button = ui.add_enabled(count > 0, egui::Button::new(shown));
+                button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, count > 0, &name));
+                let button = button.on_hover_text(format!("{name}. {}", finding.text()));
+                if button.on_disabled_hover_text("There are none in this clip.").clicked() {
+                    time = Some(at);
+                }
             }
-        }
-        if let Some(time) = time {
-            self.viewport.playback.show(time);
-        }
+            if let Some(time) = self.strip(ui, &found).or(time) {
+                self.viewport.playback.show(time);
+            }
+        });
     }
 
     /// Folds and cracked edges over time, each against the most of them. Returns the time of the moment that is clicked on.
     fn strip(&self, ui: &mut egui::Ui, found: &[MomentFound]) -> Option<f64> {
-        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click());
+        let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width().max(HEIGHT), HEIGHT), Sense::click());
         let painter = ui.painter_at(rect);
         painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
         let width = rect.width() / found.len().max(1) as f32;

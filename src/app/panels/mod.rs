@@ -25,6 +25,7 @@ mod settings_panel;
 mod sides;
 mod statistics;
 mod status_line;
+mod timeline;
 mod toolbar;
 mod user_shaders;
 mod verdict;

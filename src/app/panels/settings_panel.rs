@@ -26,7 +26,6 @@ impl App {
                 app.section(ui, Section::Displacement, Self::height_rows);
             });
             self.parts_section(ui);
-            self.animation_section(ui);
             self.section(ui, Section::Look, Self::look_rows);
             self.section(ui, Section::Import, Self::import_rows);
             self.of_half(|app| app.section(ui, Section::Advanced, Self::advanced_rows));

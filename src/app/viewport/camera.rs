@@ -113,7 +113,7 @@ impl App {
     }
 
     /// Whether the camera has its target and distance of the last [`Self::frame`]. It may have turned.
-    pub(in crate::app) fn is_framed(&self) -> bool {
+    pub fn is_framed(&self) -> bool {
         let place = |camera: &Camera| (camera.target, camera.distance);
         self.viewport.framed.as_ref().map(place) == Some(place(&self.viewport.camera))
     }

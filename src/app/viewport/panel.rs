@@ -22,6 +22,8 @@ use load::Source;
 
 /// Degrees that the camera turns for a point of dragging.
 const DEGREES_PER_POINT: f32 = 0.4;
+/// How much nearer the camera comes for a point of scrolling, as a part of its distance. Dragging takes half as far.
+const RATIO_PER_POINT: f32 = 0.0025;
 /// How far beside the divider it can be grabbed, in points.
 const DIVIDER_REACH: f32 = 5.0;
 
@@ -253,16 +255,21 @@ impl App {
 
     fn move_camera(&mut self, ui: &egui::Ui, response: &egui::Response, points: Vec2) {
         let drag = vec2(response.drag_delta().x, response.drag_delta().y);
-        let shift = ui.input(|input| input.modifiers.shift);
+        let (shift, command) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
         let pans = response.dragged_by(PointerButton::Middle) || (response.dragged_by(PointerButton::Primary) && shift);
-        if pans {
+        let zooms =
+            response.dragged_by(PointerButton::Secondary) || (response.dragged_by(PointerButton::Middle) && command);
+        if zooms {
+            // Upwards comes nearer.
+            self.viewport.camera.zoom((2.0 * drag.y * RATIO_PER_POINT).exp(), 0.5 * points, points);
+        } else if pans {
             self.viewport.camera.pan(drag, points);
         } else if response.dragged_by(PointerButton::Primary) {
             self.viewport.camera.orbit(vec2(-drag.x, drag.y) * DEGREES_PER_POINT);
         }
         if let Some(pointer) = response.hover_pos() {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-            let ratio = (-scroll * 0.0025).exp() / pinch;
+            let ratio = (-scroll * RATIO_PER_POINT).exp() / pinch;
             if ratio != 1.0 {
                 let (pointer, scale) = (pointer - response.rect.min, ui.ctx().pixels_per_point());
                 let size = (points * scale).to_array().map(|side| side.round() as u32);

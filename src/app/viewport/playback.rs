@@ -1,26 +1,21 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
-use crate::app::sections::Section;
-use crate::app::text::shortened;
-use crate::app::widgets::{LABEL_WIDTH, chooser};
-use crate::commands::{Action, with_key};
 use geometry::mesh::Moment;
 use geometry::mesh::rig::Clip;
 
-/// The range of speeds at which a clip plays; 1 is its own speed.
-const SPEED_RANGE: std::ops::RangeInclusive<f64> = 0.1..=4.0;
 /// How many clips the list shows.
-const LISTED: usize = 1000;
+pub(in crate::app) const LISTED: usize = 1000;
 
 /// The clip and the time that the mesh is shown at.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Playback {
     /// None at rest.
-    clip: Option<usize>,
+    pub clip: Option<usize>,
     /// Time in the clip, in s.
-    time: f64,
-    speed: f64,
+    pub time: f64,
+    /// 1 is the clip's own speed.
+    pub speed: f64,
     /// While playing: when `time` was last advanced, on the window's clock in s.
     playing: Option<f64>,
 }
@@ -63,7 +58,7 @@ impl App {
         self.viewport.playback.is_playing()
     }
 
-    fn clips(&self) -> &[Clip] {
+    pub(in crate::app) fn clips(&self) -> &[Clip] {
         let rig = self.document.as_ref().and_then(|document| document.loaded.mesh.rig.as_deref());
         rig.map_or(&[], |rig| &rig.clips)
     }
@@ -137,84 +132,4 @@ impl App {
         self.viewport.playback.playing = Some(now);
         context.request_repaint();
     }
-
-    /// The section about animation, which only a mesh with clips has.
-    pub(in crate::app) fn animation_section(&mut self, ui: &mut egui::Ui) {
-        if self.clips().is_empty() {
-            let read = self.document.as_ref().map(|document| &document.loaded.read);
-            if read.is_some_and(|read| read.rig.is_some()) && self.panels.open.title(ui, Section::Animation) {
-                ui.weak("A mesh with a crease band can't be animated.");
-            }
-            return;
-        }
-        if !self.panels.open.title(ui, Section::Animation) {
-            return;
-        }
-        let before = self.viewport.playback.clip;
-        let mut chosen = before;
-        let texts: Vec<_> = self.clips().iter().take(LISTED).map(clip_texts).collect();
-        egui::Grid::new("animation").num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| {
-            let mut choices = vec![(None, "Rest pose", "The mesh as it is without any clip.")];
-            let clips = texts.iter().enumerate();
-            choices.extend(clips.map(|(i, (name, hover))| (Some(i), name.as_str(), hover.as_str())));
-            chooser(
-                ui,
-                "Clip",
-                "The animation clip. A clip that is chosen is shown from its start.",
-                &mut chosen,
-                &choices,
-            );
-            self.time_row(ui);
-            self.speed_row(ui);
-            ui.label("");
-            self.play_button(ui);
-            ui.end_row();
-        });
-        self.clip_moments(ui);
-        // Playing at rest chooses the first clip by itself.
-        if chosen != before {
-            self.choose_clip(chosen);
-        }
-    }
-
-    fn time_row(&mut self, ui: &mut egui::Ui) {
-        let clip = self.viewport.playback.clip.and_then(|clip| self.clips().get(clip));
-        let duration = clip.map_or(0.0, |clip| clip.duration);
-        let hover = if clip.is_some() { format!("Time in the clip, 0 to {duration:.3} s.") } else { String::new() };
-        let label = ui.label("Time").on_hover_text(&hover);
-        // With an empty range the handle would be in the middle.
-        let end = if duration > 0.0 { duration } else { 1.0 };
-        let slider = egui::Slider::new(&mut self.viewport.playback.time, 0.0..=end).fixed_decimals(3).suffix(" s");
-        ui.add_enabled(duration > 0.0, slider)
-            .labelled_by(label.id)
-            .on_hover_text(hover)
-            .on_disabled_hover_text("Choose a clip that is longer than 0 s.");
-        ui.end_row();
-    }
-
-    fn speed_row(&mut self, ui: &mut egui::Ui) {
-        let hover = "How fast the clip plays. 1 is its own speed.";
-        let label = ui.label("Speed").on_hover_text(hover);
-        let slider = egui::Slider::new(&mut self.viewport.playback.speed, SPEED_RANGE)
-            .max_decimals(2)
-            .logarithmic(true)
-            .suffix(" \u{d7}");
-        ui.add(slider).labelled_by(label.id).on_hover_text(hover);
-        ui.end_row();
-    }
-
-    fn play_button(&mut self, ui: &mut egui::Ui) {
-        let is_playing = self.is_playing();
-        let button = egui::Button::new(if is_playing { "Pause" } else { "Play" }).min_size(egui::vec2(72.0, 0.0));
-        let hover = "Plays the clip in a loop, or the first clip if none is chosen. Cracks and other statistics are measured \
-                     only while it is paused.";
-        if ui.add(button).on_hover_text(with_key(hover, &Action::PlayOrPause)).clicked() {
-            self.toggle_playing(ui.ctx());
-        }
-    }
-}
-
-/// A clip's name, short enough for the list, and its hover text.
-fn clip_texts(clip: &Clip) -> (String, String) {
-    (shortened(&clip.name, 18), format!("{}: {:.3} s.", shortened(&clip.name, 200), clip.duration))
 }
