@@ -14,6 +14,7 @@ pub(crate) mod height_image;
 pub(crate) mod levels;
 pub(crate) mod memory;
 pub(crate) mod pass;
+pub(crate) mod patterns;
 pub(crate) mod stages;
 
 pub(crate) use device::{Counted, Took, Vulkan, VulkanError};
