@@ -148,7 +148,7 @@ impl QuadFactors {
 /// Adds the points of a ring's side, without the last, which is the first of the next side. `along` are the places of all of
 /// them from the least to the greatest, and `across` is the place that they share.
 fn push_side(points: &mut Vec<[u32; 2]>, side: usize, along: &[u32], across: u32) {
-    let place = |&x: &u32| if side % 2 == 0 { [across, x] } else { [x, across] };
+    let place = |&x: &u32| if side % 2 == 1 { [x, across] } else { [across, x] };
     let last = along.len() - 1;
     match side {
         0 | 3 => points.extend(along[1..].iter().rev().map(place)),
