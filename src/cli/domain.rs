@@ -10,7 +10,7 @@ use geometry::tessellate::{
     DomainKind, HullFactors, IsolineFactors, Partitioning, QuadFactors, domain_plan, domain_point, domain_triangle,
     point_count, process, triangle_count,
 };
-use gpu::{DomainPass, Gpu};
+use gpu::{DomainPass, DomainPattern, Gpu};
 use inspect::settings::Choice;
 use inspect::shot::ShotError;
 
@@ -56,7 +56,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let mut printer = Printer { out, is_numbered: args.input.is_some(), number: 0 };
     match args.kind {
         DomainKind::Tri if args.device == Some(Device::Cpu) => {
-            args.sets()?.iter().try_for_each(|set| print_triangle(&mut printer, args.partitioning, set))?;
+            args.sets()?.iter().try_for_each(|set| printer.print_triangles(&on_cpu(args.partitioning, set)))?;
         }
         DomainKind::Tri => {
             let sets = args.sets()?;
@@ -64,14 +64,22 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
             let pass = DomainPass::default();
             for batch in sets.chunks(BATCH) {
                 let patterns = pass.run(&gpu, args.partitioning, batch)?;
-                patterns.iter().try_for_each(|own| printer.print(&own.points, "triangle", &own.triangles))?;
+                patterns.iter().try_for_each(|pattern| printer.print_triangles(pattern))?;
             }
         }
         DomainKind::Quad => {
-            args.sets()?.iter().try_for_each(|set| print_quad(&mut printer, args.partitioning, set))?;
+            for [e0, e1, e2, e3, u, v] in args.sets()? {
+                let drawn = QuadFactors::new(args.partitioning, [e0, e1, e2, e3], [u, v]);
+                let pattern = |own: QuadFactors| DomainPattern { points: own.points(), triangles: own.triangles() };
+                printer.print_triangles(&drawn.map(pattern).unwrap_or_default())?;
+            }
         }
         DomainKind::Isoline => {
-            args.sets()?.iter().try_for_each(|set| print_isolines(&mut printer, args.partitioning, set))?;
+            for [density, detail] in args.sets()? {
+                let drawn = IsolineFactors::new(args.partitioning, density, detail);
+                let (points, lines) = drawn.map(|own| (own.points(), own.lines())).unwrap_or_default();
+                printer.print(&points, "line", &lines)?;
+            }
         }
     }
     printer.out.flush().map_err(CliError::Output)
@@ -158,38 +166,19 @@ impl<W: Write> Printer<W> {
         let joined = |own: &[u32; N]| own.map(|point| point.to_string()).join(",");
         primitives.iter().try_for_each(|own| write(format!("{name},{}", joined(own))))
     }
+
+    fn print_triangles(&mut self, pattern: &DomainPattern) -> Result<(), CliError> {
+        self.print(&pattern.points, "triangle", &pattern.triangles)
+    }
 }
 
-fn print_triangle(
-    printer: &mut Printer<impl Write>,
-    partitioning: Partitioning,
-    &[e0, e1, e2, inside]: &[f32; 4],
-) -> Result<(), CliError> {
+fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &[f32; 4]) -> DomainPattern {
     let factors = process(partitioning, [e0, e1, e2], inside);
     let plan = domain_plan(factors);
-    let points: Vec<_> = (0..point_count(factors)).map(|i| domain_point(&plan, i)).collect();
-    let triangles: Vec<_> = (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect();
-    printer.print(&points, "triangle", &triangles)
-}
-
-fn print_quad(
-    printer: &mut Printer<impl Write>,
-    partitioning: Partitioning,
-    &[e0, e1, e2, e3, u, v]: &[f32; 6],
-) -> Result<(), CliError> {
-    let drawn = QuadFactors::new(partitioning, [e0, e1, e2, e3], [u, v]);
-    let (points, triangles) = drawn.map(|own| (own.points(), own.triangles())).unwrap_or_default();
-    printer.print(&points, "triangle", &triangles)
-}
-
-fn print_isolines(
-    printer: &mut Printer<impl Write>,
-    partitioning: Partitioning,
-    &[density, detail]: &[f32; 2],
-) -> Result<(), CliError> {
-    let drawn = IsolineFactors::new(partitioning, density, detail);
-    let (points, lines) = drawn.map(|own| (own.points(), own.lines())).unwrap_or_default();
-    printer.print(&points, "line", &lines)
+    DomainPattern {
+        points: (0..point_count(factors)).map(|i| domain_point(&plan, i)).collect(),
+        triangles: (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect(),
+    }
 }
 
 fn comma_list(text: &str) -> Result<FactorList, String> {
