@@ -1,4 +1,4 @@
-//! `pnaen domain`: the tessellator's points and triangles.
+//! `pnaen domain`: the tessellator's points, triangles and lines.
 
 use std::collections::HashSet;
 use std::io::Write;
@@ -89,4 +89,50 @@ fn sets_of_factors_can_come_from_standard_input() {
         String::from_utf8_lossy(&output.stdout),
         "0,point,0,0,65536\n0,point,1,0,0\n0,point,2,65536,0\n0,triangle,0,1,2\n"
     );
+}
+
+#[test]
+fn quads_and_isolines_are_printed_in_order() {
+    let quad = ["domain", "--kind", "quad", "--partitioning"];
+    let text = output(&[&quad[..], &["integer", "--factors", "1,1,1,1,1,2"]].concat());
+    let expected = "point,0,0,65536\npoint,1,0,0\npoint,2,65536,0\npoint,3,65536,65536\npoint,4,32768,32768\n\
+                    triangle,4,0,1\ntriangle,4,1,2\ntriangle,4,2,3\ntriangle,4,3,0\n";
+    assert_eq!(text, expected);
+    assert_eq!(output(&[&quad[..], &["fractional-even", "--factors", "2,2,nan,2,2,2"]].concat()), "");
+
+    let folder = Folder::new();
+    let sets = folder.path("sets.txt");
+    std::fs::write(&sets, "1 1\n0 4\n4 nan\n2 2.5\n").expect("a writable folder");
+    let text = output(&["domain", "--kind", "isoline", "--partitioning", "fractional_odd", "--input", &sets]);
+    let expected = "0,point,0,0,0\n0,point,1,65536,0\n0,line,0,1\n\
+                    3,point,0,0,0\n3,point,1,16384,0\n3,point,2,49152,0\n3,point,3,65536,0\n\
+                    3,point,4,0,32768\n3,point,5,16384,32768\n3,point,6,49152,32768\n3,point,7,65536,32768\n\
+                    3,line,0,1\n3,line,1,2\n3,line,2,3\n3,line,4,5\n3,line,5,6\n3,line,6,7\n";
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn each_kind_takes_its_own_number_of_factors() {
+    let folder = Folder::new();
+    let sets = folder.path("sets.txt");
+    std::fs::write(&sets, "1 1 1 1\n").expect("a writable folder");
+    for (kind, factors, wanted) in [
+        ("tri", "1,1,1", "four numbers"),
+        ("quad", "1,1,1,1", "six numbers"),
+        ("isoline", "1,1,1,1,1,1", "two numbers"),
+    ] {
+        let pattern = ["domain", "--kind", kind, "--partitioning", "integer"];
+        let said = failure(&[&pattern[..], &["--factors", factors]].concat(), 2);
+        assert!(said.contains(wanted), "{said}");
+        if kind != "tri" {
+            sentence(&[&pattern[..], &["--input", &sets]].concat(), &["sets.txt, line 1", wanted]);
+        }
+    }
+    for options in
+        [&["rows"][..], &["subtriangulation"], &["pow2", "--device", "gpu"], &["pow2", "--adapter", "software"]]
+    {
+        let isolines = ["domain", "--kind", "isoline", "--factors", "1,1", "--partitioning"];
+        let said = failure(&[&isolines[..], options].concat(), 2);
+        assert!(said.contains("quads and isolines"), "{said}");
+    }
 }

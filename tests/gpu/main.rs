@@ -11,6 +11,7 @@ mod deviation;
 mod displacement;
 mod domain;
 mod drafts;
+mod driver_domain;
 mod embed;
 mod environment;
 mod error;

@@ -14,6 +14,8 @@ pub(crate) mod height_image;
 pub(crate) mod levels;
 pub(crate) mod memory;
 pub(crate) mod pass;
+#[allow(dead_code, reason = "tests compare patterns, and benches don't")]
+pub(crate) mod patterns;
 pub(crate) mod stages;
 
 pub(crate) use device::{Counted, Took, Vulkan, VulkanError};

@@ -155,9 +155,9 @@ void main() {
 ";
 
 /// A stage with its SPIR-V.
-struct Stage {
-    flag: vk::ShaderStageFlags,
-    code: Vec<u8>,
+pub(crate) struct Stage {
+    pub flag: vk::ShaderStageFlags,
+    pub code: Vec<u8>,
 }
 
 /// Compiles one text. `options` say its language, stage and entry point.
@@ -240,7 +240,13 @@ impl Exported<'_> {
         let nowhere = Pass::nowhere(vulkan)?;
         let samples = matches!(self, Exported::Glsl { .. });
         let set = Bindings::new(vulkan, drawn, samples)?;
-        let pipeline = pipeline(vulkan, &set, nowhere.handle(), &stages, self.entries(), drawn)?;
+        let (buffers, attributes) = vertex_input(drawn.displaced.as_ref());
+        let input = vk::PipelineVertexInputStateCreateInfo::default()
+            .vertex_binding_descriptions(&buffers)
+            .vertex_attribute_descriptions(&attributes);
+        let pass = nowhere.handle();
+        let layout = set.pipeline.handle;
+        let pipeline = pipeline(vulkan, layout, pass, &stages, self.entries(), &input, drawn.per_patch)?;
         let vertices = Buffer::filled(vulkan, drawn.vertices)?;
         let relief = drawn.displaced.map(|displaced| Buffer::filled(vulkan, displaced.corners)).transpose()?;
         let levels = levels(vulkan, self, drawn)?;
@@ -266,14 +272,18 @@ impl Exported<'_> {
     }
 }
 
-/// A pipeline that ends before the rasteriser.
-fn pipeline(
+/// Makes a pipeline of patches with so many corners that ends before the rasteriser.
+///
+/// # Errors
+/// The driver doesn't take it.
+pub(crate) fn pipeline(
     vulkan: &Rc<Vulkan>,
-    set: &Bindings,
+    layout: vk::PipelineLayout,
     pass: vk::RenderPass,
     stages: &[Stage],
     entries: [&std::ffi::CStr; 4],
-    drawn: &Drawn,
+    vertices: &vk::PipelineVertexInputStateCreateInfo,
+    per_patch: u32,
 ) -> Result<Owned<vk::Pipeline>, VulkanError> {
     let modules = stages.iter().map(|stage| module(vulkan, &stage.code)).collect::<Result<Vec<_>, _>>()?;
     let stages: Vec<_> = stages
@@ -284,20 +294,16 @@ fn pipeline(
             vk::PipelineShaderStageCreateInfo::default().stage(stage.flag).module(module.handle).name(entry)
         })
         .collect();
-    let (bindings, attributes) = vertex_input(drawn.displaced.as_ref());
-    let vertices = vk::PipelineVertexInputStateCreateInfo::default()
-        .vertex_binding_descriptions(&bindings)
-        .vertex_attribute_descriptions(&attributes);
     let assembly = vk::PipelineInputAssemblyStateCreateInfo::default().topology(vk::PrimitiveTopology::PATCH_LIST);
-    let tessellation = vk::PipelineTessellationStateCreateInfo::default().patch_control_points(drawn.per_patch);
+    let tessellation = vk::PipelineTessellationStateCreateInfo::default().patch_control_points(per_patch);
     let raster = vk::PipelineRasterizationStateCreateInfo::default().rasterizer_discard_enable(true).line_width(1.0);
     let info = vk::GraphicsPipelineCreateInfo::default()
         .stages(&stages)
-        .vertex_input_state(&vertices)
+        .vertex_input_state(vertices)
         .input_assembly_state(&assembly)
         .tessellation_state(&tessellation)
         .rasterization_state(&raster)
-        .layout(set.pipeline.handle)
+        .layout(layout)
         .render_pass(pass);
     let made = unsafe { vulkan.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None) };
     let handle = made.map_err(|(_, error)| error)?[0];

@@ -148,7 +148,7 @@ pub(crate) fn domain_triangle_places(plan: &DomainPlan, t: u32) -> [[u32; 2]; 3]
 }
 
 /// Returns triangle `t` between an edge and the first ring. The second half of a side mirrors the first.
-fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {
+pub(super) fn transition_step(row: DomainRow, inner_segments: u32, edge: u32, t: u32) -> TransitionStep {
     let inner_half = row.half - row.odd;
     let outer_half = half_segments(edge) - odd_parity(edge);
     let outer_segments = segments(edge);
@@ -190,19 +190,11 @@ fn transition_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
     let edge = plan.factors.outside[side as usize];
 
     let step = transition_step(plan.row, inner_segments, edge, t - side_start - side * inner_segments);
-    let inner_start = side * inner_segments + step.inner;
-    let outer_start = side_start + step.outer;
-    let i = ring_point(outer, 3 * inner_segments, inner_start);
-    let o = ring_point(0, outer, outer_start);
-    let next = if step.along_inner {
-        ring_point(outer, 3 * inner_segments, inner_start + 1)
-    } else {
-        ring_point(0, outer, outer_start + 1)
-    };
-    if step.inner_first { [i, o, next] } else { [o, next, i] }
+    let inner_point = |p| ring_point(outer, 3 * inner_segments, side * inner_segments + p);
+    step.triangle(inner_point, |p| ring_point(0, outer, side_start + p))
 }
 
 #[cfg(test)]
 mod serial;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;

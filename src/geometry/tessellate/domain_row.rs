@@ -22,6 +22,13 @@ pub(crate) struct DomainRow {
     fine_step: u32,
 }
 
+impl DomainRow {
+    /// Returns where all points lie, in order: see [`row_location`].
+    pub(super) fn locations(self) -> impl Iterator<Item = u32> {
+        (0..=2 * self.half - self.odd).map(move |p| row_location(self, p))
+    }
+}
+
 /// Returns the length of one of `segments` equal segments in 16.16 fixed point: 1 / segments, rounded half up. There
 /// are at most 128 segments.
 ///

@@ -135,17 +135,17 @@ pub struct PatchFactors {
 }
 
 /// Returns whether an `f32` with these bits is greater than zero. Denormals are; NaN isn't.
-fn positive_bits(bits: u32) -> bool {
+pub(super) fn positive_bits(bits: u32) -> bool {
     bits.wrapping_sub(1) < BITS_INFINITY
 }
 
 /// Returns the smallest factor of a partitioning, as `f32` bits.
-fn factor_lower_bound(partitioning: Partitioning) -> u32 {
+pub(super) fn factor_lower_bound(partitioning: Partitioning) -> u32 {
     if partitioning == Partitioning::FractionalEven { BITS_TWO } else { BITS_ONE }
 }
 
 /// Returns the largest factor of a partitioning, as `f32` bits.
-fn factor_upper_bound(partitioning: Partitioning) -> u32 {
+pub(super) fn factor_upper_bound(partitioning: Partitioning) -> u32 {
     match partitioning {
         Partitioning::FractionalOdd => BITS_63,
         Partitioning::Rows => BITS_127,
@@ -161,7 +161,7 @@ pub fn last_factor(partitioning: Partitioning) -> f32 {
 /// Returns the word of a factor of at least 1, given as `f32` bits. The factor is rounded up to a whole number or, in the
 /// fractional partitionings, to the nearest 1/65536 with ties to even. Its parity is that of the partitioning, or of
 /// the whole number.
-fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
+pub(super) fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
     let exponent = (bits >> 23) - 127;
     let mantissa = (bits & 0x7f_ffff) | 0x80_0000;
     if !partitioning.is_fractional() {
@@ -176,7 +176,7 @@ fn factor_word(partitioning: Partitioning, bits: u32) -> u32 {
 }
 
 /// Returns the word of an inside factor: as [`factor_word`], but a whole 1 counts as even, since it acts as 2.
-fn inside_word(partitioning: Partitioning, bits: u32) -> u32 {
+pub(super) fn inside_word(partitioning: Partitioning, bits: u32) -> u32 {
     let word = factor_word(partitioning, bits);
     let even_one = partitioning != Partitioning::FractionalOdd && word == (FACTOR_ODD | FIXED_ONE);
     if even_one { FIXED_ONE } else { word }

@@ -19,7 +19,7 @@ pub(super) fn ring_point(start: u32, length: u32, p: u32) -> u32 {
 }
 
 /// One triangle between an edge and the side of the first ring beside it. Its corners are point `inner` of the ring's
-/// side, point `outer` of the edge, and the next point of one of the two.
+/// side, point `outer` of the edge, and the next point of one of the two. Triangles of quads between two rings are like that, too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct TransitionStep {
     pub inner: u32,
@@ -28,4 +28,13 @@ pub(super) struct TransitionStep {
     pub along_inner: bool,
     /// Whether the triangle's first corner is the ring's point, and not the edge's.
     pub inner_first: bool,
+}
+
+impl TransitionStep {
+    /// Returns the corners. `inner_point` and `outer_point` give the numbers of the points of either side.
+    pub(super) fn triangle(self, inner_point: impl Fn(u32) -> u32, outer_point: impl Fn(u32) -> u32) -> [u32; 3] {
+        let (i, o) = (inner_point(self.inner), outer_point(self.outer));
+        let next = if self.along_inner { inner_point(self.inner + 1) } else { outer_point(self.outer + 1) };
+        if self.inner_first { [i, o, next] } else { [o, next, i] }
+    }
 }

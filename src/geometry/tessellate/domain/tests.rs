@@ -131,7 +131,7 @@ fn mixed_factors_agree_with_the_serial_tessellator() {
 }
 
 /// Twice a triangle's area in the (U, V) plane.
-fn doubled_area(points: &[[u32; 2]], t: [u32; 3]) -> i64 {
+pub(in crate::tessellate) fn doubled_area(points: &[[u32; 2]], t: [u32; 3]) -> i64 {
     let [a, b, c] = t.map(|i| points[i as usize].map(i64::from));
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
@@ -205,7 +205,7 @@ fn an_edge_depends_on_its_own_factor_only() {
     }
 }
 
-fn any_factor() -> impl Strategy<Value = f32> {
+pub(in crate::tessellate) fn any_factor() -> impl Strategy<Value = f32> {
     let just_above_one = (0u32..0x200).prop_map(|k| f32::from_bits(0x3f80_0000 + k));
     let near_whole =
         (1u32..=64, -3i32..=3).prop_map(|(n, k)| f32::from_bits((n as f32).to_bits().wrapping_add_signed(k)));
