@@ -195,6 +195,6 @@ fn transition_triangle(plan: &DomainPlan, t: u32) -> [u32; 3] {
 }
 
 #[cfg(test)]
-mod serial;
+mod serial_tests;
 #[cfg(test)]
 pub(super) mod tests;

@@ -328,6 +328,6 @@ pub(super) fn row_point(rows: &NumberedRows, i: u32) -> [u32; 2] {
 }
 
 #[cfg(test)]
-mod picture;
+mod picture_tests;
 #[cfg(test)]
 mod tests;

@@ -9,9 +9,9 @@ use crate::tessellate::factors::{
 };
 use crate::tessellate::last_factor;
 
-fn closed_form(f: PatchFactors) -> serial::Patch {
+fn closed_form(f: PatchFactors) -> serial_tests::Patch {
     let plan = domain_plan(f);
-    serial::Patch {
+    serial_tests::Patch {
         points: (0..point_count(f)).map(|i| domain_point(&plan, i)).collect(),
         triangles: (0..triangle_count(f)).map(|t| domain_triangle(&plan, t)).collect(),
     }
@@ -83,7 +83,7 @@ fn whole_rings_are_counted_exactly() {
 
 #[test]
 fn a_minimal_patch_is_its_corners() {
-    let minimal = serial::Patch { points: vec![[0, FIXED_ONE], [0, 0], [FIXED_ONE, 0]], triangles: vec![[0, 1, 2]] };
+    let minimal = serial_tests::Patch { points: vec![[0, FIXED_ONE], [0, 0], [FIXED_ONE, 0]], triangles: vec![[0, 1, 2]] };
     for p in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
         assert_eq!(closed_form(uniform(p, 1.0)), minimal);
     }
@@ -91,7 +91,7 @@ fn a_minimal_patch_is_its_corners() {
 
 #[test]
 fn a_culled_patch_is_empty() {
-    assert_eq!(closed_form(uniform(Partitioning::Integer, 0.0)), serial::Patch::default());
+    assert_eq!(closed_form(uniform(Partitioning::Integer, 0.0)), serial_tests::Patch::default());
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn every_whole_factor_agrees_with_the_serial_tessellator() {
     for p in Partitioning::DIRECT3D {
         for factor in 1..=64 {
             let f = uniform(p, factor as f32);
-            assert_eq!(closed_form(f), serial::patch(f), "{p:?} {factor}");
+            assert_eq!(closed_form(f), serial_tests::patch(f), "{p:?} {factor}");
         }
     }
 }
@@ -118,7 +118,7 @@ fn every_pair_of_edge_and_inside_factor_agrees_with_the_serial_tessellator() {
         for edge in 1..=62 {
             let edges = [edge, edge + 1, edge + 2].map(|e| e as f32);
             let f = process(Partitioning::Integer, edges, inside as f32);
-            assert_eq!(closed_form(f).triangles, serial::patch(f).triangles, "{edges:?} {inside}");
+            assert_eq!(closed_form(f).triangles, serial_tests::patch(f).triangles, "{edges:?} {inside}");
         }
     }
 }
@@ -126,7 +126,7 @@ fn every_pair_of_edge_and_inside_factor_agrees_with_the_serial_tessellator() {
 #[test]
 fn mixed_factors_agree_with_the_serial_tessellator() {
     for f in mixed_factors(&Partitioning::DIRECT3D) {
-        assert_eq!(closed_form(f), serial::patch(f), "{f:x?}");
+        assert_eq!(closed_form(f), serial_tests::patch(f), "{f:x?}");
     }
 }
 
@@ -226,7 +226,7 @@ proptest! {
         inside in any_factor(),
     ) {
         let f = process(p, edges, inside);
-        prop_assert_eq!(closed_form(f), serial::patch(f));
+        prop_assert_eq!(closed_form(f), serial_tests::patch(f));
     }
 
     #[test]
