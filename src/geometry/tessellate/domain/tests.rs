@@ -83,7 +83,8 @@ fn whole_rings_are_counted_exactly() {
 
 #[test]
 fn a_minimal_patch_is_its_corners() {
-    let minimal = serial_tests::Patch { points: vec![[0, FIXED_ONE], [0, 0], [FIXED_ONE, 0]], triangles: vec![[0, 1, 2]] };
+    let minimal =
+        serial_tests::Patch { points: vec![[0, FIXED_ONE], [0, 0], [FIXED_ONE, 0]], triangles: vec![[0, 1, 2]] };
     for p in [Partitioning::Integer, Partitioning::Pow2, Partitioning::FractionalOdd] {
         assert_eq!(closed_form(uniform(p, 1.0)), minimal);
     }
