@@ -3,13 +3,15 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::import::Import;
+use super::cage_faces::{CageFaces, OfFace};
+use super::import::{Import, Subdivision};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
 use super::notes::{Notes, counted, counts};
 use super::parts::{Part, Parts};
 use super::read_error::{FilePosition, ReadError};
+pub(super) use super::recent_corners::NumberedCorner;
 use super::recent_corners::{RecentCorners, VertexNumbers};
 use super::tangents;
 use super::triangle_block::{self, TriangleBlock};
@@ -48,16 +50,6 @@ pub(super) fn read_faces(
     Ok(LoadedMesh { files: files.named(), ..loaded })
 }
 
-/// A corner of a face.
-#[derive(Clone, Copy)]
-pub(super) struct NumberedCorner {
-    pub corner: InputCorner,
-    /// A number of the reader's. Corners with different ones aren't merged.
-    pub number: u32,
-    /// What determines both, if the file has numbers for it. Then corners with the same numbers must be the same.
-    pub vertex: Option<VertexNumbers>,
-}
-
 /// The mesh that is being built, and counts of what was repaired or left out.
 pub(super) struct FaceBuilder<'a> {
     memory: &'a Budget,
@@ -81,6 +73,8 @@ pub(super) struct FaceBuilder<'a> {
     misnumbered: (usize, Option<FilePosition>),
     /// The triangles of the polygon that is being cut.
     cut: Vec<[usize; 3]>,
+    /// The faces that are to be refined, if any are.
+    cage: Option<CageFaces>,
 }
 
 counts! {
@@ -123,7 +117,40 @@ impl<'a> FaceBuilder<'a> {
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
+            cage: None,
         }
+        .subdivided()
+    }
+
+    fn subdivided(mut self) -> Self {
+        self.begin_cage(self.import.subdivision());
+        self
+    }
+
+    /// Collects the next faces as a cage to refine, or none.
+    pub(super) fn begin_cage(&mut self, subdivision: Option<Subdivision>) {
+        let has_normals = !self.import.makes_normals();
+        self.cage = subdivision.map(|own| CageFaces::new(own, has_normals));
+    }
+
+    /// Makes the edge between two positions a crease of the cage that is collected.
+    pub(super) fn crease(&mut self, ends: [Vec3; 2], sharpness: f32) {
+        self.cage.iter_mut().for_each(|cage| cage.crease(ends, sharpness));
+    }
+
+    /// Adds the refined faces of the cage that was collected.
+    ///
+    /// # Errors
+    /// [`ReadError::TooMany`] and [`ReadError::TooLarge`].
+    pub(super) fn end_cage(&mut self) -> Result<(), ReadError> {
+        let Some(cage) = self.cage.take() else { return Ok(()) };
+        let why_not = cage.refine(self.memory, |corners, OfFace { material, part }| {
+            self.builder.enter_part(part);
+            self.store(material, corners, false)
+        })?;
+        let sentence = |error| format!("A subdivision surface is shown as its control cage: {error}.");
+        self.notes.extend(why_not.map(sentence));
+        Ok(())
     }
 
     /// Says which part the next faces belong to, by its name.
@@ -233,10 +260,19 @@ impl<'a> FaceBuilder<'a> {
         if self.parts.leave_out(corners.len() - 2) {
             return Ok(());
         }
+        if let Some(cage) = &mut self.cage {
+            let face = OfFace { material, part: self.parts.current() };
+            return Ok(cage.add(corners, face, &mut self.work, self.memory)?);
+        }
+        // Repairs are counted again wherever their vertices are used.
+        self.store(material, corners, bad_uvs == self.found.bad_uvs)
+    }
+
+    /// Stores a face as triangles.
+    fn store(&mut self, material: usize, corners: &[NumberedCorner], is_remembered: bool) -> Result<(), ReadError> {
         self.make_room(material, corners.len() - 2)?;
         self.builder.make_room(corners.len(), self.memory)?;
-        // Repairs are counted again wherever their vertices are used.
-        self.cut(material, corners, bad_uvs == self.found.bad_uvs);
+        self.cut(material, corners, is_remembered);
         Ok(())
     }
 
@@ -253,7 +289,7 @@ impl<'a> FaceBuilder<'a> {
         corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
     ) -> Result<usize, ReadError> {
         let mut added = 0;
-        if !self.parts.is_hidden() {
+        if !self.parts.is_hidden() && self.cage.is_none() {
             for some in triangles.chunks(triangle_block::BLOCK) {
                 let mut block = std::mem::take(&mut self.block);
                 let count = self.add_block(&mut block, material, some, &corner_of)?;
@@ -359,6 +395,7 @@ impl<'a> FaceBuilder<'a> {
         holds: String,
         progress: &Progress,
     ) -> Result<Finished, ReadError> {
+        self.end_cage()?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
         let holds = named.unwrap_or(holds);

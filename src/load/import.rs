@@ -3,6 +3,7 @@
 use geometry::choice::choices;
 use geometry::mesh::normals::CREASE_ANGLE;
 use geometry::mesh::orientation::reorient;
+use geometry::mesh::subdivision::{Boundary, Scheme};
 use geometry::mesh::{Mesh, UpAxis};
 
 choices! {
@@ -16,6 +17,32 @@ choices! {
             "All normals are made from the triangles around each point, weighted by angle, as if the file had none. Its \
              smoothing groups and tangents aren't used then.";
     }
+}
+
+choices! {
+    /// Whether polygons are taken as the cage of a subdivision surface.
+    #[derive(Default, Hash)]
+    pub enum Subdivide {
+        #[default]
+        File => "file", "As the file says",
+            "What an FBX file marks as a subdivision surface is refined, unless a clip moves the file.";
+        Off => "none", "None", "Polygons are drawn as they are.";
+        CatmullClark => "catmull-clark", "Catmull-Clark",
+            "Polygons are the cage of a Catmull-Clark surface. Refined points and their normals are those of its limit.";
+        Loop => "loop", "Loop", "Triangles are the cage of a Loop surface. Refined points and their normals are those of its limit.";
+    }
+}
+
+/// How often cages can be refined, and how often they are if nothing is said.
+pub const MOST_LEVELS: u8 = 6;
+const USUAL_LEVELS: u32 = 2;
+
+/// How a cage is refined.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Subdivision {
+    pub scheme: Scheme,
+    pub levels: u8,
+    pub boundary: Boundary,
 }
 
 choices! {
@@ -82,11 +109,22 @@ pub struct Import {
     pub unit: Option<FileUnit>,
     /// Whether what the file hides is loaded too.
     pub show_hidden: bool,
+    pub subdivide: Subdivide,
+    /// How often cages are refined, a whole number up to [`MOST_LEVELS`]; none for as often as the file says, or else twice.
+    pub levels: Option<f32>,
 }
 
 impl Default for Import {
     fn default() -> Self {
-        Self { normals: NormalSource::File, crease_angle: CREASE_ANGLE, up: None, unit: None, show_hidden: false }
+        Self {
+            normals: NormalSource::File,
+            crease_angle: CREASE_ANGLE,
+            up: None,
+            unit: None,
+            show_hidden: false,
+            subdivide: Subdivide::File,
+            levels: None,
+        }
     }
 }
 
@@ -102,6 +140,22 @@ pub fn is_of_lacking_normals(warning: &str) -> bool {
 }
 
 impl Import {
+    /// How all polygons are refined; none if none are, or the file says which.
+    pub(super) fn subdivision(&self) -> Option<Subdivision> {
+        let scheme = match self.subdivide {
+            Subdivide::File | Subdivide::Off => return None,
+            Subdivide::CatmullClark => Scheme::CatmullClark,
+            Subdivide::Loop => Scheme::Loop,
+        };
+        Some(Subdivision { scheme, levels: self.levels_or(USUAL_LEVELS), ..Subdivision::default() })
+    }
+
+    /// How often cages are refined of which the file says so many times.
+    pub(super) fn levels_or(&self, of_file: u32) -> u8 {
+        let levels = self.levels.map_or(of_file, |levels| levels.round() as u32);
+        levels.min(MOST_LEVELS.into()) as u8
+    }
+
     /// Whether all normals are made.
     pub(super) fn makes_normals(&self) -> bool {
         self.normals == NormalSource::Made

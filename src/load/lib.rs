@@ -5,6 +5,7 @@
 
 mod attachment;
 mod binding_space;
+mod cage_faces;
 mod content;
 pub mod csv_vertices;
 pub mod environment_file;

@@ -1,5 +1,6 @@
 //! Remembers the corners of vertices that faces used lately: the next faces mostly use them again.
 
+use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::mesh_builder::StoredCorner;
 
 /// How many vertices are remembered. A power of two that keeps the table within a core's own cache.
@@ -43,6 +44,16 @@ impl RecentCorners {
             *slot = Some((vertex, new));
         }
     }
+}
+
+/// A corner of a face.
+#[derive(Clone, Copy)]
+pub(super) struct NumberedCorner {
+    pub corner: InputCorner,
+    /// A number of the reader's. Corners with different ones aren't merged.
+    pub number: u32,
+    /// What determines both, if the file has numbers for it. Then corners with the same numbers must be the same.
+    pub vertex: Option<VertexNumbers>,
 }
 
 #[cfg(test)]

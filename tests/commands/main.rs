@@ -28,6 +28,7 @@ mod scenes;
 mod shaders;
 mod silhouette;
 mod stability;
+mod subdivision;
 mod surface_shader;
 mod techniques;
 mod tessellate;

@@ -1,6 +1,7 @@
 //! The rows for normals, axis and unit, which load the mesh again.
 
 use super::option_rows::{option_hover, option_row, option_row_with};
+use super::settings_panel::shown_option_row;
 use crate::app::App;
 use crate::app::widgets::fixed;
 use crate::commands::MADE_IN_CODE;
@@ -34,6 +35,8 @@ impl App {
         }
         if !is_shape {
             option_row(ui, &options::SHOW_HIDDEN, &mut self.settings, "");
+            option_row(ui, &options::SUBDIVIDE, &mut self.settings, "");
+            shown_option_row(ui, &options::LEVELS, &mut self.settings);
         }
     }
 }

@@ -12,6 +12,7 @@ use geometry::mesh::UpAxis;
 use geometry::tessellate::{
     Clip, Convention, Displacement, Edges, Lod, LodReads, Normals, Partitioning, Surface, Tessellation,
 };
+use load::import::{MOST_LEVELS, Subdivide};
 use load::{LengthUnit, NormalSource, UNIT_METRES};
 
 /// Tessellation factors, as Direct3D 11 has them.
@@ -506,6 +507,22 @@ options! {
         label: "Show hidden",
         placeholder: "",
         text: "Also load the meshes that an FBX or glTF file hides, on nodes and layers that are switched off.",
+    }
+
+    SUBDIVIDE: field!(import.subdivide), Kind::Choice(descriptions::<Subdivide>) => {
+        name: "subdivide",
+        label: "Subdivide",
+        placeholder: "SCHEME",
+        text: "Take the polygons of FBX, OBJ, PLY, OFF, STL and 3MF files as the cage of a subdivision surface, and refine it.",
+    }
+
+    LEVELS: field!(import.levels), Kind::Number(Range::new(0.0, MOST_LEVELS as f32, "").decimals(0)) => {
+        name: "levels",
+        label: "Levels",
+        placeholder: "N",
+        text: "How often cages are refined. Each level has four times as many faces.",
+        unset: Description::new("file", "As the file says", "As often as an FBX file says for its preview, or else twice."),
+        no_effect: |settings| (settings.import.subdivide == Subdivide::Off).then_some("Nothing is subdivided."),
     }
 }
 

@@ -8,6 +8,7 @@ use super::{
 };
 use geometry::mesh::UpAxis;
 use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use load::import::Subdivide;
 use load::{FileUnit, LengthUnit, NormalSource};
 
 /// An option, declared once for the command line, saved settings and the window.
@@ -332,7 +333,7 @@ macro_rules! named_fields {
 
 named_fields! {
     Clip, Convention, DeviationUnit, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals, NormalsAt,
-    Partitioning, SectionAxis, SplitView, Surface, ToneCurve, UpAxis,
+    Partitioning, SectionAxis, SplitView, Subdivide, Surface, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {

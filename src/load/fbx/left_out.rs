@@ -1,6 +1,6 @@
 //! Warnings about what a file has and isn't read, and about what the parser repaired.
 
-use ufbx::{Mesh, Scene, SkinningMethod, SubdivisionDisplayMode, WarningType};
+use ufbx::{Mesh, Scene, SkinningMethod, WarningType};
 
 use super::nodes::Placed;
 use crate::notes::{Notes, counted};
@@ -21,10 +21,6 @@ pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
         (scene.constraints.len(), "constraints, left out; the animation shows what the exporter has baked"),
         (dual, "skins for dual quaternions, whose joints are blended linearly"),
         (meshes(|mesh| mesh.skin_deformers.len() > 1), "meshes with several skins, of which the first is used"),
-        (
-            meshes(|mesh| mesh.subdivision_display_mode != SubdivisionDisplayMode::Disabled),
-            "meshes that are meant to be subdivided, shown as their control cage",
-        ),
     ]));
     for warning in &scene.metadata.warnings {
         if let Some(sentence) = repaired(warning.type_) {

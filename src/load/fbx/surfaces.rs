@@ -1,7 +1,7 @@
 //! Reads the polygons of all meshes that a scene shows.
 
 use glam::{DMat3, Vec2, Vec3, Vec4};
-use ufbx::{Face, Mesh, Node, Scene, VertexVec2};
+use ufbx::{Face, Mesh, Node, Scene, SubdivisionBoundary, SubdivisionDisplayMode, VertexVec2};
 
 use super::convert::{vec2, vec4};
 use super::materials::{self, Materials, Resolved};
@@ -9,6 +9,7 @@ use super::nodes::Placed;
 use super::skin::Skin;
 use super::vertices::Vertices;
 use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner};
+use crate::import::{Subdivide, Subdivision};
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::model_file::ModelFile;
 use crate::notes::{Notes, counted, counts};
@@ -19,6 +20,7 @@ use crate::uri::Files;
 use geometry::casts::{to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
+use geometry::mesh::subdivision::Boundary;
 use geometry::mesh::{Borrowed, CornerDetail};
 use geometry::progress::Progress;
 
@@ -50,6 +52,7 @@ counts! {
         holes => "polygons that are holes, left out";
         bad_uvs => "uvs that aren't finite or don't exist, replaced by (0, 0)";
         bad_colors => "colours of corners that aren't finite or don't exist, replaced by white";
+        cages => "meshes that are meant to be subdivided, shown as their control cage";
         many_joints => "corners that more than four joints move, of which the four with the largest weights are used";
     }
 }
@@ -126,6 +129,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             influences: Vec::new(),
             deltas: Vec::new(),
         };
+        let subdivision = reader.subdivision();
+        reader.faces.begin_cage(subdivision);
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {
@@ -133,7 +138,10 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             }
             reader.face(i, *face, &mut corners)?;
         }
-        Ok(())
+        if subdivision.is_some() {
+            reader.creases()?;
+        }
+        reader.faces.end_cage()
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
@@ -164,6 +172,48 @@ struct MeshReader<'a, 'b, 'f> {
 }
 
 impl MeshReader<'_, '_, '_> {
+    /// How the mesh is refined. One that a clip may move isn't: its joints and blend shapes move the points of the cage.
+    fn subdivision(&mut self) -> Option<Subdivision> {
+        let (import, mesh) = (self.faces.import, self.mesh);
+        let is_marked = mesh.subdivision_display_mode != SubdivisionDisplayMode::Disabled;
+        let is_wanted = match import.subdivide {
+            Subdivide::Off => false,
+            Subdivide::File => is_marked,
+            Subdivide::CatmullClark | Subdivide::Loop => true,
+        };
+        if !is_wanted || self.binder.is_some() {
+            self.found.cages += usize::from(is_wanted || is_marked);
+            return None;
+        }
+        let boundary = match mesh.subdivision_boundary {
+            SubdivisionBoundary::SharpNone => Boundary::Edges,
+            _ => Boundary::EdgesAndCorners,
+        };
+        let levels = import.levels_or(if is_marked { mesh.subdivision_preview_levels } else { 2 });
+        Some(Subdivision { levels, boundary, ..import.subdivision().unwrap_or_default() })
+    }
+
+    /// Tells which edges are creases. FBX files have a sharpness of 10 as 1.
+    fn creases(&mut self) -> Result<(), ReadError> {
+        let sharp = self.mesh.edges.iter().zip(self.mesh.edge_crease.iter()).filter(|(_, crease)| **crease > 0.0);
+        let sharp: Vec<_> = sharp.map(|(edge, crease)| ([edge.a, edge.b], (10.0 * crease) as f32)).collect();
+        for (ends, sharpness) in sharp {
+            let mut positions = [Vec3::ZERO; 2];
+            for (position, corner) in positions.iter_mut().zip(ends) {
+                let vertex = self.vertices.vertex(corner as usize)?;
+                self.vertices.morphs.of(vertex, &mut self.deltas);
+                self.influences.clear();
+                if let Some(skin) = self.vertices.skin {
+                    skin.influences(vertex, &mut self.influences);
+                }
+                let posed = self.vertices.posed(corner as usize, vertex, &self.influences, &self.deltas);
+                *position = posed.corner.position;
+            }
+            self.faces.crease(positions, sharpness);
+        }
+        Ok(())
+    }
+
     fn face(&mut self, i: usize, face: Face, corners: &mut Vec<NumberedCorner>) -> Result<(), ReadError> {
         if self.mesh.face_hole.get(i) == Some(&true) {
             self.found.holes += 1;

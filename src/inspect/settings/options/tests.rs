@@ -31,7 +31,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         background,
         import,
     } = settings;
-    let Import { normals: mesh_normals, crease_angle, up, unit, show_hidden } = import;
+    let Import { normals: mesh_normals, crease_angle, up, unit, show_hidden, subdivide, levels } = import;
     let Tessellation {
         surface,
         alpha,
@@ -93,6 +93,8 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("up", format!("{up:?}")),
         ("unit", format!("{unit:?}")),
         ("show_hidden", format!("{show_hidden:?}")),
+        ("subdivide", format!("{subdivide:?}")),
+        ("levels", format!("{levels:?}")),
     ]
 }
 

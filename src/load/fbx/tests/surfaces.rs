@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::documents::{Link, document, geometry, image, layer, model, prism, smoothed_prism, textured_square};
-use super::tree::{one, text};
+use super::tree::{Entry, one, text};
 use super::{loaded, near, read};
 use crate::fbx::{read as read_on_a_thread, read_here};
 use crate::files::Limits;
@@ -280,4 +280,28 @@ fn files_without_triangles_say_what_they_hold() {
         said.contains("it holds 2 nodes, 1 meshes, 1 nodes with meshes that it hides (--show-hidden shows them)"),
         "{said}"
     );
+}
+
+#[test]
+fn what_is_marked_as_a_subdivision_surface_is_refined_with_its_creases() {
+    let marked = |more: Vec<Entry>| {
+        let levels = vec![one("Smoothness", 2), one("PreviewDivisionLevels", 2)];
+        let objects = vec![prism([levels, more].concat()), model(20, "prism", "Mesh", &[])];
+        loaded(&document(true, 1.0, objects, &[Link(20, 0, ""), Link(10, 20, "")]))
+    };
+    let heights = |mesh: &LoadedMesh| {
+        let heights = mesh.corners.iter().map(|corner| corner.position.y);
+        heights.fold([f32::MAX, f32::MIN], |[least, most], y| [least.min(y), most.max(y)])
+    };
+    let smooth = marked(Vec::new());
+    // Each corner of the prism's faces becomes a quadrilateral, and each of these four, of two triangles.
+    assert_eq!((smooth.triangles.len(), smooth.warnings.len()), (36 * 4 * 2, 0), "{:?}", smooth.warnings);
+    let [low, high] = heights(&smooth);
+    assert!(low > 0.05 && high < 0.45, "{low} to {high}");
+    // The edges of both hexagons, which are named by a corner.
+    let creases = layer("LayerElementEdgeCrease", "ByEdge", vec![one("EdgeCrease", vec![1.0; 12])]);
+    let sharp = marked(vec![one("Edges", (0..12).collect::<Vec<i32>>()), creases]);
+    assert_eq!((sharp.triangles.len(), heights(&sharp)), (36 * 4 * 2, [0.0, 0.5]));
+    // Shared corners of smooth points have one normal, and those of creases one for each side.
+    assert!(sharp.corners.len() > smooth.corners.len());
 }

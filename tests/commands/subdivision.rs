@@ -1,0 +1,60 @@
+//! Polygons that are taken as the cage of a subdivision surface.
+
+use super::{Folder, failure, output, stats};
+
+const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
+
+/// The positions of the mesh that a file becomes.
+fn positions(folder: &Folder, file: &str, options: &[&str]) -> Vec<[f64; 3]> {
+    let written = folder.path("refined.obj");
+    let usual = ["tessellate", file, "-o", &written, "--surface", "flat", "--factor", "1", "--force"];
+    output(&[&usual[..], options].concat());
+    let text = std::fs::read_to_string(&written).expect("an OBJ file");
+    let of_line = |line: &str| {
+        let numbers: Vec<f64> = line.split(' ').map(|number| number.parse().expect("a number")).collect();
+        [numbers[0], numbers[1], numbers[2]]
+    };
+    text.lines().filter_map(|line| line.strip_prefix("v ")).map(of_line).collect()
+}
+
+#[test]
+fn a_cube_becomes_its_limit_surface_and_stays_closed() {
+    let folder = Folder::new();
+    let file = folder.path("cube.obj");
+    std::fs::write(&file, [CUBE, QUADS].concat()).expect("a writable folder");
+    let of_scheme = |scheme: &str, levels: &str| {
+        let options = ["--subdivide", scheme, "--levels", levels];
+        let said = stats(&[&[&*file][..], &options].concat());
+        (positions(&folder, &file, &options), said)
+    };
+    for levels in ["1", "3"] {
+        let (points, said) = of_scheme("catmull-clark", levels);
+        // The limit of a corner of three faces is (9 v + 4 ends + opposite corners) / 24 (Halstead et al. 1993).
+        let corners = points.iter().filter(|point| point.iter().all(|x| (x.abs() - 0.5).abs() < 1e-6)).count();
+        assert!(corners >= 8, "{corners} of {} points", points.len());
+        let farthest = points.iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
+        assert!(farthest < 0.9, "{farthest}");
+        let triangles = if levels == "1" { 24 * 2 } else { 24 * 16 * 2 };
+        assert_eq!((said["triangles_in"].as_u64(), said["cracks"]["edges"].as_u64()), (Some(triangles), Some(0)));
+        let edges = &said["edges"];
+        assert_eq!((edges["boundary"].as_u64(), edges["split"].as_u64()), (Some(0), Some(0)), "{edges}");
+    }
+    let (_, said) = of_scheme("loop", "2");
+    assert_eq!(said["triangles_in"].as_u64(), Some(12 * 16));
+    let (points, said) = of_scheme("none", "2");
+    assert_eq!((points.iter().flatten().all(|x| x.abs() == 1.0), said["triangles_in"].as_u64()), (true, Some(12)));
+}
+
+#[test]
+fn a_cage_that_cannot_be_refined_stays_and_the_reason_is_said() {
+    let folder = Folder::new();
+    let file = folder.path("fin.obj");
+    std::fs::write(&file, [CUBE, QUADS, "v 3 0 0\nf 1 2 9\n"].concat()).expect("a writable folder");
+    let said = stats(&[&file, "--subdivide", "catmull-clark"]);
+    assert_eq!(said["triangles_in"].as_u64(), Some(13));
+    let warnings = said["warnings"].to_string();
+    assert!(warnings.contains("3 faces meet at the edge"), "{warnings}");
+    let refused = failure(&["render", &file, "-o", "a.png", "--subdivide", "loop", "--levels", "7"], 2);
+    assert!(refused.contains("--levels"), "{refused}");
+}
