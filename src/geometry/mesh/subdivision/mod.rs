@@ -18,6 +18,8 @@ mod masks;
 mod size;
 mod split;
 mod tangents;
+#[cfg(test)]
+mod tests;
 mod values;
 
 use std::ops::{Add, Mul, Range};
