@@ -8,7 +8,7 @@
 //!
 //! [`Refinement`] holds only connectivity. Positions, blend shapes, weights of joints and anything else that is
 //! [`Linear`] are refined with it, each in its own call. A point's value is computed once, in one order, whatever the number of
-//! cores; so faces that share a point share its bits.
+//! cores; so faces that share a point share its bits, also after they are rounded to f32, once and at the end.
 
 mod cage;
 mod corner_values;
