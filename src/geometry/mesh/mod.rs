@@ -33,6 +33,7 @@ pub mod rig;
 pub mod shapes;
 mod slices;
 mod smooth_points;
+pub mod subdivision;
 pub mod t_junctions;
 pub mod topology;
 mod unfinished_mesh;

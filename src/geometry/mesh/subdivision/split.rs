@@ -1,0 +1,146 @@
+//! Divides the faces and edges of a level, and numbers what comes of them.
+//!
+//! The points of the finer level are the points, then a point for each edge, then for Catmull-Clark one for each face. Its
+//! edges are two halves of each edge, then an inner one for each side: for Catmull-Clark from the side's edge to the center, for
+//! Loop's scheme the one that cuts off the corner where the side starts. Its faces are one for each corner, which is their first;
+//! Loop's scheme has a fourth one in the middle of each triangle.
+
+use rayon::prelude::*;
+
+use super::Scheme;
+use super::cage::INFINITELY_SHARP;
+use super::level::{Level, NONE, Polygons};
+use crate::casts::to_u32;
+
+/// What is left of a sharpness one level finer. Source: DeRose, Kass and Truong 1998.
+pub(super) fn decayed(sharpness: f32) -> f32 {
+    if sharpness >= INFINITELY_SHARP { sharpness } else { (sharpness - 1.0).max(0.0) }
+}
+
+impl Level {
+    /// Divides each face and edge.
+    pub(super) fn split(&self, scheme: Scheme) -> Self {
+        let splitter = Splitter { level: self, scheme };
+        let (polygons, faces) = match scheme {
+            Scheme::CatmullClark => (Polygons::Quads, self.faces()),
+            Scheme::Loop => (Polygons::Triangles, 0),
+        };
+        let halves = self.edge_sharpness.iter().flat_map(|&sharpness| [decayed(sharpness); 2]);
+        Self {
+            points: self.points + self.edge_sides.len() + faces as usize,
+            polygons,
+            origins: splitter.origins(),
+            edges: splitter.edges(),
+            edge_sides: splitter.edge_sides(),
+            edge_sharpness: halves.collect(),
+            point_sharpness: self.point_sharpness.iter().copied().map(decayed).collect(),
+            first_sides: splitter.first_sides(faces),
+        }
+    }
+}
+
+struct Splitter<'a> {
+    level: &'a Level,
+    scheme: Scheme,
+}
+
+impl Splitter<'_> {
+    /// The side of the finer level that leaves the point where a side starts, along that side.
+    fn leaving(&self, side: u32) -> u32 {
+        match self.scheme {
+            Scheme::CatmullClark => 4 * side,
+            Scheme::Loop => 3 * (side + side / 3),
+        }
+    }
+
+    /// The side of the finer level that arrives at the point where a side starts, in the same face.
+    fn arriving(&self, side: u32) -> u32 {
+        self.leaving(side) + if self.scheme == Scheme::CatmullClark { 3 } else { 2 }
+    }
+
+    /// The point that each side of the finer level starts at.
+    fn origins(&self) -> Vec<u32> {
+        let level = self.level;
+        let [points, edges] = [level.points, level.edge_sides.len()].map(to_u32);
+        let origin = |side: u32| level.origins[side as usize];
+        let middle = |side: u32| points + level.edges[side as usize];
+        let center = |side: u32| points + edges + level.polygons.face_of(side);
+        match self.scheme {
+            Scheme::CatmullClark => {
+                self.of_sides(|side, before| [origin(side), middle(side), center(side), middle(before)])
+            }
+            Scheme::Loop => self.of_triangles(|side, before| [origin(side), middle(side), middle(before)], middle),
+        }
+    }
+
+    /// The edge of each side of the finer level.
+    fn edges(&self) -> Vec<u32> {
+        let level = self.level;
+        let first_inner = 2 * to_u32(level.edge_sides.len());
+        let inner = |side: u32| first_inner + side;
+        // The half of a side's edge where the side starts.
+        let start = |side: u32| {
+            let edge = level.edges[side as usize];
+            let first = level.edge_sides[edge as usize][0];
+            2 * edge + u32::from(level.origins[first as usize] != level.origins[side as usize])
+        };
+        let end = |side| start(side) ^ 1;
+        match self.scheme {
+            Scheme::CatmullClark => {
+                self.of_sides(|side, before| [start(side), inner(side), inner(before), end(before)])
+            }
+            Scheme::Loop => self.of_triangles(
+                |side, before| [start(side), inner(side), end(before)],
+                |side| inner(level.polygons.after(side)),
+            ),
+        }
+    }
+
+    /// What `corner` makes of each side and the one before it, for the quadrilateral there.
+    fn of_sides(&self, corner: impl Fn(u32, u32) -> [u32; 4] + Sync) -> Vec<u32> {
+        let sides = (0..to_u32(self.level.origins.len())).into_par_iter();
+        sides.map(|side| corner(side, self.level.polygons.before(side))).collect::<Vec<_>>().into_flattened()
+    }
+
+    /// What `corner` makes of each side and the one before it, for the triangle there, and `middle` of the sides for the triangle
+    /// between these.
+    fn of_triangles(
+        &self,
+        corner: impl Fn(u32, u32) -> [u32; 3] + Sync,
+        middle: impl Fn(u32) -> u32 + Sync,
+    ) -> Vec<u32> {
+        let faces = (0..self.level.faces()).into_par_iter().map(|face| [3 * face, 3 * face + 1, 3 * face + 2]);
+        let split = faces.map(|[a, b, c]| [corner(a, c), corner(b, a), corner(c, b), [a, b, c].map(&middle)]);
+        split.collect::<Vec<_>>().into_flattened().into_flattened()
+    }
+
+    /// The sides on each edge of the finer level.
+    fn edge_sides(&self) -> Vec<[u32; 2]> {
+        let level = self.level;
+        let halves = |&[a, b]: &[u32; 2]| {
+            let after = |side| self.arriving(level.polygons.after(side));
+            match () {
+                () if b == NONE => [[self.leaving(a), NONE], [after(a), NONE]],
+                () if level.is_inconsistent([a, b]) => [[self.leaving(a), self.leaving(b)], [after(a), after(b)]],
+                () => [[self.leaving(a), after(b)], [after(a), self.leaving(b)]],
+            }
+        };
+        let inner = |side: u32| match self.scheme {
+            Scheme::CatmullClark => [4 * side + 1, 4 * level.polygons.after(side) + 2],
+            Scheme::Loop => [self.leaving(side) + 1, 12 * (side / 3) + 9 + (side + 2) % 3],
+        };
+        let mut sides = level.edge_sides.par_iter().map(halves).collect::<Vec<_>>().into_flattened();
+        sides.par_extend((0..to_u32(level.origins.len())).into_par_iter().map(inner));
+        sides
+    }
+
+    /// For each point of the finer level the side from which all faces around it are reached.
+    fn first_sides(&self, faces: u32) -> Vec<u32> {
+        let level = self.level;
+        let of_point = |&side: &u32| if side == NONE { NONE } else { self.leaving(side) };
+        let of_edge = |sides: &[u32; 2]| self.arriving(level.polygons.after(sides[0]));
+        let of_face = |face: u32| 4 * level.polygons.sides(face).start + 2;
+        let points = level.first_sides.par_iter().map(of_point);
+        points.chain(level.edge_sides.par_iter().map(of_edge)).chain((0..faces).into_par_iter().map(of_face)).collect()
+    }
+}

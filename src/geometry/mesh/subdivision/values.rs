@@ -1,0 +1,133 @@
+//! Values at the points of a level, such as positions, and how they are averaged.
+
+use rayon::prelude::*;
+
+use super::level::Level;
+use super::masks::{CREASE, CREASE_LIMIT, Mask};
+use super::split::decayed;
+use super::{Linear, Scheme};
+use crate::casts::to_u32;
+
+/// Which rule a point follows. A dart, where a single sharp edge ends, is smooth. Source: Hoppe et al. 1994.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Rule {
+    Smooth,
+    Crease,
+    Corner,
+}
+
+/// The values at the points of a level.
+pub(super) struct Values<'a, T> {
+    pub(super) level: &'a Level,
+    pub(super) scheme: Scheme,
+    pub(super) points: &'a [T],
+    /// The mean of each face's points; empty for Loop's scheme.
+    centers: Vec<T>,
+}
+
+impl<'a, T: Linear> Values<'a, T> {
+    pub(super) fn new(level: &'a Level, scheme: Scheme, points: &'a [T]) -> Self {
+        let faces = if scheme == Scheme::CatmullClark { level.faces() } else { 0 };
+        let center = |face| {
+            let sides = level.polygons.sides(face);
+            let share = 1.0 / f64::from(sides.end - sides.start);
+            sides.fold(T::default(), |sum, side| sum + points[level.origins[side as usize] as usize]) * share
+        };
+        Self { level, scheme, points, centers: (0..faces).into_par_iter().map(center).collect() }
+    }
+
+    /// The values at the points of the finer level.
+    pub(super) fn refined(self) -> Vec<T> {
+        let points = (0..to_u32(self.points.len())).into_par_iter().map(|point| self.at_point(point));
+        let edges = (0..to_u32(self.level.edge_sides.len())).into_par_iter().map(|edge| self.on_edge(edge));
+        points.chain(edges).chain(self.centers.par_iter().copied()).collect()
+    }
+
+    /// What becomes of each point in the limit of infinitely many levels.
+    pub(super) fn limit(&self) -> Vec<T> {
+        let limit = |point| self.averaged(point, |sharpness| sharpness, Mask::limit, CREASE_LIMIT).1;
+        (0..to_u32(self.points.len())).into_par_iter().map(limit).collect()
+    }
+
+    /// What becomes of a point on the finer level. Where its rule changes with that level, both rules are blended by the mean
+    /// of the sharpnesses that become zero. Source: DeRose, Kass and Truong 1998; the mean is OpenSubdiv's.
+    fn at_point(&self, point: u32) -> T {
+        let (rule, now) = self.averaged(point, |sharpness| sharpness, Mask::smooth, CREASE);
+        if rule == Rule::Smooth {
+            return now;
+        }
+        let (next_rule, next) = self.averaged(point, decayed, Mask::smooth, CREASE);
+        if rule == next_rule {
+            return now;
+        }
+        let level = self.level;
+        let around = level.first_side(point).into_iter().flat_map(|first| level.ring(first));
+        let all = around.map(|spoke| level.edge_sharpness(spoke.edge)).chain([level.point_sharpness(point)]);
+        let fading = all.filter(|&sharpness| sharpness > 0.0 && decayed(sharpness) == 0.0);
+        let (count, sum) = fading.fold((0.0, 0.0), |(count, sum), sharpness| (count + 1.0, sum + f64::from(sharpness)));
+        let weight = (sum / count).min(1.0);
+        now * weight + next * (1.0 - weight)
+    }
+
+    /// A point's rule, and what it makes of the values around it with these masks. `sharpness` turns the edges' and the
+    /// point's own into those that count.
+    fn averaged(
+        &self,
+        point: u32,
+        sharpness: impl Fn(f32) -> f32,
+        smooth: impl Fn(Scheme, u32) -> Mask,
+        crease: Mask,
+    ) -> (Rule, T) {
+        let (level, own) = (self.level, self.points[point as usize]);
+        let Some(first) = level.first_side(point) else { return (Rule::Corner, own) };
+        let (mut edges, mut sharp_edges) = (0, 0);
+        let [mut ends, mut sharp_ends, mut centers] = [T::default(); 3];
+        for spoke in level.ring(first) {
+            let end = self.points[spoke.far as usize];
+            edges += 1;
+            ends = ends + end;
+            if sharpness(level.edge_sharpness(spoke.edge)) > 0.0 {
+                sharp_edges += 1;
+                sharp_ends = sharp_ends + end;
+            }
+            if let Some(side) = spoke.side {
+                centers = centers + self.center(side);
+            }
+        }
+        let is_sharp = sharpness(level.point_sharpness(point)) > 0.0;
+        match sharp_edges {
+            0 | 1 if !is_sharp => (Rule::Smooth, smooth(self.scheme, edges).blend(own, ends, centers)),
+            2 if !is_sharp => (Rule::Crease, crease.blend(own, sharp_ends, T::default())),
+            _ => (Rule::Corner, own),
+        }
+    }
+
+    /// The point that divides an edge.
+    fn on_edge(&self, edge: u32) -> T {
+        let (level, sides) = (self.level, self.level.edge_sides[edge as usize]);
+        let start = |side: u32| self.points[level.origins[side as usize] as usize];
+        let ends = start(sides[0]) + start(level.polygons.after(sides[0]));
+        // Edges without a second side are sharp.
+        let sharpness = f64::from(level.edge_sharpness(edge));
+        if sharpness >= 1.0 {
+            return ends * 0.5;
+        }
+        let [a, b] = sides.map(|side| match self.scheme {
+            Scheme::CatmullClark => self.center(side),
+            Scheme::Loop => start(level.polygons.before(side)),
+        });
+        let smooth = match self.scheme {
+            Scheme::CatmullClark => (ends + (a + b)) * 0.25,
+            Scheme::Loop => ends * 0.375 + (a + b) * 0.125,
+        };
+        ends * (0.5 * sharpness) + smooth * (1.0 - sharpness)
+    }
+
+    /// The center of a side's face; zero for Loop's scheme, which has none.
+    pub(super) fn center(&self, side: u32) -> T {
+        match self.scheme {
+            Scheme::CatmullClark => self.centers[self.level.polygons.face_of(side) as usize],
+            Scheme::Loop => T::default(),
+        }
+    }
+}
