@@ -1,6 +1,6 @@
 //! Polygons that are taken as the cage of a subdivision surface.
 
-use super::{Folder, failure, output, stats};
+use super::{Folder, both, failure, output, stats};
 
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
 const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
@@ -8,7 +8,7 @@ const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 
 /// The positions of the mesh that a file becomes.
 fn positions(folder: &Folder, file: &str, options: &[&str]) -> Vec<[f64; 3]> {
     let written = folder.path("refined.obj");
-    let usual = ["tessellate", file, "-o", &written, "--surface", "flat", "--factor", "1", "--force"];
+    let usual = ["tessellate", file, "-o", &written, "--surface", "flat", "--factor", "1"];
     output(&[&usual[..], options].concat());
     let text = std::fs::read_to_string(&written).expect("an OBJ file");
     let of_line = |line: &str| {
@@ -51,10 +51,11 @@ fn a_cage_that_cannot_be_refined_stays_and_the_reason_is_said() {
     let folder = Folder::new();
     let file = folder.path("fin.obj");
     std::fs::write(&file, [CUBE, QUADS, "v 3 0 0\nf 1 2 9\n"].concat()).expect("a writable folder");
-    let said = stats(&[&file, "--subdivide", "catmull-clark"]);
-    assert_eq!(said["triangles_in"].as_u64(), Some(13));
-    let warnings = said["warnings"].to_string();
-    assert!(warnings.contains("3 faces meet at the edge"), "{warnings}");
+    let picture = folder.path("fin.png");
+    let (out, errors) =
+        both(&["render", &file, "-o", &picture, "--size", "16x16", "--subdivide", "catmull-clark", "--stats", "-"]);
+    assert!(out.contains("\"triangles_in\": 13"), "{out}");
+    assert!(errors.contains("is shown as its control cage: 3 faces meet at the edge"), "{errors}");
     let refused = failure(&["render", &file, "-o", "a.png", "--subdivide", "loop", "--levels", "7"], 2);
     assert!(refused.contains("--levels"), "{refused}");
 }

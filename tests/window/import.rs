@@ -105,6 +105,7 @@ fn the_command_line_says_how_the_first_mesh_is_taken() {
         up: Some(UpAxis::Z),
         unit: Some(FileUnit::Named(LengthUnit::Centimetre)),
         show_hidden: false,
+        ..Import::default()
     };
     assert_eq!((import(&harness), harness.state().settings().import), (made, made));
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts.hidden, ["side"]);

@@ -1,12 +1,12 @@
 //! The rows for normals, axis and unit, which load the mesh again.
 
 use super::option_rows::{option_hover, option_row, option_row_with};
-use super::settings_panel::shown_option_row;
 use crate::app::App;
 use crate::app::widgets::fixed;
 use crate::commands::MADE_IN_CODE;
 use inspect::settings::options;
 use load::NormalSource;
+use load::import::Subdivide;
 
 impl App {
     /// The normals of the mesh, and the crease angle if any are made.
@@ -36,7 +36,9 @@ impl App {
         if !is_shape {
             option_row(ui, &options::SHOW_HIDDEN, &mut self.settings, "");
             option_row(ui, &options::SUBDIVIDE, &mut self.settings, "");
-            shown_option_row(ui, &options::LEVELS, &mut self.settings);
+            if self.settings.import.subdivide != Subdivide::Off {
+                option_row(ui, &options::LEVELS, &mut self.settings, "");
+            }
         }
     }
 }

@@ -320,7 +320,7 @@ fn factor_keys() -> String {
 }
 
 /// A row that is there only where the option has an effect.
-pub(super) fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings) {
+fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings) {
     if (option.no_effect)(settings).is_none() {
         option_row(ui, option, settings, "");
     }

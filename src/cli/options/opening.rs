@@ -85,6 +85,7 @@ mod tests {
             up: Some(UpAxis::X),
             unit: Some(FileUnit::Named(LengthUnit::Inch)),
             show_hidden: true,
+            ..Import::default()
         };
         assert!(options(&["a.obj"]).is_empty());
         assert_eq!(options(&["a.obj"]).import(usual), usual);

@@ -522,7 +522,6 @@ options! {
         placeholder: "N",
         text: "How often cages are refined. Each level has four times as many faces.",
         unset: Description::new("file", "As the file says", "As often as an FBX file says for its preview, or else twice."),
-        no_effect: |settings| (settings.import.subdivide == Subdivide::Off).then_some("Nothing is subdivided."),
     }
 }
 

@@ -108,7 +108,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let global = &self.placed.global;
         let skin = Skin::new(node, mesh, global);
         let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), &self.faces.import, self.budget)?;
-        self.without_normals += usize::from(vertices.is_without_normals());
+        let is_without_normals = vertices.is_without_normals();
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
@@ -130,6 +130,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             deltas: Vec::new(),
         };
         let subdivision = reader.subdivision();
+        self.without_normals += usize::from(is_without_normals && subdivision.is_none());
         reader.faces.begin_cage(subdivision);
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {

@@ -18,8 +18,15 @@ use crate::source::Source;
 use geometry::mesh::shapes::Shape;
 use geometry::progress::Progress;
 
-const MADE: Import =
-    Import { normals: NormalSource::Made, crease_angle: 60.0, up: None, unit: None, show_hidden: false };
+const MADE: Import = Import {
+    normals: NormalSource::Made,
+    crease_angle: 60.0,
+    up: None,
+    unit: None,
+    show_hidden: false,
+    subdivide: Subdivide::File,
+    levels: None,
+};
 
 fn loaded(format: Format, bytes: &[u8], import: Import) -> LoadedMesh {
     let selected = Selection { import, ..Selection::default() };
