@@ -26,6 +26,7 @@ use lab::chart::report::{LeftOut, Part, TABLE};
 use lab::chart::{Bench, Effort, LodKind, Plan, Setting, Subject, bitmap, columns, has_converged, svg};
 use load::Source;
 use load::files::file_reason;
+use load::import::Subdivide;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -130,7 +131,7 @@ impl Args {
         let Some(source) = asked.filter(|_| exact.is_none()) else {
             return Ok(exact.map(|exact| (exact, "the exact surface".to_owned())));
         };
-        Ok(Some((self.weld.reference_shape(source)?, source.title())))
+        Ok(Some((self.weld.reference_shape(source, Subdivide::File)?, source.title())))
     }
 }
 

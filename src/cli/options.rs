@@ -24,7 +24,8 @@ use inspect::settings::options::TOLERANCE_RANGE;
 use inspect::settings::{ARENA_BYTES, Settings};
 use load::files::Limits;
 use load::format::known_extensions;
-use load::{HeightSource, ShownParts, Source};
+use load::import::Subdivide;
+use load::{HeightSource, Import, ShownParts, Source};
 
 pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
 use declared::GivenTessellation;
@@ -234,9 +235,10 @@ impl WeldOption {
         }
     }
 
-    /// Loads a reference surface.
-    pub(crate) fn reference_shape(&self, source: &Source) -> Result<ReferenceShape, CliError> {
-        let found = ReferenceShape::load(source, self.import.0, &self.limit.limits(), &Progress::new())?;
+    /// Loads a reference surface, whose polygons are the cage of a subdivision surface if `subdivide` says so.
+    pub(crate) fn reference_shape(&self, source: &Source, subdivide: Subdivide) -> Result<ReferenceShape, CliError> {
+        let import = Import { subdivide, ..self.import.0 };
+        let found = ReferenceShape::load(source, import, &self.limit.limits(), &Progress::new())?;
         found.ok_or_else(|| CliError::NoReferenceShape { file: source.to_string() })
     }
 }

@@ -5,10 +5,12 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::{CliError, SurfaceOptions, options, refuse};
+use geometry::choice::Choice;
 use inspect::engine::Loaded;
 use inspect::reference_shape::ReferenceShape;
 use inspect::shot::ReferenceSurface;
 use load::Source;
+use load::import::Subdivide;
 
 #[derive(Clone, Debug, Default, Args)]
 pub struct ReferenceSurfaceOption {
@@ -16,6 +18,9 @@ pub struct ReferenceSurfaceOption {
     /// takes the surface that the tessellation converges to
     #[arg(long = "reference-surface", value_name = "FILE", value_parser = options::source())]
     pub reference_shape: Option<Source>,
+    /// Take the polygons of the reference surface's file as the cage of a subdivision surface, and compare with the limit of that
+    #[arg(long, value_name = "SCHEME", value_parser = options::choice::<Subdivide>(), default_value = Subdivide::File.name(), requires = "reference_shape")]
+    pub reference_subdivide: Subdivide,
 }
 
 impl ReferenceSurfaceOption {
@@ -32,7 +37,7 @@ impl ReferenceSurfaceOption {
                 moves,
                 "--reference-surface can't be combined with --animation: the reference surface doesn't move",
             )?;
-            let reference_shape = surface.weld.reference_shape(source)?;
+            let reference_shape = surface.weld.reference_shape(source, self.reference_subdivide)?;
             return Ok(Some(ReferenceSurface::ReferenceShape(source.to_string(), Arc::new(reference_shape))));
         }
         if !is_shown {

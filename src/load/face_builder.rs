@@ -29,6 +29,14 @@ use geometry::progress::Progress;
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
 const MAX_MATERIALS: usize = 1 << 16;
 
+/// What a warning about a cage that isn't refined begins with.
+const CAGE_IS_SHOWN: &str = "A subdivision surface is shown as its control cage";
+
+/// Whether a warning is about a cage that isn't refined.
+pub fn is_of_cage(warning: &str) -> bool {
+    warning.starts_with(CAGE_IS_SHOWN)
+}
+
 /// The greatest number of corners of a face. A file with a larger face is refused.
 pub(super) const MAX_CORNERS: usize = 1 << 19;
 
@@ -148,8 +156,7 @@ impl<'a> FaceBuilder<'a> {
             self.builder.enter_part(part);
             self.store(material, corners, false)
         })?;
-        let sentence = |error| format!("A subdivision surface is shown as its control cage: {error}.");
-        self.notes.extend(why_not.map(sentence));
+        self.notes.extend(why_not.map(|error| format!("{CAGE_IS_SHOWN}: {error}.")));
         Ok(())
     }
 

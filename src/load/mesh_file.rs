@@ -62,6 +62,9 @@ pub enum LoadError {
     /// The mesh, or something that is made of it, would take too much memory.
     #[error("{}: {what} {reason}; split the model into several files", shown_path(path))]
     TooMuch { path: PathBuf, what: &'static str, reason: String },
+    /// A cage can't be refined, but must be.
+    #[error("{file} can't be a reference surface: {reason}")]
+    Unrefined { file: String, reason: String },
     /// The file has no triangles.
     #[error("{} has no triangles to show: {holds}", shown_path(path))]
     Empty { path: PathBuf, holds: String },

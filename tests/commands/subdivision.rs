@@ -1,6 +1,6 @@
 //! Polygons that are taken as the cage of a subdivision surface.
 
-use super::{Folder, both, failure, output, stats};
+use super::{Folder, both, failure, number, output, stats};
 
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
 const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
@@ -58,4 +58,25 @@ fn a_cage_that_cannot_be_refined_stays_and_the_reason_is_said() {
     assert!(errors.contains("is shown as its control cage: 3 faces meet at the edge"), "{errors}");
     let refused = failure(&["render", &file, "-o", "a.png", "--subdivide", "loop", "--levels", "7"], 2);
     assert!(refused.contains("--levels"), "{refused}");
+}
+
+#[test]
+fn how_far_a_tessellated_cage_is_from_its_limit_surface_is_measured() {
+    let folder = Folder::new();
+    let file = folder.path("cube.obj");
+    std::fs::write(&file, [CUBE, QUADS].concat()).expect("a writable folder");
+    let reference = ["--reference-surface", &*file, "--reference-subdivide", "catmull-clark"];
+    let largest = |options: &[&str]| {
+        let said = stats(&[&[&*file, "--surface", "flat", "--factor", "1"][..], options, &reference].concat());
+        ["at_least", "at_most"].map(|bound| number(&said, &format!("/accuracy/to_reference/max/{bound}")))
+    };
+    // A corner of the cage is the farthest from the limit, whose own corner is halfway to the middle.
+    let [least, most] = largest(&[]);
+    assert!(least > 0.5 && most < 0.75_f64.sqrt() + 1e-3, "{least} to {most}");
+    // The limit points of a refined cage lie on the limit surface.
+    let [_, most] = largest(&["--subdivide", "catmull-clark", "--levels", "4"]);
+    assert!(most < 1e-3, "{most}");
+    std::fs::write(&file, [CUBE, QUADS, "v 3 0 0\nf 1 2 9\n"].concat()).expect("a writable folder");
+    let refused = failure(&[&["render", &*file, "-o", "a.png", "--subdivide", "none"][..], &reference].concat(), 1);
+    assert!(refused.contains("can't be a reference surface") && refused.contains("3 faces meet"), "{refused}");
 }

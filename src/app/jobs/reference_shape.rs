@@ -8,7 +8,8 @@ use crate::app::App;
 use geometry::progress::Progress;
 use inspect::reference_shape::ReferenceShape;
 use inspect::settings::Colors;
-use load::{LoadError, Source};
+use load::import::Subdivide;
+use load::{Import, LoadError, Source};
 
 /// A reference surface that was chosen for the mesh.
 pub(crate) struct ChosenReferenceShape {
@@ -21,7 +22,8 @@ pub(crate) struct ChosenReferenceShape {
 impl App {
     /// Starts to load a reference surface. Until it is loaded, the one before it stays.
     pub fn open_reference_shape(&mut self, context: &egui::Context, source: Source) {
-        let (wanted, import, limits) = (source.clone(), self.preparation().import, self.jobs.limits);
+        let (wanted, limits) = (source.clone(), self.jobs.limits);
+        let import = Import { subdivide: Subdivide::File, ..self.preparation().import };
         let load = move |progress: &Progress| match ReferenceShape::load(&wanted, import, &limits, progress) {
             Ok(Some(reference_shape)) => Ok(Arc::new(reference_shape)),
             Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),

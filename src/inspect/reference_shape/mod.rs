@@ -25,7 +25,10 @@ use geometry::mesh::{Mesh, Shape};
 use geometry::progress::Progress;
 use load::files::Limits;
 use load::selection::Selection;
-use load::{Import, LoadError, Source};
+use load::{Import, LoadError, Source, is_of_cage};
+
+/// How often the cage of a reference surface is refined. Its points are then those of the limit surface.
+const LEVELS: f32 = 4.0;
 
 /// The point of a surface that is nearest to some place. If several are equally near, it is one of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,10 +60,10 @@ impl ReferenceShape {
     }
 
     /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, turned and scaled as
-    /// `import` says of the mesh that is compared with it. `None` if that has no triangle.
+    /// `import` says of the mesh that is compared with it, and refined as it says. `None` if that has no triangle.
     ///
     /// # Errors
-    /// The file can't be read as a mesh, or `progress` was cancelled.
+    /// The file can't be read as a mesh, or is the cage of a subdivision surface and can't be refined, or `progress` was cancelled.
     pub fn load(
         source: &Source,
         import: Import,
@@ -71,9 +74,14 @@ impl ReferenceShape {
         if let Some(exact) = shape.and_then(Self::from_shape) {
             return Ok(Some(exact));
         }
-        let import = if shape.is_some() { Import::default() } else { import.placement() };
+        let refined = Import { subdivide: import.subdivide, levels: Some(LEVELS), ..import.placement() };
+        let import = if shape.is_some() { Import::default() } else { refined };
         let selected = Selection { import, ..Selection::default() };
-        Ok(Self::from_mesh(&source.load_selected(selected, limits, progress)?.mesh))
+        let loaded = source.load_selected(selected, limits, progress)?;
+        if let Some(reason) = loaded.warnings.iter().find(|warning| is_of_cage(warning)) {
+            return Err(LoadError::Unrefined { file: source.to_string(), reason: reason.clone() });
+        }
+        Ok(Self::from_mesh(&loaded.mesh))
     }
 
     /// Returns a mesh as reference surface, with its interpolated normals, or `None` if it has no triangle. It needn't
