@@ -25,16 +25,15 @@ fn time(harness: &Harness<App>) -> f64 {
 }
 
 #[test]
-fn a_mesh_without_clips_has_no_animation_section() {
+fn a_mesh_without_clips_has_no_timeline() {
     let harness = window(Some(Source::Shape(Shape::Torus)));
-    assert_eq!(harness.query_all_by_label("Animation").count(), 0);
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Clip").count(), 0);
 }
 
 #[test]
 fn a_clip_is_chosen_and_scrubbed() {
     let (mut harness, _folder) = moving_window();
-    harness.get_by_label("Animation");
+    harness.get_by_role_and_label(Role::ComboBox, "Clip");
     assert_eq!(harness.state().moment(), None, "it opens at rest");
     // Frame again, because the viewport had another size when the mesh was loaded.
     press(&mut harness, Key::F);
@@ -50,6 +49,12 @@ fn a_clip_is_chosen_and_scrubbed() {
     settle(&mut harness);
     assert_eq!(time(&harness), 1.25);
     assert!(harness.state().pictures() > pictures, "the new pose is drawn");
+    for (button, expected) in
+        [("Next frame", 1.25 + 1.0 / 30.0), ("Previous frame", 1.25), ("Previous frame", 1.25 - 1.0 / 30.0)]
+    {
+        click(&mut harness, button);
+        assert!((time(&harness) - expected).abs() < 1e-9, "{button}: {}", time(&harness));
+    }
     // Cracks are measured in the pose.
     let cracks = harness.state().cracks().expect("measured");
     assert!(cracks.edge_points > 100 && cracks.different_bits == 0);

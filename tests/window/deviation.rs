@@ -223,3 +223,30 @@ fn either_half_of_a_split_is_a_whole_tessellation_that_is_edited_and_exchanged()
     click(&mut harness, "Edit right (B)");
     assert_eq!(harness.get_by_role_and_label(Role::Slider, "Factor").accesskit_node().numeric_value(), Some(3.0));
 }
+
+#[test]
+fn halves_side_by_side_show_the_same_place_in_their_middles_and_are_framed_in_half_the_width() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
+    press(&mut harness, egui::Key::F);
+    let whole = harness.state().camera().distance;
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Shown as", "Side by side");
+    let camera = *harness.state().camera();
+    assert!(camera.distance >= whole, "{} and {whole}: all of it is seen in half the width", camera.distance);
+    let picture = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
+    let picked = [0.25, 0.75].map(|across| {
+        let place = picture.lerp_inside(egui::vec2(across, 0.55));
+        harness.hover_at(place);
+        harness.drag_at(place);
+        harness.run_steps(1);
+        harness.drop_at(place);
+        settle(&mut harness);
+        harness.state().selected_triangle()
+    });
+    assert!(picked[0].is_some() && picked[0] == picked[1], "{picked:?}");
+    choose(&mut harness, "Shown as", "Difference");
+    assert!(harness.query_by_role_and_label(Role::Slider, "Split divider").is_none());
+    harness.get_by_label_contains("Left: untessellated");
+    choose(&mut harness, "Shown as", "Divider");
+    harness.get_by_role_and_label(Role::Slider, "Split divider");
+}
