@@ -6,9 +6,9 @@ use glam::DVec3;
 
 use super::foreign::{ForeignMesh, spread};
 use super::locator::{Locator, Place};
-use super::patch_starts::patch_starts;
 use super::twins::Twins;
 use geometry::cores::in_ranges;
+use geometry::groups::in_groups;
 use geometry::mesh::Topology;
 
 /// Another program's mesh over our surface.
@@ -213,14 +213,8 @@ impl<'a> Assignment<'a> {
             None if twins.is_thin(index as u32) => 0,
             None => overlaid.patch_of(triangles[index], winding),
         });
-        let seen = || (0..).zip(&patches).filter(|(triangle, _)| !twins.is_thin(*triangle));
-        let starts = patch_starts(seen().map(|(_, patch)| *patch), overlaid.topology.patches.len());
-        let mut order = vec![0; seen().count()];
-        let mut next = starts.clone();
-        for (triangle, &patch) in seen() {
-            order[next[patch as usize] as usize] = triangle;
-            next[patch as usize] += 1;
-        }
+        let seen = patches.iter().copied().zip(0..).filter(|(_, triangle)| !twins.is_thin(*triangle));
+        let (starts, order) = in_groups(overlaid.topology.patches.len(), seen);
         Self { overlaid, order, starts }
     }
 

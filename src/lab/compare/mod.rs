@@ -17,7 +17,6 @@ mod matching;
 mod net_mistakes;
 mod our_mesh;
 mod outcomes;
-mod patch_starts;
 mod spaces;
 mod surfaces;
 #[cfg(test)]
@@ -30,7 +29,6 @@ pub use findings::{Finding, plural, point};
 pub use foreign::ForeignMesh;
 pub use matching::Farthest;
 pub use outcomes::SideDifference;
-pub use patch_starts::patch_starts;
 
 use geometry::mesh::{Bounds, Mesh, Topology};
 use geometry::numbers::ulp_at;
