@@ -1,11 +1,12 @@
 //! Gives every triangle of another program to the patch that it lies on.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec3;
 
 use super::foreign::{ForeignMesh, spread};
 use super::locator::{Locator, Place};
+use super::our_mesh::sorted;
 use super::twins::Twins;
 use geometry::cores::in_ranges;
 use geometry::groups::in_groups;
@@ -261,6 +262,13 @@ impl Part {
     /// The weights of corners 0 and 1 at a triangle's corners.
     pub(super) fn weights(&self, triangle: [u32; 3]) -> [[f64; 2]; 3] {
         triangle.map(|corner| self.places[corner as usize].weights)
+    }
+
+    /// Whether its triangles cover the patch without gaps. Those that occur twice count once.
+    pub(super) fn is_whole(&self) -> bool {
+        let triangles: BTreeSet<_> = self.triangles.iter().map(|triangle| sorted(*triangle)).collect();
+        let area: f64 = triangles.into_iter().map(|triangle| domain_area(self.weights(triangle)).abs()).sum();
+        area >= 0.999
     }
 }
 

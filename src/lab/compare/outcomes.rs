@@ -300,8 +300,7 @@ impl<'a> Outcomes<'a> {
 
     /// How their triangles cut the sides of a patch.
     fn cuts(&self, patch: u32) -> [Cut; 3] {
-        let Reach { domain, fit } = self.reaches[patch as usize];
-        cuts_of(&self.assignment.part(patch), [domain, fit])
+        cuts_of(&self.assignment.part(patch), self.reaches[patch as usize])
     }
 
     /// The sides of a patch that are cut differently.
