@@ -246,7 +246,7 @@ impl<'a> Scene<'a> {
             if self.primitives.skip(&primitive) {
                 continue;
             }
-            let material = self.materials.resolve(&primitive.material(), &mut self.builder)?;
+            let material = self.materials.resolve(&primitive.material(), &mut self.builder);
             let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
                 mesh,
