@@ -1,7 +1,5 @@
 //! Finds out whether another program's coordinates are ours, turned, mirrored, scaled or moved as a whole.
 
-use std::collections::HashMap;
-
 use glam::{DMat3, DVec3, Vec3};
 
 use super::OurTessellation;
@@ -9,6 +7,7 @@ use super::foreign::ForeignMesh;
 use super::locator::Locator;
 use super::spaces::Space;
 use geometry::mesh::Bounds;
+use geometry::near::TriangleTree;
 
 /// How another program's coordinates follow from ours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +53,7 @@ const USUAL_SCALES: [f64; 6] = [2.54, 0.0254, 25.4, 0.3048, 30.48, 12.0];
 const SAMPLE: usize = 300;
 /// The same where the nearest place of the surface itself is sought, which takes longer.
 const SURFACE_SAMPLE: usize = 100;
-/// The most vertices of ours that theirs are looked for among, which takes about 50 bytes each.
+/// The most vertices of ours that theirs are looked for among, which takes about 200 bytes each.
 const MOST_POSITIONS: usize = 1 << 22;
 /// A vertex is near if it is no farther from the surface than this part of the mesh's diagonal.
 const NEAR: f64 = 0.01;
@@ -115,7 +114,7 @@ impl Alignment {
             })
         };
         let near = NEAR * our_size.length();
-        let sought = AlignmentSearch { theirs, ours: own, emitted: Cells::new(emitted, fit), fit, near };
+        let sought = AlignmentSearch { theirs, ours: own, emitted: tree_of(emitted), fit, near };
         let of_camera = Space::from_camera(&ours.inputs.view, ours.matrix);
         for how in [How::AtVertices, How::OnSurface, How::NearSurface] {
             let kept = if how == How::NearSurface { KEPT } else { FOUND };
@@ -143,7 +142,7 @@ impl Alignment {
             if how == How::AtVertices {
                 let found = Space::from_triangles(theirs, emitted, &ours.tessellated.triangles).find(is_found);
                 if let Some(found) = found {
-                    return Some(Frame::Space(found.settled(&sought.pairs(&found, emitted))));
+                    return Some(Frame::Space(found.settled(&sought.pairs(&found))));
                 }
             }
         }
@@ -183,7 +182,8 @@ enum How {
 struct AlignmentSearch<'a> {
     theirs: &'a ForeignMesh,
     ours: &'a Locator<'a>,
-    emitted: Cells,
+    /// The positions of our vertices.
+    emitted: Option<TriangleTree>,
     /// In object units, as [`Alignment::find`] has it, and how near vertices must be to be near the surface.
     fit: f64,
     near: f64,
@@ -195,7 +195,7 @@ impl AlignmentSearch<'_> {
         let is_there = |&index: &u32| {
             let position = in_ours(self.theirs.positions[index as usize].as_dvec3());
             match how {
-                How::AtVertices => self.emitted.at(position).is_some(),
+                How::AtVertices => self.vertex(position).is_some(),
                 How::OnSurface => self.ours.place(position).is_some_and(|place| place.distance <= self.fit),
                 How::NearSurface => self.ours.rough_distance(position) <= self.near,
             }
@@ -204,47 +204,34 @@ impl AlignmentSearch<'_> {
         sample.clone().filter(is_there).count() as f64 / sample.count().max(1) as f64
     }
 
+    /// The position of our vertex at a place, if there is one.
+    fn vertex(&self, place: DVec3) -> Option<DVec3> {
+        nearest(self.emitted.as_ref(), place, self.fit)
+    }
+
     /// Positions of ours, each with that of one of their vertices at the same place in another space.
-    fn pairs(&self, space: &Space, emitted: &[Vec3]) -> Vec<[DVec3; 2]> {
+    fn pairs(&self, space: &Space) -> Vec<[DVec3; 2]> {
         let pair = |index: u32| {
             let theirs = self.theirs.positions[index as usize].as_dvec3();
-            Some([emitted[self.emitted.at(space.ours(theirs))? as usize].as_dvec3(), theirs])
+            Some([self.vertex(space.ours(theirs))?, theirs])
         };
         self.theirs.sample(SAMPLE).filter_map(pair).collect()
     }
 }
 
-/// Positions in cells of space, to tell whether one is near a place.
-struct Cells {
-    /// A position of each cell that has one, as its number.
-    all: HashMap<[i64; 3], u32>,
-    /// The width of a cell in object units: twice the distance within which positions are the same.
-    width: f64,
+/// A tree of those positions that are finite. There is none of more than [`MOST_POSITIONS`].
+fn tree_of(positions: &[Vec3]) -> Option<TriangleTree> {
+    if positions.len() > MOST_POSITIONS {
+        return None;
+    }
+    TriangleTree::new(positions.iter().filter(|position| position.is_finite()).map(|position| [*position; 3]))
 }
 
-impl Cells {
-    /// Sorts positions that are the same within `fit` object units. There are none of more than [`MOST_POSITIONS`].
-    fn new(positions: &[Vec3], fit: f64) -> Self {
-        let width = 2.0 * fit;
-        let positions = if positions.len() > MOST_POSITIONS { &[] } else { positions };
-        let numbered = positions.iter().zip(0..);
-        let cell = |(position, number): (&Vec3, u32)| Some((Self::cell(position.as_dvec3(), width)?, number));
-        Self { all: numbered.filter_map(cell).collect(), width }
-    }
-
-    /// None for a position that isn't finite.
-    fn cell(position: DVec3, width: f64) -> Option<[i64; 3]> {
-        position.is_finite().then(|| (position / width).floor().to_array().map(|place| place as i64))
-    }
-
-    /// One of the positions that is within `fit` of this one along each axis; it may be within twice that.
-    fn at(&self, position: DVec3) -> Option<u32> {
-        (0..8_u32).find_map(|corner| {
-            let sign = |axis: u32| if corner >> axis & 1 == 1 { 0.5 } else { -0.5 };
-            let near = position + DVec3::new(sign(0), sign(1), sign(2)) * self.width;
-            self.all.get(&Self::cell(near, self.width)?).copied()
-        })
-    }
+/// The position in a tree that is nearest to a place; none if it is farther away than twice `fit`, since rounding moves coordinates along
+/// all axes.
+fn nearest(tree: Option<&TriangleTree>, place: DVec3, fit: f64) -> Option<DVec3> {
+    let closest = tree.filter(|_| place.is_finite())?.closest(place, 2.0 * fit)?;
+    Some(closest.point)
 }
 
 /// Of two alignments the one that more vertices fit; if they are alike, one that moves nothing, and then the first.
@@ -303,9 +290,10 @@ mod tests {
 
     #[test]
     fn a_position_that_is_not_finite_is_near_none() {
-        let origin = Cells::new(&[Vec3::ZERO], 0.1);
-        assert_eq!([DVec3::splat(0.05), DVec3::NAN, DVec3::INFINITY].map(|at| origin.at(at)), [Some(0), None, None]);
-        assert_eq!(Cells::new(&[Vec3::NAN], 0.1).at(DVec3::ZERO), None);
+        let origin = tree_of(&[Vec3::NAN, Vec3::ZERO]);
+        let found = |place| nearest(origin.as_ref(), place, 0.1);
+        assert_eq!([DVec3::splat(0.05), DVec3::NAN, DVec3::INFINITY].map(found), [Some(DVec3::ZERO), None, None]);
+        assert!(tree_of(&[Vec3::NAN]).is_none());
     }
 
     #[test]
