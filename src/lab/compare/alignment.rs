@@ -227,8 +227,8 @@ fn tree_of(positions: &[Vec3]) -> Option<TriangleTree> {
     TriangleTree::new(positions.iter().filter(|position| position.is_finite()).map(|position| [*position; 3]))
 }
 
-/// The position in a tree that is nearest to a place; none if it is farther away than twice `fit`, since rounding moves coordinates along
-/// all axes.
+/// The position in a tree that is nearest to a place; none if it is farther away than twice `fit`, since rounding moves coordinates
+/// along all axes.
 fn nearest(tree: Option<&TriangleTree>, place: DVec3, fit: f64) -> Option<DVec3> {
     let closest = tree.filter(|_| place.is_finite())?.closest(place, 2.0 * fit)?;
     Some(closest.point)
