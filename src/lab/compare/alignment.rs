@@ -1,51 +1,13 @@
 //! Finds out whether another program's coordinates are ours, turned, mirrored, scaled or moved as a whole.
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
 use super::OurTessellation;
 use super::foreign::ForeignMesh;
 use super::locator::Locator;
-use super::spaces::Space;
+use super::spaces::{Alignment, Space};
 use geometry::mesh::Bounds;
 use geometry::near::TriangleTree;
-
-/// How another program's coordinates follow from ours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Alignment {
-    /// For each of their axes, which of ours it is, and whether it points the other way.
-    pub axes: [(usize, bool); 3],
-    /// Their lengths are ours times this.
-    pub scale: f64,
-    /// What is then added, in their units.
-    pub offset: DVec3,
-}
-
-/// How their coordinates follow from ours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Frame {
-    /// Axes are exchanged or turned, and everything is scaled and moved.
-    Axes(Alignment),
-    /// They are in another space.
-    Space(Space),
-}
-
-impl Frame {
-    /// Whether it mirrors, so that triangles are wound the other way.
-    pub fn mirrors(&self) -> bool {
-        match self {
-            Self::Axes(alignment) => alignment.mirrors(),
-            Self::Space(space) => space.mirrors(),
-        }
-    }
-
-    /// Returns the place in our coordinates of a position in theirs.
-    pub(super) fn ours(&self, theirs: DVec3) -> DVec3 {
-        match self {
-            Self::Axes(alignment) => alignment.ours(theirs),
-            Self::Space(space) => space.ours(theirs),
-        }
-    }
-}
 
 /// The scales that files have for a reason: powers of ten, and inches and feet in cm and in m.
 const USUAL_SCALES: [f64; 6] = [2.54, 0.0254, 25.4, 0.3048, 30.48, 12.0];
@@ -63,34 +25,11 @@ const KEPT: f64 = 0.6;
 const FOUND: f64 = 0.95;
 
 impl Alignment {
-    const NONE: Self = Self { axes: [(0, false), (1, false), (2, false)], scale: 1.0, offset: DVec3::ZERO };
-
-    /// Whether it mirrors, so that triangles are wound the other way.
-    pub fn mirrors(&self) -> bool {
-        self.matrix().determinant() < 0.0
-    }
-
-    /// Whether axes are exchanged or turned.
-    pub fn turns(&self) -> bool {
-        self.axes != Self::NONE.axes
-    }
-
-    /// The rotation or reflection from our axes to theirs.
-    fn matrix(&self) -> DMat3 {
-        let row = |(axis, is_turned): (usize, bool)| DVec3::AXES[axis] * if is_turned { -1.0 } else { 1.0 };
-        DMat3::from_cols_array_2d(&self.axes.map(|axis| row(axis).to_array())).transpose()
-    }
-
-    /// Returns the place in our coordinates of a position in theirs.
-    pub(super) fn ours(&self, theirs: DVec3) -> DVec3 {
-        self.matrix().transpose() * ((theirs - self.offset) / self.scale)
-    }
-
     /// Finds the alignment under which their vertices are ours, lie on our surface, or lie near it; the first of these under which
     /// nearly all do. `None` if they do as they are, or under none. A vertex lies on the surface within `fit` object units.
     ///
     /// Other spaces are tried after all ways to exchange and turn axes, and before places that are only near.
-    pub(super) fn find(theirs: &ForeignMesh, own: &Locator, ours: &OurTessellation, fit: f64) -> Option<Frame> {
+    pub(super) fn find(theirs: &ForeignMesh, own: &Locator, ours: &OurTessellation, fit: f64) -> Option<Space> {
         let emitted = &ours.emitted_positions()[..];
         let bounds_of_own = Bounds::new(emitted.iter().copied());
         let our_size = (bounds_of_own.max - bounds_of_own.min).as_dvec3();
@@ -130,19 +69,19 @@ impl Alignment {
                 .map(|alignment| (alignment, sought.share(|position| alignment.ours(position), how)));
             if let Some((best, _)) = all.reduce(better).filter(|(_, share)| *share >= FOUND) {
                 let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, own) };
-                return (best != Self::NONE).then_some(Frame::Axes(best));
+                return (best != Self::NONE).then_some(best.into());
             }
             if how == How::NearSurface {
                 continue;
             }
             let is_found = |space: &Space| sought.share(|position| space.ours(position), how) >= FOUND;
             if let Some(found) = of_camera.iter().copied().find(is_found) {
-                return Some(Frame::Space(found));
+                return Some(found);
             }
             if how == How::AtVertices {
                 let found = Space::from_triangles(theirs, emitted, &ours.tessellated.triangles).find(is_found);
                 if let Some(found) = found {
-                    return Some(Frame::Space(found.settled(&sought.pairs(&found))));
+                    return Some(found.settled(&sought.pairs(&found)));
                 }
             }
         }

@@ -37,12 +37,11 @@ use geometry::tessellate::{
 };
 use geometry::view::ulp;
 
-use alignment::{Alignment, Frame};
 use assignment::{Assignment, Overlaid};
 use locator::{FINE, Locator, OurSurface};
 use our_mesh::OurMesh;
 use outcomes::Outcomes;
-use spaces::Space;
+use spaces::{Alignment, Space, SpaceKind};
 use surfaces::Trial;
 use twins::Twins;
 
@@ -135,7 +134,7 @@ pub fn compare(ours: &OurTessellation, theirs: &ForeignMesh, exactness: Toleranc
         positions.iter_mut().for_each(|position| *position = frame.ours(*position));
         our_twins = twins(&vertices, &positions);
     }
-    if let Some(Frame::Space(space)) = &frame {
+    if let Some(space) = frame.as_ref().filter(|space| !matches!(space.kind, SpaceKind::Axes(_))) {
         exactness.within = exactness.within.max(rounding_in(space, theirs));
     }
     let twins = |own: &[Vec3]| twins(own, &positions);
@@ -278,7 +277,7 @@ impl Comparison {
         &mut self,
         laid: &Registered,
         outcomes: &Outcomes,
-        frame: Option<&Frame>,
+        frame: Option<&Space>,
         exactness: Tolerances,
     ) {
         self.findings.extend(laid.other_surface(outcomes.ours));
@@ -288,7 +287,7 @@ impl Comparison {
             self.findings.push(Finding::Displaced(outcomes.displaced(laid.fit)));
         }
         let explained = outcomes.explain(laid.other.as_ref(), &mut self.findings);
-        self.findings.extend(outcomes.judge_triangles(frame.is_some_and(Frame::mirrors)));
+        self.findings.extend(outcomes.judge_triangles(frame.is_some_and(Space::mirrors)));
         if let Some(sides) = explained {
             (self.sides, self.different) = (sides, outcomes.different_at_all());
         }
