@@ -62,18 +62,13 @@ impl Match {
             none.flipped += u64::from(area < -thin);
             none.thin += u64::from(area.abs() <= thin);
         }
-        let Some((our_vertices, slid)) = our_vertices(part, own, reach) else { return none };
-        let mut is_covered = vec![false; own.positions.len()];
-        our_vertices.iter().flatten().for_each(|vertex| is_covered[own.firsts[*vertex as usize] as usize] = true);
+        let Some((our_vertices, is_left, slid)) = our_vertices(part, own, reach) else { return none };
+        let all = || 0..own.weights.len() as u32;
         // Of several points that are nearer to each other than can be told apart, one is enough.
-        let covered = DomainPoints::new(
-            (own.weights.iter().zip(&is_covered)).filter(|(_, is_covered)| **is_covered).map(|(weights, _)| *weights),
-        );
-        let is_bare = |vertex: u32| {
-            let is_near = || covered.nearest(own.weights[vertex as usize], reach.domain).is_some();
-            own.firsts[vertex as usize] == vertex && !is_covered[vertex as usize] && !is_near()
-        };
-        let has_all_points = !(0..own.positions.len() as u32).any(is_bare);
+        let covered = all().filter(|vertex| own.firsts[*vertex as usize] == *vertex && !is_left[*vertex as usize]);
+        let covered = DomainPoints::new(covered.map(|vertex| own.weights[vertex as usize]));
+        let is_near = |vertex: u32| covered.nearest(own.weights[vertex as usize], reach.domain).is_some();
+        let has_all_points = all().all(|vertex| !is_left[vertex as usize] || is_near(vertex));
         let mut found = Self { our_vertices, slid, ..none };
         found.count_triangles(part, own, reach.domain);
         // Points are only missing with the triangles around them, or else the patch is cut more coarsely.
@@ -120,9 +115,12 @@ impl Match {
     }
 }
 
-/// Returns our vertex for each of theirs, and how many of these were moved along the surface. `None` if more of theirs lie where
-/// we have no point than a few vertices that were moved.
-fn our_vertices(part: &Part, own: &OurPatch, reach: Reach) -> Option<(Vec<Option<u32>>, u64)> {
+/// Our vertex for each of theirs; for each of ours whether it is left; and how many of theirs were moved.
+type OurVertices = (Vec<Option<u32>>, Vec<bool>, u64);
+
+/// Returns our vertex for each of theirs; for each of ours whether it is left, since none of theirs is there; and how many of
+/// theirs were moved along the surface. `None` if more of theirs lie where we have no point than a few vertices that were moved.
+fn our_vertices(part: &Part, own: &OurPatch, reach: Reach) -> Option<OurVertices> {
     let points = DomainPoints::new(own.weights.iter().copied());
     let our_weights = |vertex: u32| own.weights[vertex as usize];
     let on_surface = |place: &Place| place.distance <= reach.fit;
@@ -152,7 +150,7 @@ fn our_vertices(part: &Part, own: &OurPatch, reach: Reach) -> Option<(Vec<Option
         vertex.iter().for_each(|vertex| is_left[*vertex as usize] = false);
         *found = vertex;
     }
-    Some((found, slid as u64))
+    Some((found, is_left, slid as u64))
 }
 
 /// On which sides of the patch a place is: those whose opposite corner has no weight there.

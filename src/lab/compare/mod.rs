@@ -32,9 +32,7 @@ pub use outcomes::SideDifference;
 
 use geometry::mesh::{Bounds, Mesh, Topology};
 use geometry::numbers::ulp_at;
-use geometry::tessellate::{
-    Convention, Displacement, HullFactors, Inputs, Tessellated, Tessellation, hull_factors, tessellate,
-};
+use geometry::tessellate::{Convention, HullFactors, Inputs, Tessellated, Tessellation, hull_factors, tessellate};
 use geometry::view::ulp;
 
 use assignment::{Assignment, Overlaid};
@@ -198,8 +196,8 @@ impl<'a> Registered<'a> {
     fn new(ours: &OurTessellation<'a>, on_own: Overlaid<'a>, twins: impl Fn(&[Vec3]) -> Twins<'a>) -> Self {
         let OurTessellation { mesh, topology, tessellated, .. } = *ours;
         let surface = |own: &OurSurface| Locator::from_surface(mesh, topology, own, FINE);
-        let (fit, strays) = (on_own.fit, on_own.strays());
-        let trial = (!strays.is_empty()).then(|| Trial::new(ours.mesh, &on_own, ours.inputs, &strays));
+        let (fit, off_own) = (on_own.fit, on_own.strays().len() as u64);
+        let trial = (off_own > 0).then(|| Trial::new(ours.mesh, &on_own, ours.inputs));
         let other = trial.and_then(|trial| trial.other_surface());
         let overlaid = match &other {
             Some(other) => {
@@ -215,7 +213,7 @@ impl<'a> Registered<'a> {
             // Where they are displaced, every vertex counts as near its place.
             false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), Twins::none(overlaid.theirs)) },
         };
-        Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit }
+        Self { overlaid, other, off_own, is_fitted, fit }
     }
 
     /// Vertices off the surface; none where most are, since none is expected on it then.
@@ -367,16 +365,14 @@ impl Outcomes<'_> {
 
 /// The inputs without displacement.
 fn undisplaced(inputs: &Inputs) -> Inputs {
-    Inputs { tessellation: Tessellation { displacement: Displacement::Off, ..inputs.tessellation }, ..*inputs }
+    Inputs { tessellation: inputs.tessellation.undisplaced(), ..*inputs }
 }
 
 impl<'a> Locator<'a> {
     /// Our own surface. If it is displaced that is what was emitted, since heights are read from levels that depend on factors.
     fn from_own(ours: &OurTessellation<'a>) -> Option<Self> {
         let exact = || Self::from_surface(ours.mesh, ours.topology, &undisplaced(ours.inputs).into(), FINE);
-        match ours.inputs.tessellation.displacement {
-            Displacement::Off => exact(),
-            _ => Self::from_emitted(ours.tessellated, ours.topology).or_else(exact),
-        }
+        let emitted = || Self::from_emitted(ours.tessellated, ours.topology);
+        if ours.inputs.tessellation.displacement.is_on() { emitted().or_else(exact) } else { exact() }
     }
 }

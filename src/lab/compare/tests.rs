@@ -8,8 +8,8 @@ use super::net_mistakes::{NetMistake, THIRD};
 use super::*;
 use geometry::mesh::{HeightMap, Heights, Shape};
 use geometry::tessellate::{
-    Convention, Lod, LodView, Partitioning, Surface, domain_side, hull_factors, tessellate, tessellate_given,
-    unpack_normal,
+    Convention, Displacement, Lod, LodView, Partitioning, Surface, domain_side, hull_factors, tessellate,
+    tessellate_given, unpack_normal,
 };
 use inspect::settings::Choice;
 
