@@ -66,7 +66,7 @@ impl Alignment {
                 .iter()
                 .copied()
                 .flat_map(candidates)
-                .map(|alignment| (alignment, sought.share(|position| alignment.ours(position), how)));
+                .map(|alignment| (alignment, sought.share(|position| Space::from(alignment).ours(position), how)));
             if let Some((best, _)) = all.reduce(better).filter(|(_, share)| *share >= FOUND) {
                 let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, own) };
                 return (best != Self::NONE).then_some(best.into());
@@ -93,7 +93,7 @@ impl Alignment {
         const STEPS: usize = 50;
         for _ in 0..STEPS {
             let apart = |index: u32| {
-                let position = self.ours(theirs.positions[index as usize].as_dvec3());
+                let position = Space::from(self).ours(theirs.positions[index as usize].as_dvec3());
                 ours.point(position).map_or(DVec3::ZERO, |point| position - point)
             };
             let sum: DVec3 = theirs.sample(SAMPLE).map(apart).sum();
@@ -223,7 +223,7 @@ mod tests {
         assert!(!made.mirrors() && made.turns());
         let place = DVec3::new(1.0, 2.0, 3.0);
         let theirs = DVec3::new(105.0, -300.0, 200.0);
-        assert!(made.ours(theirs).distance(place) < 1e-12);
+        assert!(Space::from(made).ours(theirs).distance(place) < 1e-12);
         assert!(Alignment { axes: [(0, true), (1, false), (2, false)], ..Alignment::NONE }.mirrors());
     }
 

@@ -64,11 +64,6 @@ impl Alignment {
         let row = |(axis, is_turned): (usize, bool)| DVec3::AXES[axis] * if is_turned { -1.0 } else { 1.0 };
         DMat3::from_cols_array_2d(&self.axes.map(|axis| row(axis).to_array())).transpose()
     }
-
-    /// Returns the place in our coordinates of a position in theirs.
-    pub(super) fn ours(&self, theirs: DVec3) -> DVec3 {
-        self.matrix().transpose() * ((theirs - self.offset) / self.scale)
-    }
 }
 
 impl From<Alignment> for Space {
