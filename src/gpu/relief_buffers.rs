@@ -3,6 +3,7 @@
 use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
+use geometry::groups::in_groups;
 use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
@@ -115,21 +116,10 @@ pub fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
 /// have one list, so that displaced normals are as smooth there as if they were one corner.
 fn patches_of_corners(mesh: &Mesh, topology: &Topology) -> (Vec<[u32; 2]>, Vec<u32>) {
     let alike = mesh.alike_corners();
-    let mut starts = vec![0; mesh.corners.len() + 1];
-    let corners = || {
-        (0..)
-            .zip(&topology.patches)
-            .flat_map(|(patch, own)| topology.corners(own).map(|corner| (alike[corner as usize], patch)))
-    };
-    corners().for_each(|(corner, _)| starts[corner as usize + 1] += 1);
-    for corner in 0..mesh.corners.len() {
-        starts[corner + 1] += starts[corner];
-    }
-    let (mut next, mut patches) = (starts.clone(), vec![0; 3 * topology.patches.len()]);
-    for (corner, patch) in corners() {
-        patches[next[corner as usize] as usize] = patch;
-        next[corner as usize] += 1;
-    }
+    let corners = (0..)
+        .zip(&topology.patches)
+        .flat_map(|(patch, own)| topology.corners(own).map(|corner| (alike[corner as usize], patch)));
+    let (starts, patches) = in_groups(mesh.corners.len(), corners);
     let range = |&corner: &u32| [starts[corner as usize], starts[corner as usize + 1]];
     (alike.iter().map(range).collect(), patches)
 }

@@ -72,7 +72,6 @@ use geometry::progress::Progress;
 use accessor::Accessors;
 use buffers::Buffers;
 use extensions::InstancingExtension;
-use instances::Instances;
 use materials::Materials;
 use nodes::Placed;
 use primitive::PrimitiveReader;
@@ -210,18 +209,17 @@ impl<'a> Scene<'a> {
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(self.global));
         self.builder.enter_part(self.parts.get(&node.index()).copied());
-        let Some(own) = self.instances.get(&node.index()) else {
-            return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
-        };
-        if skin.is_some() {
+        let mut own = self.instances.get(&node.index());
+        if own.is_some() && skin.is_some() {
             // Vertices of a skin don't move with their node.
             let said = "has instances of a mesh that a skin moves, which EXT_mesh_gpu_instancing doesn't define";
             self.primitives.notes.push(format!("/nodes/{} {said}; it is shown once.", node.index()));
-            return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
+            own = None;
         }
-        let (document, accessors) = (self.document, self.accessors);
-        let instances = Instances::read(document, accessors, own, node.index())?;
-        for instance in instances.transforms() {
+        let Some(own) = own else {
+            return self.add_once(&node, &mesh, skin.as_ref(), &joints, DMat4::IDENTITY, progress);
+        };
+        for instance in instances::transforms(self.document, self.accessors, own, node.index())? {
             self.add_once(&node, &mesh, None, &[], instance, progress)?;
         }
         Ok(())
@@ -246,7 +244,7 @@ impl<'a> Scene<'a> {
             if self.primitives.skip(&primitive) {
                 continue;
             }
-            let material = self.materials.resolve(&primitive.material(), &mut self.builder)?;
+            let material = self.materials.resolve(&primitive.material(), &mut self.builder);
             let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
                 mesh,

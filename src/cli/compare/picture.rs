@@ -7,6 +7,7 @@ use glam::{DVec3, Vec3};
 
 use super::Args;
 use crate::cli::CliError;
+use geometry::groups::group_starts;
 use geometry::mesh::{Mesh, MeshSlices, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{FIXED_ONE, Surface, Tessellation, Vertex, outline_place};
@@ -17,7 +18,7 @@ use inspect::render::{Camera, LineSegment};
 use inspect::settings::{Colors, Overlays, Settings};
 use inspect::shot::legend::{Named, draw_key};
 use inspect::shot::{ReferenceSurface, Shot, ShotView, Subject, write_picture};
-use lab::compare::{Comparison, ForeignMesh, OurTessellation, SideDifference, patch_starts};
+use lab::compare::{Comparison, ForeignMesh, OurTessellation, SideDifference};
 
 /// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
 /// off the surface.
@@ -128,7 +129,7 @@ struct Outlines<'a> {
 impl<'a> Outlines<'a> {
     fn new(ours: &'a OurTessellation<'a>) -> Self {
         let patches = ours.tessellated.vertices.iter().map(Vertex::patch);
-        let starts = patch_starts(patches, ours.topology.patches.len());
+        let starts = group_starts(ours.topology.patches.len(), patches);
         Self { ours, starts }
     }
 

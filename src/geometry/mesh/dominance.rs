@@ -4,6 +4,7 @@
 
 use super::{Curves, Topology};
 use crate::casts::to_u32;
+use crate::groups::group_starts;
 
 /// The dominant sides and corners, and lists of each point's corners and factors.
 #[derive(Clone, Debug, Default)]
@@ -51,10 +52,10 @@ impl Dominance {
         let part =
             |&(_, corner): &(u32, u32)| (corner, angles.get(corner as usize).map_or(1e-6, |angle| angle.max(1e-6)));
         dominance.parts = parts.iter().map(part).collect();
-        dominance.part_starts = starts(topology.points.len(), parts.iter().map(|part| part.0));
+        dominance.part_starts = group_starts(topology.points.len(), parts.iter().map(|part| part.0));
         factors.sort_unstable();
         factors.dedup();
-        dominance.factor_starts = starts(topology.points.len(), factors.iter().map(|factor| factor.0));
+        dominance.factor_starts = group_starts(topology.points.len(), factors.iter().map(|factor| factor.0));
         dominance.factors = factors.into_iter().map(|(_, factor)| factor).collect();
         dominance
     }
@@ -68,18 +69,6 @@ fn sides(topology: &Topology, curves: &Curves) -> Vec<u32> {
         sides[curves.factor(topology, index) as usize] = first.patch() * 4 + to_u32(first.index());
     }
     sides
-}
-
-/// Returns where each point's part of a list that is sorted by point starts, and the end of the last.
-fn starts(points: usize, sorted: impl Iterator<Item = u32>) -> Vec<u32> {
-    let mut starts = vec![0; points + 1];
-    for point in sorted {
-        starts[point as usize + 1] += 1;
-    }
-    for point in 0..points {
-        starts[point + 1] += starts[point];
-    }
-    starts
 }
 
 #[cfg(test)]

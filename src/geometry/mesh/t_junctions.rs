@@ -89,7 +89,7 @@ pub fn t_junctions(topology: &Topology, progress: &Progress) -> Result<Vec<TJunc
 }
 
 /// Returns the boundary edges with their indices.
-fn open_edges(topology: &Topology) -> impl Iterator<Item = (u32, &Edge)> {
+fn open_edges(topology: &Topology) -> impl Iterator<Item = (u32, &Edge)> + Clone {
     (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind == EdgeKind::Boundary)
 }
 

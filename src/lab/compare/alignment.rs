@@ -1,52 +1,13 @@
 //! Finds out whether another program's coordinates are ours, turned, mirrored, scaled or moved as a whole.
 
-use std::collections::HashMap;
-
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DVec3, Vec3};
 
 use super::OurTessellation;
 use super::foreign::ForeignMesh;
 use super::locator::Locator;
-use super::spaces::Space;
+use super::spaces::{Alignment, Space};
 use geometry::mesh::Bounds;
-
-/// How another program's coordinates follow from ours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Alignment {
-    /// For each of their axes, which of ours it is, and whether it points the other way.
-    pub axes: [(usize, bool); 3],
-    /// Their lengths are ours times this.
-    pub scale: f64,
-    /// What is then added, in their units.
-    pub offset: DVec3,
-}
-
-/// How their coordinates follow from ours.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Frame {
-    /// Axes are exchanged or turned, and everything is scaled and moved.
-    Axes(Alignment),
-    /// They are in another space.
-    Space(Space),
-}
-
-impl Frame {
-    /// Whether it mirrors, so that triangles are wound the other way.
-    pub fn mirrors(&self) -> bool {
-        match self {
-            Self::Axes(alignment) => alignment.mirrors(),
-            Self::Space(space) => space.mirrors(),
-        }
-    }
-
-    /// Returns the place in our coordinates of a position in theirs.
-    pub(super) fn ours(&self, theirs: DVec3) -> DVec3 {
-        match self {
-            Self::Axes(alignment) => alignment.ours(theirs),
-            Self::Space(space) => space.ours(theirs),
-        }
-    }
-}
+use geometry::near::TriangleTree;
 
 /// The scales that files have for a reason: powers of ten, and inches and feet in cm and in m.
 const USUAL_SCALES: [f64; 6] = [2.54, 0.0254, 25.4, 0.3048, 30.48, 12.0];
@@ -54,7 +15,7 @@ const USUAL_SCALES: [f64; 6] = [2.54, 0.0254, 25.4, 0.3048, 30.48, 12.0];
 const SAMPLE: usize = 300;
 /// The same where the nearest place of the surface itself is sought, which takes longer.
 const SURFACE_SAMPLE: usize = 100;
-/// The most vertices of ours that theirs are looked for among, which takes about 50 bytes each.
+/// The most vertices of ours that theirs are looked for among, which takes about 200 bytes each.
 const MOST_POSITIONS: usize = 1 << 22;
 /// A vertex is near if it is no farther from the surface than this part of the mesh's diagonal.
 const NEAR: f64 = 0.01;
@@ -64,34 +25,11 @@ const KEPT: f64 = 0.6;
 const FOUND: f64 = 0.95;
 
 impl Alignment {
-    const NONE: Self = Self { axes: [(0, false), (1, false), (2, false)], scale: 1.0, offset: DVec3::ZERO };
-
-    /// Whether it mirrors, so that triangles are wound the other way.
-    pub fn mirrors(&self) -> bool {
-        self.matrix().determinant() < 0.0
-    }
-
-    /// Whether axes are exchanged or turned.
-    pub fn turns(&self) -> bool {
-        self.axes != Self::NONE.axes
-    }
-
-    /// The rotation or reflection from our axes to theirs.
-    fn matrix(&self) -> DMat3 {
-        let row = |(axis, is_turned): (usize, bool)| DVec3::AXES[axis] * if is_turned { -1.0 } else { 1.0 };
-        DMat3::from_cols_array_2d(&self.axes.map(|axis| row(axis).to_array())).transpose()
-    }
-
-    /// Returns the place in our coordinates of a position in theirs.
-    pub(super) fn ours(&self, theirs: DVec3) -> DVec3 {
-        self.matrix().transpose() * ((theirs - self.offset) / self.scale)
-    }
-
     /// Finds the alignment under which their vertices are ours, lie on our surface, or lie near it; the first of these under which
     /// nearly all do. `None` if they do as they are, or under none. A vertex lies on the surface within `fit` object units.
     ///
     /// Other spaces are tried after all ways to exchange and turn axes, and before places that are only near.
-    pub(super) fn find(theirs: &ForeignMesh, own: &Locator, ours: &OurTessellation, fit: f64) -> Option<Frame> {
+    pub(super) fn find(theirs: &ForeignMesh, own: &Locator, ours: &OurTessellation, fit: f64) -> Option<Space> {
         let emitted = &ours.emitted_positions()[..];
         let bounds_of_own = Bounds::new(emitted.iter().copied());
         let our_size = (bounds_of_own.max - bounds_of_own.min).as_dvec3();
@@ -115,7 +53,7 @@ impl Alignment {
             })
         };
         let near = NEAR * our_size.length();
-        let sought = AlignmentSearch { theirs, ours: own, emitted: Cells::new(emitted, fit), fit, near };
+        let sought = AlignmentSearch { theirs, ours: own, emitted: tree_of(emitted), fit, near };
         let of_camera = Space::from_camera(&ours.inputs.view, ours.matrix);
         for how in [How::AtVertices, How::OnSurface, How::NearSurface] {
             let kept = if how == How::NearSurface { KEPT } else { FOUND };
@@ -128,22 +66,22 @@ impl Alignment {
                 .iter()
                 .copied()
                 .flat_map(candidates)
-                .map(|alignment| (alignment, sought.share(|position| alignment.ours(position), how)));
+                .map(|alignment| (alignment, sought.share(|position| Space::from(alignment).ours(position), how)));
             if let Some((best, _)) = all.reduce(better).filter(|(_, share)| *share >= FOUND) {
                 let best = if best.offset == DVec3::ZERO { best } else { best.settled(theirs, own) };
-                return (best != Self::NONE).then_some(Frame::Axes(best));
+                return (best != Self::NONE).then_some(best.into());
             }
             if how == How::NearSurface {
                 continue;
             }
             let is_found = |space: &Space| sought.share(|position| space.ours(position), how) >= FOUND;
             if let Some(found) = of_camera.iter().copied().find(is_found) {
-                return Some(Frame::Space(found));
+                return Some(found);
             }
             if how == How::AtVertices {
                 let found = Space::from_triangles(theirs, emitted, &ours.tessellated.triangles).find(is_found);
                 if let Some(found) = found {
-                    return Some(Frame::Space(found.settled(&sought.pairs(&found, emitted))));
+                    return Some(found.settled(&sought.pairs(&found)));
                 }
             }
         }
@@ -155,7 +93,7 @@ impl Alignment {
         const STEPS: usize = 50;
         for _ in 0..STEPS {
             let apart = |index: u32| {
-                let position = self.ours(theirs.positions[index as usize].as_dvec3());
+                let position = Space::from(self).ours(theirs.positions[index as usize].as_dvec3());
                 ours.point(position).map_or(DVec3::ZERO, |point| position - point)
             };
             let sum: DVec3 = theirs.sample(SAMPLE).map(apart).sum();
@@ -183,7 +121,8 @@ enum How {
 struct AlignmentSearch<'a> {
     theirs: &'a ForeignMesh,
     ours: &'a Locator<'a>,
-    emitted: Cells,
+    /// The positions of our vertices.
+    emitted: Option<TriangleTree>,
     /// In object units, as [`Alignment::find`] has it, and how near vertices must be to be near the surface.
     fit: f64,
     near: f64,
@@ -195,7 +134,7 @@ impl AlignmentSearch<'_> {
         let is_there = |&index: &u32| {
             let position = in_ours(self.theirs.positions[index as usize].as_dvec3());
             match how {
-                How::AtVertices => self.emitted.at(position).is_some(),
+                How::AtVertices => self.vertex(position).is_some(),
                 How::OnSurface => self.ours.place(position).is_some_and(|place| place.distance <= self.fit),
                 How::NearSurface => self.ours.rough_distance(position) <= self.near,
             }
@@ -204,47 +143,34 @@ impl AlignmentSearch<'_> {
         sample.clone().filter(is_there).count() as f64 / sample.count().max(1) as f64
     }
 
+    /// The position of our vertex at a place, if there is one.
+    fn vertex(&self, place: DVec3) -> Option<DVec3> {
+        nearest(self.emitted.as_ref(), place, self.fit)
+    }
+
     /// Positions of ours, each with that of one of their vertices at the same place in another space.
-    fn pairs(&self, space: &Space, emitted: &[Vec3]) -> Vec<[DVec3; 2]> {
+    fn pairs(&self, space: &Space) -> Vec<[DVec3; 2]> {
         let pair = |index: u32| {
             let theirs = self.theirs.positions[index as usize].as_dvec3();
-            Some([emitted[self.emitted.at(space.ours(theirs))? as usize].as_dvec3(), theirs])
+            Some([self.vertex(space.ours(theirs))?, theirs])
         };
         self.theirs.sample(SAMPLE).filter_map(pair).collect()
     }
 }
 
-/// Positions in cells of space, to tell whether one is near a place.
-struct Cells {
-    /// A position of each cell that has one, as its number.
-    all: HashMap<[i64; 3], u32>,
-    /// The width of a cell in object units: twice the distance within which positions are the same.
-    width: f64,
+/// A tree of those positions that are finite. There is none of more than [`MOST_POSITIONS`].
+fn tree_of(positions: &[Vec3]) -> Option<TriangleTree> {
+    if positions.len() > MOST_POSITIONS {
+        return None;
+    }
+    TriangleTree::new(positions.iter().filter(|position| position.is_finite()).map(|position| [*position; 3]))
 }
 
-impl Cells {
-    /// Sorts positions that are the same within `fit` object units. There are none of more than [`MOST_POSITIONS`].
-    fn new(positions: &[Vec3], fit: f64) -> Self {
-        let width = 2.0 * fit;
-        let positions = if positions.len() > MOST_POSITIONS { &[] } else { positions };
-        let numbered = positions.iter().zip(0..);
-        let cell = |(position, number): (&Vec3, u32)| Some((Self::cell(position.as_dvec3(), width)?, number));
-        Self { all: numbered.filter_map(cell).collect(), width }
-    }
-
-    /// None for a position that isn't finite.
-    fn cell(position: DVec3, width: f64) -> Option<[i64; 3]> {
-        position.is_finite().then(|| (position / width).floor().to_array().map(|place| place as i64))
-    }
-
-    /// One of the positions that is within `fit` of this one along each axis; it may be within twice that.
-    fn at(&self, position: DVec3) -> Option<u32> {
-        (0..8_u32).find_map(|corner| {
-            let sign = |axis: u32| if corner >> axis & 1 == 1 { 0.5 } else { -0.5 };
-            let near = position + DVec3::new(sign(0), sign(1), sign(2)) * self.width;
-            self.all.get(&Self::cell(near, self.width)?).copied()
-        })
-    }
+/// The position in a tree that is nearest to a place; none if it is farther away than twice `fit`, since rounding moves coordinates
+/// along all axes.
+fn nearest(tree: Option<&TriangleTree>, place: DVec3, fit: f64) -> Option<DVec3> {
+    let closest = tree.filter(|_| place.is_finite())?.closest(place, 2.0 * fit)?;
+    Some(closest.point)
 }
 
 /// Of two alignments the one that more vertices fit; if they are alike, one that moves nothing, and then the first.
@@ -297,15 +223,16 @@ mod tests {
         assert!(!made.mirrors() && made.turns());
         let place = DVec3::new(1.0, 2.0, 3.0);
         let theirs = DVec3::new(105.0, -300.0, 200.0);
-        assert!(made.ours(theirs).distance(place) < 1e-12);
+        assert!(Space::from(made).ours(theirs).distance(place) < 1e-12);
         assert!(Alignment { axes: [(0, true), (1, false), (2, false)], ..Alignment::NONE }.mirrors());
     }
 
     #[test]
     fn a_position_that_is_not_finite_is_near_none() {
-        let origin = Cells::new(&[Vec3::ZERO], 0.1);
-        assert_eq!([DVec3::splat(0.05), DVec3::NAN, DVec3::INFINITY].map(|at| origin.at(at)), [Some(0), None, None]);
-        assert_eq!(Cells::new(&[Vec3::NAN], 0.1).at(DVec3::ZERO), None);
+        let origin = tree_of(&[Vec3::NAN, Vec3::ZERO]);
+        let found = |place| nearest(origin.as_ref(), place, 0.1);
+        assert_eq!([DVec3::splat(0.05), DVec3::NAN, DVec3::INFINITY].map(found), [Some(DVec3::ZERO), None, None]);
+        assert!(tree_of(&[Vec3::NAN]).is_none());
     }
 
     #[test]

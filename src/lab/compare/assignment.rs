@@ -1,14 +1,15 @@
 //! Gives every triangle of another program to the patch that it lies on.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 use glam::DVec3;
 
 use super::foreign::{ForeignMesh, spread};
 use super::locator::{Locator, Place};
-use super::patch_starts::patch_starts;
+use super::our_mesh::sorted;
 use super::twins::Twins;
 use geometry::cores::in_ranges;
+use geometry::groups::in_groups;
 use geometry::mesh::Topology;
 
 /// Another program's mesh over our surface.
@@ -113,45 +114,39 @@ impl<'a> Overlaid<'a> {
         let triangles = &self.theirs.triangles;
         let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, 1.0);
         let fits = spread(triangles.len(), WOUND).map(|index| fit(triangles[index])).filter(|fit| fit.corners == 3);
-        let (alike, turned): (Vec<Fit>, Vec<Fit>) = fits.partition(|fit| fit.is_wound_alike);
+        let (alike, turned): (Vec<Fit>, Vec<Fit>) = fits.partition(|fit| fit.is_good);
         if turned.len() > alike.len() { -1.0 } else { 1.0 }
     }
 
     fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: Winding) -> Fit {
-        Fit::new(triangle.map(|corner| self.place_on(corner, patch)), self.fit, winding)
+        let places = triangle.map(|corner| self.place_on(corner, patch));
+        let corners = places.iter().filter(|place| place.distance <= self.fit).count();
+        let is_good = corners == 3 && winding * domain_area(places.map(|place| place.weights)) > 0.0;
+        let distance: f64 = places.iter().map(|place| place.distance).sum();
+        Fit { corners, is_good, nearness: if corners == 3 { 0.0 } else { -distance } }
     }
 
     /// Returns the patch that a triangle lies on: the one on whose surface most of its corners are, and on which it is wound as
     /// most are.
     fn patch_of(&self, triangle: [u32; 3], winding: Winding) -> u32 {
         let nearest = self.nearest_patch(triangle);
-        let fits = |patch: u32| self.fit_on(patch, triangle, winding);
-        let first = fits(nearest);
-        if first.is_good() {
-            return nearest;
-        }
-        let own = triangle.map(|corner| self.places[corner as usize].patch);
-        let mut tried = vec![nearest];
-        let mut best = (first, nearest);
-        let mut tries = |patches: &[u32], best: &mut (Fit, u32)| {
-            for &patch in patches {
-                if !tried.contains(&patch) {
-                    tried.push(patch);
-                    let fit = fits(patch);
-                    if fit.beats(&best.0) {
-                        *best = (fit, patch);
-                    }
-                }
+        let [a, b, c] = triangle.map(|corner| self.places[corner as usize].patch);
+        let near = [nearest, a, b, c];
+        let (mut best, mut tried): (Option<(Fit, u32)>, _) = (None, Vec::new());
+        for patch in near.into_iter().chain(near.into_iter().flat_map(|patch| self.neighbours(patch))) {
+            if tried.contains(&patch) {
+                continue;
             }
-        };
-        tries(&own, &mut best);
-        for patch in [nearest, own[0], own[1], own[2]] {
-            if best.0.is_good() {
+            tried.push(patch);
+            let fit = self.fit_on(patch, triangle, winding);
+            if best.is_none_or(|(other, _)| fit > other) {
+                best = Some((fit, patch));
+            }
+            if fit.is_good {
                 break;
             }
-            tries(&self.neighbours(patch), &mut best);
         }
-        best.1
+        best.map_or(nearest, |(_, patch)| patch)
     }
 
     /// The patches that share an edge with a patch.
@@ -162,38 +157,15 @@ impl<'a> Overlaid<'a> {
     }
 }
 
-/// How well a triangle fits a patch.
-#[derive(Clone, Copy, Debug)]
+/// How well a triangle fits a patch: the greater, the better.
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
 struct Fit {
     /// How many of its corners lie on the patch's surface.
     corners: usize,
-    /// Whether it is wound as it should be: as the patch, or the other way.
-    is_wound_alike: bool,
-    /// The sum of its corners' distances from the patch, in object units.
-    distance: f64,
-}
-
-impl Fit {
-    fn new(places: [Place; 3], fit: f64, winding: Winding) -> Self {
-        let area = domain_area(places.map(|place| place.weights));
-        Self {
-            corners: places.iter().filter(|place| place.distance <= fit).count(),
-            is_wound_alike: winding * area > 0.0,
-            distance: places.iter().map(|place| place.distance).sum(),
-        }
-    }
-
-    fn is_good(&self) -> bool {
-        self.corners == 3 && self.is_wound_alike
-    }
-
-    fn beats(&self, other: &Self) -> bool {
-        let rank = |fit: &Self| (fit.corners, fit.corners == 3 && fit.is_wound_alike);
-        match rank(self).cmp(&rank(other)) {
-            std::cmp::Ordering::Equal => self.corners < 3 && self.distance < other.distance,
-            order => order.is_gt(),
-        }
-    }
+    /// Whether all do, and it is wound as it should be: as the patch, or the other way.
+    is_good: bool,
+    /// The sum of its corners' distances from the patch in object units, times -1; 0 where all lie on it.
+    nearness: f64,
 }
 
 /// The area of a triangle in the domain, whose own area is 1: negative if it is wound the other way than the patch. Its corners
@@ -213,14 +185,8 @@ impl<'a> Assignment<'a> {
             None if twins.is_thin(index as u32) => 0,
             None => overlaid.patch_of(triangles[index], winding),
         });
-        let seen = || (0..).zip(&patches).filter(|(triangle, _)| !twins.is_thin(*triangle));
-        let starts = patch_starts(seen().map(|(_, patch)| *patch), overlaid.topology.patches.len());
-        let mut order = vec![0; seen().count()];
-        let mut next = starts.clone();
-        for (triangle, &patch) in seen() {
-            order[next[patch as usize] as usize] = triangle;
-            next[patch as usize] += 1;
-        }
+        let seen = patches.iter().copied().zip(0..).filter(|(_, triangle)| !twins.is_thin(*triangle));
+        let (starts, order) = in_groups(overlaid.topology.patches.len(), seen);
         Self { overlaid, order, starts }
     }
 
@@ -267,6 +233,13 @@ impl Part {
     /// The weights of corners 0 and 1 at a triangle's corners.
     pub(super) fn weights(&self, triangle: [u32; 3]) -> [[f64; 2]; 3] {
         triangle.map(|corner| self.places[corner as usize].weights)
+    }
+
+    /// Whether its triangles cover the patch without gaps. Those that occur twice count once.
+    pub(super) fn is_whole(&self) -> bool {
+        let triangles: BTreeSet<_> = self.triangles.iter().map(|triangle| sorted(*triangle)).collect();
+        let area: f64 = triangles.into_iter().map(|triangle| domain_area(self.weights(triangle)).abs()).sum();
+        area >= 0.999
     }
 }
 

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::assignment::Part;
 use super::domain_points::{DomainPoints, pattern_points, pattern_triangles};
 use super::matching::Match;
-use super::our_mesh::OurPatch;
+use super::our_mesh::{OurPatch, is_thin, sorted};
 use geometry::tessellate::{Convention, HullFactors, Partitioning, weight_corner};
 
 /// An order of a patch's corners: where the tessellator's weights u, v and w belong.
@@ -67,12 +67,8 @@ fn triples(
     triangles: impl IntoIterator<Item = [u32; 3]>,
     vertex: impl Fn(u32) -> Option<u32>,
 ) -> BTreeSet<[Option<u32>; 3]> {
-    let sorted = |triangle: [u32; 3]| {
-        let mut own = triangle.map(&vertex);
-        own.sort_unstable();
-        own
-    };
-    triangles.into_iter().map(sorted).filter(|[a, b, c]| a != b && b != c).collect()
+    let named = triangles.into_iter().map(|triangle| sorted(triangle.map(&vertex)));
+    named.filter(|triangle| !is_thin(*triangle)).collect()
 }
 
 #[cfg(test)]

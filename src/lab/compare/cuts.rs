@@ -1,6 +1,7 @@
 //! How the sides of patches are cut: into how many segments, and how long.
 
 use super::assignment::Part;
+use super::matching::Reach;
 use geometry::tessellate::Partitioning;
 
 /// Where a side is cut: shares of its length from its start, with 0 and 1, in order.
@@ -61,10 +62,10 @@ impl Cut {
     }
 }
 
-/// How their triangles cut the three sides of a patch. Vertices that are farther than `fit` from the surface don't count.
-pub(super) fn cuts_of(part: &Part, [domain, fit]: [f64; 2]) -> [Cut; 3] {
-    let on_surface = || part.places.iter().filter(|place| place.distance <= fit).map(|place| place.weights);
-    [0, 1, 2].map(|side| Cut::new(side, on_surface(), domain))
+/// How their triangles cut the three sides of a patch. Vertices off the surface don't count.
+pub(super) fn cuts_of(part: &Part, reach: Reach) -> [Cut; 3] {
+    let on_surface = || part.places.iter().filter(|place| place.distance <= reach.fit).map(|place| place.weights);
+    [0, 1, 2].map(|side| Cut::new(side, on_surface(), reach.domain))
 }
 
 #[cfg(test)]

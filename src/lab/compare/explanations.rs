@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::OurTessellation;
-use super::assignment::{Assignment, Part, domain_area};
+use super::assignment::{Assignment, Part};
 use super::cuts::cuts_of;
 use super::domain_points::{DomainPoints, pattern_points};
 use super::foreign::spread;
@@ -168,7 +168,7 @@ impl Explainer<'_> {
             let gives = |written: &Vec<HullFactors>| {
                 has_points(&part, self.factors(same, written[patch as usize]), own.convention, reach)
             };
-            is_whole(&part) && written.iter().any(gives)
+            part.is_whole() && written.iter().any(gives)
         })
     }
 
@@ -207,16 +207,13 @@ impl Explainer<'_> {
             |list: &[u32], most: usize| -> Vec<u32> { spread(list.len(), most).map(|place| list[place]).collect() };
         let patches = [chosen(different, SAMPLE), chosen(&same, SAMPLE / 4)].concat();
         let sampled = patches.into_iter().filter(|patch| self.assignment.count(*patch) > 0);
-        sampled.map(|patch| (patch, self.assignment.part(patch))).filter(|(_, part)| is_whole(part)).collect()
+        sampled.map(|patch| (patch, self.assignment.part(patch))).filter(|(_, part)| part.is_whole()).collect()
     }
 
     /// The one factor that all edges of these patches seem to have.
     fn uniform(&self, sample: &[Sampled]) -> Option<f32> {
-        let mut factors = Vec::new();
-        for (patch, part) in sample {
-            let Reach { domain, fit } = self.reaches[*patch as usize];
-            factors.extend(cuts_of(part, [domain, fit]).map(|cut| cut.factor()));
-        }
+        let cuts = sample.iter().flat_map(|(patch, part)| cuts_of(part, self.reaches[*patch as usize]));
+        let mut factors: Vec<f64> = cuts.map(|cut| cut.factor()).collect();
         factors.sort_by(f64::total_cmp);
         let middle = *factors.get(factors.len() / 2)?;
         let alike = factors.iter().filter(|factor| (*factor / middle - 1.0).abs() < 0.01).count();
@@ -245,7 +242,7 @@ impl Explainer<'_> {
             let (mut whole, mut fitting) = (0_u64, 0_u64);
             for patch in patches.filter(|patch| self.assignment.count(*patch) > 0) {
                 let part = self.assignment.part(patch);
-                if is_whole(&part) {
+                if part.is_whole() {
                     whole += 1;
                     fitting += u64::from(fits(patch, &part));
                 }
@@ -266,12 +263,6 @@ impl Explainer<'_> {
         let edges = [0, 1, 2].map(|i| sides[domain_side(convention, i) as usize]);
         HullFactors { edges, inside }.rounded(partitioning).process(partitioning)
     }
-}
-
-/// Whether triangles cover a patch without gaps.
-fn is_whole(part: &Part) -> bool {
-    let area: f64 = part.triangles.iter().map(|triangle| domain_area(part.weights(*triangle)).abs()).sum();
-    area >= 0.999
 }
 
 /// Whether a patch of theirs has the points that these factors give. A vertex off the surface may be any of them.

@@ -3,12 +3,11 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::alignment::{Alignment, Frame};
 use super::corner_orders::CornerOrder;
 use super::explanations::{Explanation, InsideRule, Rule};
 use super::matching::Farthest;
 use super::net_mistakes::NetMistake;
-use super::spaces::{Space, SpaceKind};
+use super::spaces::{Alignment, Space, SpaceKind};
 use geometry::numbers::{exact, grouped, short};
 use geometry::tessellate::{Convention, Displacement, Partitioning, Tessellation};
 use inspect::settings::Choice;
@@ -25,8 +24,8 @@ pub enum Finding {
     )]
     NotATessellation { far: u64, vertices: u64, distance: f64 },
     /// All coordinates are turned, mirrored, scaled or moved, or in another space.
-    #[error("{}", frame_text(.0))]
-    Aligned(Frame),
+    #[error("{}", space_text(.0))]
+    Aligned(Space),
     /// Vertices lie on another of our surfaces.
     #[error("{}", surface_text(ours, theirs, *vertices, *of))]
     OtherSurface { ours: Tessellation, theirs: Tessellation, vertices: u64, of: u64 },
@@ -221,12 +220,20 @@ fn flipped_text(count: u64, of: u64) -> String {
         .into()
 }
 
-fn frame_text(frame: &Frame) -> String {
-    let (what, look) = match frame {
-        Frame::Axes(alignment) => (alignment_text(alignment), axes_hint(alignment).unwrap_or_default().to_owned()),
-        Frame::Space(space) => {
-            let (what, applied) = space_text(space);
-            (what, format!(" Look whether {applied} applied before they are written."))
+fn space_text(space: &Space) -> String {
+    let by_camera = "in clip space, by this camera's matrix";
+    let unapplied = |what: &str| format!(" Look whether {what} applied before they are written.");
+    let (what, look) = match &space.kind {
+        SpaceKind::Axes(alignment) => (alignment_text(alignment), axes_hint(alignment).to_owned()),
+        SpaceKind::View => ("in view space, seen from this camera".to_owned(), unapplied("the view matrix is")),
+        SpaceKind::Clip => (by_camera.to_owned(), unapplied("the view-projection matrix is")),
+        SpaceKind::DividedClip => {
+            let unapplied = unapplied("the view-projection matrix and the division by w are");
+            (format!("{by_camera}, and divided by w"), unapplied)
+        }
+        SpaceKind::Turned { axis, degrees, scale, offset, is_mirrored } => {
+            let turned = turned_text(*axis, *degrees, *is_mirrored);
+            (turned + &moved_part(*scale, *offset), unapplied("a model matrix is"))
         }
     };
     format!("Its coordinates are {what}.{look} All that follows is in our coordinates.")
@@ -250,32 +257,17 @@ fn alignment_text(alignment: &Alignment) -> String {
     parts.join(" and ")
 }
 
-/// What usually turns or mirrors axes like this, in a sentence after a blank.
-fn axes_hint(alignment: &Alignment) -> Option<&'static str> {
+/// What usually turns or mirrors axes like this, in a sentence after a blank; empty if they aren't turned.
+fn axes_hint(alignment: &Alignment) -> &'static str {
     let order = alignment.axes.map(|(axis, _)| axis);
     match (order, alignment.mirrors()) {
-        _ if !alignment.turns() => None,
-        ([0, 2, 1], false) => Some(" Look at the axis that points up: one of the two has Y up, and the other Z up."),
-        ([0, 2, 1], true) => Some(" Look at the axis that points up and at the handedness: both differ."),
-        ([0, 1, 2], true) => Some(
-            " Look at the handedness: one of the two has left-handed coordinates, and the other right-handed ones.",
-        ),
-        _ => Some(" Look at the convention of axes with which the mesh is imported."),
-    }
-}
-
-/// What a space is, and what is applied to coordinates in it.
-fn space_text(space: &Space) -> (String, &'static str) {
-    let by_camera = "in clip space, by this camera's matrix";
-    match space.kind {
-        SpaceKind::View => ("in view space, seen from this camera".to_owned(), "the view matrix is"),
-        SpaceKind::Clip => (by_camera.to_owned(), "the view-projection matrix is"),
-        SpaceKind::DividedClip => {
-            (format!("{by_camera}, and divided by w"), "the view-projection matrix and the division by w are")
+        _ if !alignment.turns() => "",
+        ([0, 2, 1], false) => " Look at the axis that points up: one of the two has Y up, and the other Z up.",
+        ([0, 2, 1], true) => " Look at the axis that points up and at the handedness: both differ.",
+        ([0, 1, 2], true) => {
+            " Look at the handedness: one of the two has left-handed coordinates, and the other right-handed ones."
         }
-        SpaceKind::Turned { axis, degrees, scale, offset, is_mirrored } => {
-            (turned_text(axis, degrees, is_mirrored) + &moved_part(scale, offset), "a model matrix is")
-        }
+        _ => " Look at the convention of axes with which the mesh is imported.",
     }
 }
 

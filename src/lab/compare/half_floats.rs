@@ -1,17 +1,10 @@
 //! Tells coordinates that were rounded to 16-bit floating-point numbers, as vertex buffers of engines often are.
 
+use half::f16;
+
 use super::OurTessellation;
 use super::foreign::ForeignMesh;
 use geometry::mesh::Bounds;
-
-/// The largest finite number of 16 bits (IEEE 754-2019, binary16).
-const LARGEST: f32 = 65504.0;
-/// The least of them that has all its bits.
-const LEAST_NORMAL: f32 = 1.0 / 16384.0;
-/// How many bits fewer than one of 32 bits it has behind the first.
-const FEWER_BITS: u32 = 13;
-/// One unit of the numbers that are below the least normal one.
-const LEAST: f32 = 1.0 / 16_777_216.0;
 
 /// Half a unit in the last place of their largest coordinate as a number of 16 bits, in our object units. `None` if some of their
 /// coordinates have more bits, or if all of ours have as few.
@@ -23,19 +16,15 @@ pub(super) fn resolution(theirs: &ForeignMesh, ours: &OurTessellation) -> Option
     }
     let [own, bounds] = [Bounds::new(emitted.into_iter()), theirs.bounds()];
     let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
-    let unit = f64::from(largest.max(LEAST_NORMAL)).log2().floor().exp2() / 1024.0;
+    let unit = f64::from(largest.max(f16::MIN_POSITIVE.to_f32())).log2().floor().exp2() / 1024.0;
     // Their units may be others than ours.
     let scale = f64::from(own.diagonal()) / f64::from(bounds.diagonal());
     Some(0.5 * unit * scale).filter(|resolution| resolution.is_finite())
 }
 
-/// Whether a number is one of 16 bits.
+/// Whether a number is one of 16 bits (IEEE 754-2019, binary16).
 fn has_16_bits(number: f32) -> bool {
-    match number.abs() {
-        size if size < LEAST_NORMAL => (size / LEAST).fract() == 0.0,
-        size if size <= LARGEST => size.to_bits().trailing_zeros() >= FEWER_BITS,
-        _ => false,
-    }
+    number.is_finite() && f16::from_f32(number).to_f32() == number
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use glam::{DVec3, Vec3};
 
 use super::net_mistakes::NetMistake;
-use super::patch_starts::patch_starts;
+use geometry::groups::group_starts;
 use geometry::mesh::{Mesh, Topology};
 use geometry::near::{TriangleTree, closest_on_triangle};
 use geometry::tessellate::{
@@ -109,7 +109,7 @@ impl<'a> Locator<'a> {
         let at = |index: u32| Vec3::from(cut.vertices[index as usize].position);
         let tree = TriangleTree::new(cut.triangles.iter().map(|triangle| triangle.map(at)))?;
         let patches = cut.triangles.iter().map(|triangle| cut.vertices[triangle[0] as usize].patch());
-        let starts = patch_starts(patches, topology.patches.len());
+        let starts = group_starts(topology.patches.len(), patches);
         let mut made = Self { starts, tree, limit, mistake, cut, sag: 0.0 };
         made.sag = made.largest_sag();
         Some(made)

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::assignment::{Part, domain_area};
 use super::domain_points::DomainPoints;
 use super::locator::Place;
-use super::our_mesh::{OurPatch, is_thin};
+use super::our_mesh::{OurPatch, is_thin, sorted};
 use geometry::tessellate::FIXED_ONE;
 
 /// How a patch of theirs differs from ours.
@@ -62,33 +62,65 @@ impl Match {
             none.flipped += u64::from(area < -thin);
             none.thin += u64::from(area.abs() <= thin);
         }
-        let Some((our_vertices, slid)) = our_vertices(part, own, reach) else { return none };
-        let mut is_covered = vec![false; own.positions.len()];
-        our_vertices.iter().flatten().for_each(|vertex| is_covered[own.firsts[*vertex as usize] as usize] = true);
+        let Some((our_vertices, is_left, slid)) = our_vertices(part, own, reach) else { return none };
+        let all = || 0..own.weights.len() as u32;
         // Of several points that are nearer to each other than can be told apart, one is enough.
-        let covered = DomainPoints::new(
-            (own.weights.iter().zip(&is_covered)).filter(|(_, is_covered)| **is_covered).map(|(weights, _)| *weights),
-        );
-        let is_bare = |vertex: u32| {
-            let is_near = || covered.nearest(own.weights[vertex as usize], reach.domain).is_some();
-            own.firsts[vertex as usize] == vertex && !is_covered[vertex as usize] && !is_near()
-        };
-        let has_all_points = !(0..own.positions.len() as u32).any(is_bare);
-        let triangles = Triangles::from_part(part, own, &our_vertices, reach.domain);
+        let covered = all().filter(|vertex| own.firsts[*vertex as usize] == *vertex && !is_left[*vertex as usize]);
+        let covered = DomainPoints::new(covered.map(|vertex| own.weights[vertex as usize]));
+        let is_near = |vertex: u32| covered.nearest(own.weights[vertex as usize], reach.domain).is_some();
+        let has_all_points = all().all(|vertex| !is_left[vertex as usize] || is_near(vertex));
+        let mut found = Self { our_vertices, slid, ..none };
+        found.count_triangles(part, own, reach.domain);
         // Points are only missing with the triangles around them, or else the patch is cut more coarsely.
-        let has_same_points = has_all_points || part_area(part) < 0.999 && triangles.other == 0;
-        if !has_same_points {
-            return none;
+        found.has_same_points = has_all_points || !part.is_whole() && found.other == 0;
+        found.missing = found.missing.saturating_sub(found.other);
+        if found.has_same_points { found } else { none }
+    }
+
+    /// Counts triangles that are missing, doubled, or join other points.
+    fn count_triangles(&mut self, part: &Part, own: &OurPatch, reach: f64) {
+        // Points that are nearer to each other than can be told apart are one.
+        let points = DomainPoints::new(own.weights.iter().copied());
+        let first = |vertex: u32| {
+            let vertex = own.firsts[vertex as usize];
+            points.first(own.weights[vertex as usize], reach).unwrap_or(vertex)
+        };
+        let firsts: Vec<u32> = (0..own.weights.len() as u32).map(first).collect();
+        let mut counts: HashMap<[u32; 3], [u64; 2]> = HashMap::new();
+        for [a, b, c] in own.triangles.iter().map(|triangle| triangle.map(|vertex| firsts[vertex as usize])) {
+            if !is_thin([a, b, c]) {
+                counts.entry(sorted([a, b, c])).or_default()[0] += 1;
+            }
         }
-        let Triangles { missing, doubled, other } = triangles;
-        let missing = if other > 0 { missing.saturating_sub(other) } else { missing };
-        Self { has_same_points, our_vertices, slid, missing, doubled, other, ..none }
+        for triangle in &part.triangles {
+            let ours = triangle.map(|corner| self.our_vertices[corner as usize].map(|vertex| firsts[vertex as usize]));
+            match ours {
+                [Some(a), Some(b), Some(c)] if !is_thin([a, b, c]) => {
+                    counts.entry(sorted([a, b, c])).or_default()[1] += 1;
+                }
+                // A triangle between two vertices that can't be told apart has no area.
+                [Some(_), Some(_), Some(_)] => {}
+                _ => self.other += 1,
+            }
+        }
+        for [ours, theirs] in counts.into_values() {
+            match ours {
+                0 => self.other += theirs,
+                _ => {
+                    self.missing += u64::from(theirs == 0);
+                    self.doubled += theirs.saturating_sub(ours);
+                }
+            }
+        }
     }
 }
 
-/// Returns our vertex for each of theirs, and how many of these were moved along the surface. `None` if more of theirs lie where
-/// we have no point than a few vertices that were moved.
-fn our_vertices(part: &Part, own: &OurPatch, reach: Reach) -> Option<(Vec<Option<u32>>, u64)> {
+/// Our vertex for each of theirs; for each of ours whether it is left; and how many of theirs were moved.
+type OurVertices = (Vec<Option<u32>>, Vec<bool>, u64);
+
+/// Returns our vertex for each of theirs; for each of ours whether it is left, since none of theirs is there; and how many of
+/// theirs were moved along the surface. `None` if more of theirs lie where we have no point than a few vertices that were moved.
+fn our_vertices(part: &Part, own: &OurPatch, reach: Reach) -> Option<OurVertices> {
     let points = DomainPoints::new(own.weights.iter().copied());
     let our_weights = |vertex: u32| own.weights[vertex as usize];
     let on_surface = |place: &Place| place.distance <= reach.fit;
@@ -118,73 +150,12 @@ fn our_vertices(part: &Part, own: &OurPatch, reach: Reach) -> Option<(Vec<Option
         vertex.iter().for_each(|vertex| is_left[*vertex as usize] = false);
         *found = vertex;
     }
-    Some((found, slid as u64))
+    Some((found, is_left, slid as u64))
 }
 
 /// On which sides of the patch a place is: those whose opposite corner has no weight there.
 fn sides_at([u, v]: [f64; 2], reach: f64) -> [bool; 3] {
     [u, v, 1.0 - u - v].map(|weight| weight.abs() <= reach)
-}
-
-/// The area that their triangles cover, as a part of the patch's. Triangles that occur twice count once.
-fn part_area(part: &Part) -> f64 {
-    let mut all: Vec<_> = part.triangles.iter().map(|triangle| sorted(*triangle)).collect();
-    all.sort_unstable();
-    all.dedup();
-    all.into_iter().map(|triangle| domain_area(part.weights(triangle)).abs()).sum()
-}
-
-/// Counts of triangles.
-struct Triangles {
-    missing: u64,
-    doubled: u64,
-    other: u64,
-}
-
-impl Triangles {
-    fn from_part(part: &Part, own: &OurPatch, our_vertices: &[Option<u32>], reach: f64) -> Self {
-        // Points that are nearer to each other than can be told apart are one.
-        let points = DomainPoints::new(own.weights.iter().copied());
-        let first = |vertex: u32| {
-            let vertex = own.firsts[vertex as usize];
-            points.first(own.weights[vertex as usize], reach).unwrap_or(vertex)
-        };
-        let firsts: Vec<u32> = (0..own.weights.len() as u32).map(first).collect();
-        let mut counts: HashMap<[u32; 3], [u64; 2]> = HashMap::new();
-        for [a, b, c] in own.triangles.iter().map(|triangle| triangle.map(|vertex| firsts[vertex as usize])) {
-            if !is_thin([a, b, c]) {
-                counts.entry(sorted([a, b, c])).or_default()[0] += 1;
-            }
-        }
-        let mut other = 0;
-        for triangle in &part.triangles {
-            let ours = triangle.map(|corner| our_vertices[corner as usize].map(|vertex| firsts[vertex as usize]));
-            match ours {
-                [Some(a), Some(b), Some(c)] if !is_thin([a, b, c]) => {
-                    counts.entry(sorted([a, b, c])).or_default()[1] += 1;
-                }
-                // A triangle between two vertices that can't be told apart has no area.
-                [Some(_), Some(_), Some(_)] => {}
-                _ => other += 1,
-            }
-        }
-        let mut found = Self { missing: 0, doubled: 0, other };
-        for [ours, theirs] in counts.into_values() {
-            match ours {
-                0 => found.other += theirs,
-                _ => {
-                    found.missing += u64::from(theirs == 0);
-                    found.doubled += theirs.saturating_sub(ours);
-                }
-            }
-        }
-        found
-    }
-}
-
-fn sorted(mut triangle: [u32; 3]) -> [u32; 3] {
-    triangle.sort_unstable();
-    triangle
 }
 
 /// The largest distance between vertices of theirs and ours at the same domain points.

@@ -17,7 +17,6 @@ mod matching;
 mod net_mistakes;
 mod our_mesh;
 mod outcomes;
-mod patch_starts;
 mod spaces;
 mod surfaces;
 #[cfg(test)]
@@ -30,21 +29,17 @@ pub use findings::{Finding, plural, point};
 pub use foreign::ForeignMesh;
 pub use matching::Farthest;
 pub use outcomes::SideDifference;
-pub use patch_starts::patch_starts;
 
 use geometry::mesh::{Bounds, Mesh, Topology};
 use geometry::numbers::ulp_at;
-use geometry::tessellate::{
-    Convention, Displacement, HullFactors, Inputs, Tessellated, Tessellation, hull_factors, tessellate,
-};
+use geometry::tessellate::{Convention, HullFactors, Inputs, Tessellated, Tessellation, hull_factors, tessellate};
 use geometry::view::ulp;
 
-use alignment::{Alignment, Frame};
 use assignment::{Assignment, Overlaid};
 use locator::{FINE, Locator, OurSurface};
 use our_mesh::OurMesh;
 use outcomes::Outcomes;
-use spaces::Space;
+use spaces::{Alignment, Space, SpaceKind};
 use surfaces::Trial;
 use twins::Twins;
 
@@ -137,7 +132,7 @@ pub fn compare(ours: &OurTessellation, theirs: &ForeignMesh, exactness: Toleranc
         positions.iter_mut().for_each(|position| *position = frame.ours(*position));
         our_twins = twins(&vertices, &positions);
     }
-    if let Some(Frame::Space(space)) = &frame {
+    if let Some(space) = frame.as_ref().filter(|space| !matches!(space.kind, SpaceKind::Axes(_))) {
         exactness.within = exactness.within.max(rounding_in(space, theirs));
     }
     let twins = |own: &[Vec3]| twins(own, &positions);
@@ -201,8 +196,8 @@ impl<'a> Registered<'a> {
     fn new(ours: &OurTessellation<'a>, on_own: Overlaid<'a>, twins: impl Fn(&[Vec3]) -> Twins<'a>) -> Self {
         let OurTessellation { mesh, topology, tessellated, .. } = *ours;
         let surface = |own: &OurSurface| Locator::from_surface(mesh, topology, own, FINE);
-        let (fit, strays) = (on_own.fit, on_own.strays());
-        let trial = (!strays.is_empty()).then(|| Trial::new(ours.mesh, &on_own, ours.inputs, &strays));
+        let (fit, off_own) = (on_own.fit, on_own.strays().len() as u64);
+        let trial = (off_own > 0).then(|| Trial::new(ours.mesh, &on_own, ours.inputs));
         let other = trial.and_then(|trial| trial.other_surface());
         let overlaid = match &other {
             Some(other) => {
@@ -218,7 +213,7 @@ impl<'a> Registered<'a> {
             // Where they are displaced, every vertex counts as near its place.
             false => Overlaid { fit: f64::INFINITY, ..overlaid.over(base(), Twins::none(overlaid.theirs)) },
         };
-        Self { overlaid, other, off_own: strays.len() as u64, is_fitted, fit }
+        Self { overlaid, other, off_own, is_fitted, fit }
     }
 
     /// Vertices off the surface; none where most are, since none is expected on it then.
@@ -280,7 +275,7 @@ impl Comparison {
         &mut self,
         laid: &Registered,
         outcomes: &Outcomes,
-        frame: Option<&Frame>,
+        frame: Option<&Space>,
         exactness: Tolerances,
     ) {
         self.findings.extend(laid.other_surface(outcomes.ours));
@@ -290,7 +285,7 @@ impl Comparison {
             self.findings.push(Finding::Displaced(outcomes.displaced(laid.fit)));
         }
         let explained = outcomes.explain(laid.other.as_ref(), &mut self.findings);
-        self.findings.extend(outcomes.judge_triangles(frame.is_some_and(Frame::mirrors)));
+        self.findings.extend(outcomes.judge_triangles(frame.is_some_and(Space::mirrors)));
         if let Some(sides) = explained {
             (self.sides, self.different) = (sides, outcomes.different_at_all());
         }
@@ -370,16 +365,14 @@ impl Outcomes<'_> {
 
 /// The inputs without displacement.
 fn undisplaced(inputs: &Inputs) -> Inputs {
-    Inputs { tessellation: Tessellation { displacement: Displacement::Off, ..inputs.tessellation }, ..*inputs }
+    Inputs { tessellation: inputs.tessellation.undisplaced(), ..*inputs }
 }
 
 impl<'a> Locator<'a> {
     /// Our own surface. If it is displaced that is what was emitted, since heights are read from levels that depend on factors.
     fn from_own(ours: &OurTessellation<'a>) -> Option<Self> {
         let exact = || Self::from_surface(ours.mesh, ours.topology, &undisplaced(ours.inputs).into(), FINE);
-        match ours.inputs.tessellation.displacement {
-            Displacement::Off => exact(),
-            _ => Self::from_emitted(ours.tessellated, ours.topology).or_else(exact),
-        }
+        let emitted = || Self::from_emitted(ours.tessellated, ours.topology);
+        if ours.inputs.tessellation.displacement.is_on() { emitted().or_else(exact) } else { exact() }
     }
 }

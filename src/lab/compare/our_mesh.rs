@@ -43,8 +43,14 @@ impl OurPatch {
 }
 
 /// Whether two of a triangle's corners can't be told apart.
-pub(super) fn is_thin([a, b, c]: [u32; 3]) -> bool {
+pub(super) fn is_thin<T: PartialEq>([a, b, c]: [T; 3]) -> bool {
     a == b || b == c || c == a
+}
+
+/// A triangle without the order of its corners.
+pub(super) fn sorted<T: Ord>(mut triangle: [T; 3]) -> [T; 3] {
+    triangle.sort_unstable();
+    triangle
 }
 
 impl<'a> OurMesh<'a> {

@@ -22,7 +22,8 @@ pub(super) struct Outcomes<'a> {
     our_mesh: &'a OurMesh<'a>,
     pub assignment: &'a Assignment<'a>,
     reaches: Vec<Reach>,
-    all: Vec<Outcome>,
+    /// None for a patch for which only one of both emits triangles, or neither.
+    all: Vec<Option<Outcome>>,
     /// Patches that we emit and they don't.
     pub missing: Vec<u32>,
     /// Patches that they emit and we don't.
@@ -30,10 +31,8 @@ pub(super) struct Outcomes<'a> {
 }
 
 /// How one patch came out.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Outcome {
-    /// Whether both emit triangles for it.
-    is_compared: bool,
     /// Without the list of vertices.
     found: Match,
     farthest: Option<Farthest>,
@@ -64,16 +63,6 @@ pub struct SideDifference {
     pub ends: [[f32; 3]; 2],
     pub theirs: SideCut,
     pub ours: SideCut,
-}
-
-/// How the sides of patches are cut whose points differ.
-struct OtherCuts {
-    /// Those that are cut differently, and those first that differ the most.
-    sides: Vec<SideDifference>,
-    /// How many patches have no such side, and so differ inside alone.
-    inside: u64,
-    /// The partitionings that cut sides as theirs are cut.
-    suits: Vec<Partitioning>,
 }
 
 /// How a side is cut.
@@ -108,8 +97,6 @@ const OF_SEGMENT: f64 = 0.35;
 const LAST_BITS: f64 = 4.0 / 65536.0;
 /// How many triangles a finding names.
 const NAMED: usize = 10;
-/// How many sides are looked at for the partitionings that they suit.
-const SIDES: usize = 3000;
 /// A partitioning suits if this share of the sides is cut as it cuts them.
 const SUITS: f64 = 0.97;
 
@@ -141,12 +128,9 @@ impl<'a> Outcomes<'a> {
         let emitted = |patch: &u32| our_mesh.emits(*patch);
         let all = made_of_all(patches.len(), |patch| {
             let patch = patch as u32;
-            if !(theirs(&patch) && emitted(&patch)) {
-                return Outcome::default();
-            }
-            let own = our_mesh.patch(patch);
+            let own = (theirs(&patch) && emitted(&patch)).then(|| our_mesh.patch(patch))?;
             let slack = if has_last_bits { LAST_BITS * own.stretch() } else { 0.0 };
-            Outcome { slack, ..Outcome::new(assignment, &own, patch, reaches[patch as usize]) }
+            Some(Outcome { slack, ..Outcome::new(assignment, &own, patch, reaches[patch as usize]) })
         });
         let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();
         let additional = patches.filter(|patch| theirs(patch) && !emitted(patch)).collect();
@@ -159,7 +143,7 @@ impl<'a> Outcomes<'a> {
     }
 
     fn compared(&self) -> impl Iterator<Item = (u32, &Outcome)> {
-        (0..).zip(&self.all).filter(|(_, outcome)| outcome.is_compared)
+        (0..).zip(&self.all).filter_map(|(patch, outcome)| Some((patch, outcome.as_ref()?)))
     }
 
     /// Patches whose points differ.
@@ -184,20 +168,20 @@ impl<'a> Outcomes<'a> {
     }
 
     pub(super) fn farthest(&self) -> Option<Farthest> {
-        self.all.iter().filter_map(|outcome| outcome.farthest).reduce(Farthest::farther)
+        self.compared().filter_map(|(_, outcome)| outcome.farthest).reduce(Farthest::farther)
     }
 
     /// Whether vertices are no farther from ours than `within` object units, and than the last bits of LOD's factors move points.
     pub(super) fn are_within(&self, within: f64) -> bool {
-        let is_within = |outcome: &Outcome| outcome.farthest.is_none_or(|far| far.distance <= within + outcome.slack);
-        self.all.iter().all(is_within)
+        let is_within = |own: &Outcome| own.farthest.is_none_or(|far| far.distance <= within + own.slack);
+        self.compared().all(|(_, outcome)| is_within(outcome))
     }
 
     /// Says how vertices are displaced, of which none is expected on the surface. What is nearer than `fit` isn't displaced.
     pub(super) fn displaced(&self, fit: f64) -> Displaced {
         let overlaid = self.assignment.overlaid;
         let distances = || overlaid.places.iter().map(|place| place.distance);
-        let sum = self.all.iter().fold(Offsets::default(), |sum, outcome| sum.with(outcome.offsets));
+        let sum = self.compared().fold(Offsets::default(), |sum, (_, outcome)| sum.with(outcome.offsets));
         Displaced {
             vertices: distances().filter(|distance| *distance > fit).count() as u64,
             of: overlaid.places.len() as u64,
@@ -212,22 +196,17 @@ impl<'a> Outcomes<'a> {
     /// Says which vertices were moved: those off the surface, and those that were moved along it.
     pub(super) fn moved(&self, strays: &[u32]) -> Option<Finding> {
         let overlaid = self.assignment.overlaid;
-        let slid: u64 = self.all.iter().map(|outcome| outcome.found.slid).sum();
+        let slid: u64 = self.compared().map(|(_, outcome)| outcome.found.slid).sum();
         let distance = |index: &u32| overlaid.places[*index as usize].distance;
         let vertices = strays.len() as u64 + slid;
         let worst = strays.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
         let least = worst.map_or(0.0, distance);
         // A vertex is no nearer to where it belongs than to the surface, unless it isn't known where it belongs.
-        if let Some(farthest) = self.farthest().filter(|farthest| vertices > 0 && farthest.distance >= least) {
-            let Farthest { distance, patch, theirs, .. } = farthest;
-            return Some(Finding::Moved { vertices, farthest: theirs, distance, triangle: self.triangle(patch) });
-        }
-        worst.map(|worst| Finding::Moved {
-            vertices,
-            farthest: overlaid.positions[*worst as usize],
-            distance: least,
-            triangle: self.triangle(overlaid.places[*worst as usize].patch),
-        })
+        let known = self.farthest().filter(|farthest| vertices > 0 && farthest.distance >= least);
+        let of_place = |worst: usize| (overlaid.positions[worst], least, overlaid.places[worst].patch);
+        let of_vertex = known.map(|Farthest { distance, patch, theirs, .. }| (theirs, distance, patch));
+        let (farthest, distance, patch) = of_vertex.or(worst.map(|worst| of_place(*worst as usize)))?;
+        Some(Finding::Moved { vertices, farthest, distance, triangle: self.triangle(patch) })
     }
 
     /// The mesh's triangle of a patch.
@@ -259,7 +238,7 @@ impl<'a> Outcomes<'a> {
         if measures && explanations.is_empty() && other.is_some_and(|other| other.mistake.is_some()) {
             return None;
         }
-        let OtherCuts { sides, inside, suits } = self.other_cuts(&different);
+        let (sides, inside, suits) = self.other_cuts(&different);
         let (patches, of) = (different.len() as u64, self.compared().count() as u64);
         let Tessellation { partitioning, convention, .. } = inputs.tessellation;
         findings.push(match explanations.is_empty() {
@@ -275,33 +254,29 @@ impl<'a> Outcomes<'a> {
         Some(sides)
     }
 
-    /// How the sides of these patches, whose points differ, are cut.
-    fn other_cuts(&self, different: &[u32]) -> OtherCuts {
+    /// Which sides of these patches, whose points differ, are cut differently, those first that differ the most; how many patches
+    /// have no such side, and so differ inside alone; and the partitionings that cut sides as theirs are cut.
+    fn other_cuts(&self, different: &[u32]) -> (Vec<SideDifference>, u64, Vec<Partitioning>) {
         let (mut sides, mut inside): (Vec<SideDifference>, _) = (Vec::new(), 0);
-        let (mut suited, mut seen) = ([0_usize; Partitioning::DIRECT3D.len()], 0);
+        let mut suited = [0_usize; Partitioning::DIRECT3D.len()];
         for &patch in different {
-            let theirs = self.cuts(patch);
+            let (theirs, reach) = (self.cuts(patch), self.reaches[patch as usize].domain);
             let before = sides.len();
             sides.extend(self.side_differences(patch, &theirs));
             inside += u64::from(sides.len() == before);
-            if seen < SIDES {
-                seen += theirs.len();
-                let reach = self.reaches[patch as usize].domain;
-                for (count, partitioning) in suited.iter_mut().zip(Partitioning::DIRECT3D) {
-                    *count += theirs.iter().filter(|cut| cut.suits(partitioning, reach)).count();
-                }
+            for (count, partitioning) in suited.iter_mut().zip(Partitioning::DIRECT3D) {
+                *count += theirs.iter().filter(|cut| cut.suits(partitioning, reach)).count();
             }
         }
         sides.sort_by(|a, b| b.ratio().total_cmp(&a.ratio()));
         let suits = suited.into_iter().zip(Partitioning::DIRECT3D);
-        let suits = suits.filter(|(count, _)| *count as f64 >= SUITS * seen as f64);
-        OtherCuts { sides, inside, suits: suits.map(|(_, partitioning)| partitioning).collect() }
+        let suits = suits.filter(|(count, _)| *count as f64 >= SUITS * 3.0 * different.len() as f64);
+        (sides, inside, suits.map(|(_, partitioning)| partitioning).collect())
     }
 
     /// How their triangles cut the sides of a patch.
     fn cuts(&self, patch: u32) -> [Cut; 3] {
-        let Reach { domain, fit } = self.reaches[patch as usize];
-        cuts_of(&self.assignment.part(patch), [domain, fit])
+        cuts_of(&self.assignment.part(patch), self.reaches[patch as usize])
     }
 
     /// The sides of a patch that are cut differently.
@@ -407,7 +382,7 @@ impl Outcome {
             farthest = Some(farthest.map_or(apart, |farthest| farthest.farther(apart)));
             offsets.add(theirs - ours, own.normals[our_vertex as usize]);
         }
-        Self { is_compared: true, found: Match { our_vertices: Vec::new(), ..found }, farthest, slack: 0.0, offsets }
+        Self { found: Match { our_vertices: Vec::new(), ..found }, farthest, slack: 0.0, offsets }
     }
 }
 

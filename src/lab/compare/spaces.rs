@@ -13,9 +13,22 @@ pub struct Space {
     ours_from_theirs: DMat4,
 }
 
+/// How another program's coordinates follow from ours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Alignment {
+    /// For each of their axes, which of ours it is, and whether it points the other way.
+    pub axes: [(usize, bool); 3],
+    /// Their lengths are ours times this.
+    pub scale: f64,
+    /// What is then added, in their units.
+    pub offset: DVec3,
+}
+
 /// Which one it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpaceKind {
+    /// Axes are exchanged or turned, and everything is scaled and moved.
+    Axes(Alignment),
     /// That of the camera: the view matrix was applied.
     View,
     /// Clip space: the view-projection matrix was applied.
@@ -32,6 +45,34 @@ const TRIED: usize = 12;
 const MATCHES: usize = 32;
 /// Lengths that differ by no more than this share may be the same.
 const ALIKE: f64 = 1e-4;
+
+impl Alignment {
+    pub(super) const NONE: Self = Self { axes: [(0, false), (1, false), (2, false)], scale: 1.0, offset: DVec3::ZERO };
+
+    /// Whether it mirrors, so that triangles are wound the other way.
+    pub(super) fn mirrors(&self) -> bool {
+        self.matrix().determinant() < 0.0
+    }
+
+    /// Whether axes are exchanged or turned.
+    pub(super) fn turns(&self) -> bool {
+        self.axes != Self::NONE.axes
+    }
+
+    /// The rotation or reflection from our axes to theirs.
+    pub(super) fn matrix(&self) -> DMat3 {
+        let row = |(axis, is_turned): (usize, bool)| DVec3::AXES[axis] * if is_turned { -1.0 } else { 1.0 };
+        DMat3::from_cols_array_2d(&self.axes.map(|axis| row(axis).to_array())).transpose()
+    }
+}
+
+impl From<Alignment> for Space {
+    fn from(alignment: Alignment) -> Self {
+        let turn_back = alignment.matrix().transpose() * alignment.scale.recip();
+        let ours_from_theirs = DMat4::from_mat3(turn_back) * DMat4::from_translation(-alignment.offset);
+        Self { kind: SpaceKind::Axes(alignment), ours_from_theirs }
+    }
+}
 
 impl Space {
     fn new(kind: SpaceKind, theirs_from_ours: DMat4) -> Option<Self> {

@@ -38,14 +38,14 @@ struct Fitting {
 }
 
 impl<'a> Trial<'a> {
-    /// Chooses vertices. `strays` are those that don't lie on our own surface.
-    pub(super) fn new(mesh: &'a Mesh, overlaid: &'a Overlaid<'a>, inputs: &Inputs, strays: &[u32]) -> Self {
-        let is_stray = |index: &u32| strays.binary_search(index).is_ok();
-        let others: Vec<u32> = (0..overlaid.positions.len() as u32).filter(|index| !is_stray(index)).collect();
+    /// Chooses vertices.
+    pub(super) fn new(mesh: &'a Mesh, overlaid: &'a Overlaid<'a>, inputs: &Inputs) -> Self {
+        let is_stray = |index: &u32| overlaid.places[*index as usize].distance > overlaid.fit;
+        let (strays, others): (Vec<u32>, Vec<u32>) = (0..overlaid.positions.len() as u32).partition(is_stray);
         let chosen = |list: &[u32]| -> Vec<DVec3> {
             spread(list.len(), SAMPLE).map(|place| overlaid.positions[list[place] as usize]).collect()
         };
-        let (others, strays) = (chosen(&others), chosen(strays));
+        let (others, strays) = (chosen(&others), chosen(&strays));
         let own = others.len() as f64 / (others.len() + strays.len()).max(1) as f64;
         Self { mesh, overlaid, inputs: *inputs, sample: [others, strays].concat(), own }
     }

@@ -8,8 +8,8 @@ use super::net_mistakes::{NetMistake, THIRD};
 use super::*;
 use geometry::mesh::{HeightMap, Heights, Shape};
 use geometry::tessellate::{
-    Convention, Lod, LodView, Partitioning, Surface, domain_side, hull_factors, tessellate, tessellate_given,
-    unpack_normal,
+    Convention, Displacement, Lod, LodView, Partitioning, Surface, domain_side, hull_factors, tessellate,
+    tessellate_given, unpack_normal,
 };
 use inspect::settings::Choice;
 
@@ -577,9 +577,8 @@ fn examples() -> Vec<Finding> {
     use super::corner_orders::CornerOrder;
     use super::explanations::{Explanation, InsideRule, Rule};
     use super::findings::{Displaced, UnknownFactors};
-    use super::spaces::SpaceKind;
-    let axes = |axes, scale| Finding::Aligned(Frame::Axes(Alignment { axes, scale, offset: DVec3::ZERO }));
-    let space = |kind| Finding::Aligned(Frame::Space(Space::from_kind(kind)));
+    let axes = |axes, scale| Finding::Aligned(Alignment { axes, scale, offset: DVec3::ZERO }.into());
+    let space = |kind| Finding::Aligned(Space::from_kind(kind));
     let net = |mistake| Finding::OtherNets { mistake, vertices: 120, of: 300 };
     let edges = |share, bend| net(NetMistake::Edges { share, bend });
     let surface = |surface, alpha| Tessellation { surface, alpha, ..Tessellation::default() };

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 
 use super::foreign::ForeignMesh;
 use super::locator::Place;
-use super::our_mesh::{OurMesh, is_thin};
+use super::our_mesh::{OurMesh, is_thin, sorted};
 use geometry::mesh::weld::weld_alike;
 use geometry::tessellate::{FIXED_ONE, Vertex};
 
@@ -35,9 +35,8 @@ struct Triangle {
 impl Triangle {
     fn new(points: [u32; 3], index: u32) -> Self {
         let [a, b, c] = points;
-        let mut sorted = points;
-        sorted.sort_unstable();
-        Self { points: sorted, is_turned: [(a, b), (b, c), (c, a)].iter().filter(|(a, b)| a > b).count() == 2, index }
+        let is_turned = [(a, b), (b, c), (c, a)].iter().filter(|(a, b)| a > b).count() == 2;
+        Self { points: sorted(points), is_turned, index }
     }
 
     /// Those whose corners can be told apart, in the order of their points, and then of their winding.

@@ -6,6 +6,7 @@ use super::convert::vec3;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
 use geometry::casts::to_f32;
+use geometry::groups::in_groups;
 use geometry::mesh::rig::Delta;
 
 /// Returns the channels of a mesh, in the order of its targets.
@@ -67,23 +68,12 @@ impl<'a> Morphs<'a> {
         }
         let vertices = mesh.num_vertices;
         budget.borrow(count * 8 + (vertices as u64 + 1) * 8)?;
-        let known = |vertex: &&u32| (**vertex as usize) < vertices;
-        let mut starts = vec![0_u32; vertices + 1];
-        for &vertex in shapes.iter().flat_map(|shape| shape.offset_vertices.iter().filter(known)) {
-            starts[vertex as usize + 1] += 1;
-        }
-        for vertex in 0..vertices {
-            starts[vertex + 1] += starts[vertex];
-        }
-        let mut next = starts.clone();
-        let mut entries = vec![[0; 2]; starts[vertices] as usize];
-        for (shape, number) in shapes.iter().zip(0_u32..) {
-            for (&vertex, offset) in shape.offset_vertices.iter().zip(0_u32..).filter(|(vertex, _)| known(vertex)) {
-                let place = &mut next[vertex as usize];
-                entries[*place as usize] = [number, offset];
-                *place += 1;
-            }
-        }
+        let offsets = shapes.iter().zip(0_u32..).flat_map(|(shape, number)| {
+            let numbered = shape.offset_vertices.iter().zip(0_u32..);
+            let known = numbered.filter(move |(vertex, _)| (**vertex as usize) < vertices);
+            known.map(move |(vertex, offset)| (*vertex, [number, offset]))
+        });
+        let (starts, entries) = in_groups(vertices, offsets);
         Ok(Self { shapes, starts, entries })
     }
 

@@ -1,6 +1,6 @@
 //! Reads the bytes of a document's buffers, each when something first needs it.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::OnceCell;
 
 use ::gltf::Document;
 use ::gltf::json::Buffer;
@@ -17,9 +17,6 @@ pub(crate) struct Buffers<'a> {
     fallback: &'a [bool],
     faults: &'a Faults,
     files: &'a Files<'a>,
-    /// The binary chunk of a `.glb`, and the buffer that it belongs to.
-    chunk: Cell<Option<Vec<u8>>>,
-    owner: Option<usize>,
     /// What was read, cut to the lengths in the document; or a clause that says what is wrong.
     read: Vec<OnceCell<Result<Vec<u8>, String>>>,
     progress: &'a Progress,
@@ -36,9 +33,12 @@ impl<'a> Buffers<'a> {
     ) -> Self {
         let list = &document.as_json().buffers[..];
         let may_own = |i: &usize| list[*i].uri.is_none() && !fallback[*i] && faults.check("buffers", *i).is_ok();
-        let owner = (0..list.len()).find(may_own);
-        let read = list.iter().map(|_| OnceCell::new()).collect();
-        Self { list, fallback, faults, files, chunk: Cell::new(chunk), owner, read, progress }
+        let mut read: Vec<_> = list.iter().map(|_| OnceCell::new()).collect();
+        // The binary chunk of a `.glb` is the first of these.
+        if let Some((owner, chunk)) = (0..list.len()).find(may_own).zip(chunk) {
+            read[owner] = OnceCell::from(cut(chunk, list[owner].byte_length.0));
+        }
+        Self { list, fallback, faults, files, read, progress }
     }
 
     /// Returns the bytes of a buffer. A fallback without a URI has none.
@@ -52,11 +52,7 @@ impl<'a> Buffers<'a> {
         let read = read.get_or_init(|| match &buffer.uri {
             Some(uri) => cut(self.files.read(uri, true)?, buffer.byte_length.0),
             None if self.fallback[i] => Ok(Vec::new()),
-            None => {
-                let chunk = if self.owner == Some(i) { self.chunk.take() } else { None };
-                let chunk = chunk.ok_or("the document has no binary chunk for it; export the model again")?;
-                cut(chunk, buffer.byte_length.0)
-            }
+            None => Err("the document has no binary chunk for it; export the model again".to_owned()),
         });
         // A cancelled read isn't an error of the buffer.
         self.progress.check()?;

@@ -10,7 +10,7 @@ use super::uv_transform::UvTransform;
 use geometry::mesh::{Alpha, Look, Slot};
 
 /// A material of a document. Its images are still to be read.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct MaterialSource {
     /// None without a name.
     pub name: Option<String>,
@@ -59,24 +59,12 @@ const UNIT: [f32; 2] = [0.0, 1.0];
 const POSITIVE: [f32; 2] = [0.0, 1e18];
 const ANY: [f32; 2] = [-1e18, 1e18];
 
-/// What glTF says about a material without members: it is a rough metal.
-fn silent() -> MaterialSource {
-    MaterialSource {
-        name: None,
-        base_color: [1.0; 4],
-        base_map: None,
-        double_sided: false,
-        look: Look { metallic: 1.0, roughness: 1.0, ..Look::default() },
-        maps: Default::default(),
-        glossiness: None,
-        undrawn: Vec::new(),
-    }
-}
-
 impl MaterialSource {
     /// Reads a material, or returns that of primitives without one. `textures` is how many the document has.
     pub(super) fn new(members: Option<&Members>, textures: usize) -> Self {
-        let mut source = silent();
+        // What glTF says about a material without members: it is a rough metal.
+        let look = Look { metallic: 1.0, roughness: 1.0, ..Look::default() };
+        let mut source = Self { base_color: [1.0; 4], look, ..Self::default() };
         let Some(members) = members else { return source };
         source.name = members.text("name").map(str::to_owned);
         source.double_sided = members.flag("doubleSided");

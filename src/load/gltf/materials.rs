@@ -192,21 +192,13 @@ impl<'a> Materials<'a> {
         self.images.insert(image, ReadImage { texture, scaled });
     }
 
-    /// Finds a material, or adds it to the builder. A texture that is missing or broken causes a warning.
-    ///
-    /// # Errors
-    /// [`GltfError::TooLarge`].
-    pub(super) fn resolve(
-        &mut self,
-        material: &::gltf::Material,
-        builder: &mut MeshBuilder,
-    ) -> Result<Resolved, GltfError> {
+    /// Finds a material of what is shown, or adds it to the builder. A texture that is missing or broken causes a warning.
+    pub(super) fn resolve(&mut self, material: &::gltf::Material, builder: &mut MeshBuilder) -> Resolved {
         let key = material.index();
         if let Some(&resolved) = self.resolved.get(&key) {
-            return Ok(resolved);
+            return resolved;
         }
-        self.look_at(key)?;
-        let Some(source) = self.sources.get(&key).cloned() else { return Ok(Resolved::default()) };
+        let Some(source) = self.sources.get(&key).cloned() else { return Resolved::default() };
         let name = name(&source, key);
         let filter = MipFilter::from_base_color(source.look.alpha);
         let base = source.base_map.and_then(|map| self.texture(map.texture, filter, "texture", &name));
@@ -226,7 +218,7 @@ impl<'a> Materials<'a> {
         let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
         let resolved = Resolved { index: builder.material(made), uvs, needs };
         self.resolved.insert(key, resolved);
-        Ok(resolved)
+        resolved
     }
 
     fn map(&mut self, map: MapSource, slot: Slot, own: Uvs, material: &str) -> Option<Map> {

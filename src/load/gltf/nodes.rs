@@ -32,11 +32,7 @@ impl Placed {
     /// Returns for each node whether the scene shows it.
     pub(super) fn is_shown(&self) -> Vec<bool> {
         let mut is_shown = vec![false; self.global.len()];
-        for &node in &self.shown {
-            if let Some(shown) = is_shown.get_mut(node) {
-                *shown = true;
-            }
-        }
+        self.shown.iter().for_each(|&node| is_shown[node] = true);
         is_shown
     }
 }

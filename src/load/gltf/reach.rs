@@ -21,7 +21,6 @@ pub(super) struct Reach {
     pub hiding: Vec<bool>,
     /// How many nodes with a mesh are hidden.
     pub hidden: usize,
-    pub meshes: Vec<bool>,
     pub skins: Vec<bool>,
     /// For each mesh, whether its vertices say which joints move them.
     pub bound: Vec<bool>,
@@ -47,7 +46,6 @@ impl Reach {
             shown: vec![false; root.nodes.len()],
             hiding,
             hidden: 0,
-            meshes: vec![false; root.meshes.len()],
             skins: vec![false; root.skins.len()],
             bound: root.meshes.iter().enumerate().map(is_bound).collect(),
             skinned: vec![false; root.meshes.len()],
@@ -89,7 +87,6 @@ impl Reach {
     fn look_at_shown(&mut self, root: &Root, node: usize) -> Vec<usize> {
         let node = &root.nodes[node];
         let Some(mesh) = node.mesh.map(|mesh| mesh.value()) else { return Vec::new() };
-        self.meshes[mesh] = true;
         self.skinned[mesh] |= node.skin.is_some();
         let weights = node.weights.as_ref().or(root.meshes[mesh].weights.as_ref()).into_iter().flatten();
         let weighed = weights.enumerate().filter(|(_, weight)| **weight != 0.0).map(|(target, _)| target);

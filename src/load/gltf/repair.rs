@@ -110,7 +110,7 @@ impl Settled<'_> {
                     _ => reach.nodes[i],
                 })
             }
-            "meshes" if reach.meshes[i] => self.verdict_of_mesh(root, i, pointer, &inside),
+            "meshes" if reach.weighed.contains_key(&i) => self.verdict_of_mesh(root, i, pointer, &inside),
             "meshes" => Verdict::Unused,
             _ => Verdict::Refused,
         }

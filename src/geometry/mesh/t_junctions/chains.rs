@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::line_segment::LineSegment;
 use super::{TRIES, corners, open_edges};
+use crate::groups::in_groups;
 use crate::mesh::{Edge, Topology};
 
 /// The greatest distance of a chain's points from the straight edge, as a part of its length.
@@ -54,23 +55,11 @@ struct Step {
 
 impl<'a> ChainSearch<'a> {
     pub(super) fn new(topology: &'a Topology) -> Self {
-        let mut starts = vec![0; topology.points.len() + 1];
-        let mut open = 0;
-        for (_, edge) in open_edges(topology) {
-            topology.edge_points(edge).into_iter().for_each(|point| starts[point as usize + 1] += 1);
-            open += 1;
-        }
-        for point in 1..starts.len() {
-            starts[point] += starts[point - 1];
-        }
-        Self {
-            topology,
-            links: links(topology, &starts),
-            starts,
-            seen: vec![u32::MAX; topology.points.len()],
-            path: Vec::new(),
-            steps_left: STEPS * open,
-        }
+        let all = open_edges(topology).flat_map(|(_, edge)| links(topology, edge));
+        let (starts, links) = in_groups(topology.points.len(), all);
+        // Each boundary edge has two links.
+        let steps_left = STEPS * (links.len() / 2);
+        Self { topology, starts, links, seen: vec![u32::MAX; topology.points.len()], path: Vec::new(), steps_left }
     }
 
     /// Adds the points inside the first chain that is found beside an edge, if there is one.
@@ -118,20 +107,12 @@ impl<'a> ChainSearch<'a> {
     }
 }
 
-/// Returns the boundary edges of every point, point by point.
-fn links(topology: &Topology, starts: &[u32]) -> Vec<Link> {
-    let mut links = vec![Link::default(); starts.last().map_or(0, |&end| end as usize)];
-    let mut next = starts.to_vec();
-    for (_, edge) in open_edges(topology) {
-        let [a, b] = topology.edge_points(edge);
-        let patch = topology.sides[edge.first_side as usize].patch();
-        let third = third(topology, edge);
-        for (from, to) in [(a, b), (b, a)] {
-            links[next[from as usize] as usize] = Link { to, patch, third };
-            next[from as usize] += 1;
-        }
-    }
-    links
+/// Returns the links along a boundary edge, each with the point that it starts from.
+fn links(topology: &Topology, edge: &Edge) -> [(u32, Link); 2] {
+    let [a, b] = topology.edge_points(edge);
+    let patch = topology.sides[edge.first_side as usize].patch();
+    let third = third(topology, edge);
+    [(a, b), (b, a)].map(|(from, to)| (from, Link { to, patch, third }))
 }
 
 /// Returns the first few links of a point.
