@@ -72,7 +72,8 @@ fn how_far_a_tessellated_cage_is_from_its_limit_surface_is_measured() {
     };
     // A corner of the cage is the farthest from the limit, whose own corner is halfway to the middle.
     let [least, most] = largest(&[]);
-    assert!(least > 0.5 && most < 0.75_f64.sqrt() + 1e-3, "{least} to {most}");
+    let corner = 0.75_f64.sqrt();
+    assert!(least > corner - 1e-6 && most < corner + 0.01, "{least} to {most}");
     // The limit points of a refined cage lie on the limit surface.
     let [_, most] = largest(&["--subdivide", "catmull-clark", "--levels", "4"]);
     assert!(most < 1e-3, "{most}");
