@@ -24,7 +24,7 @@ fn parts_are_filtered_shown_alone_and_framed() {
     let triangles = |harness: &Harness<App>| harness.state().loaded().map(|loaded| loaded.mesh.triangles.len());
     let before = harness.state().camera().distance;
     scroll_to(&mut harness, "Filter parts by name");
-    harness.get_by_label("11 of 11 parts shown");
+    harness.get_by_label("11 of 11 shown");
     click(&mut harness, "Filter parts by name");
     harness.get_by_label("Filter parts by name").type_text("PART7");
     settle(&mut harness);
@@ -32,7 +32,7 @@ fn parts_are_filtered_shown_alone_and_framed() {
     click(&mut harness, "Show only Part7");
     assert_eq!(triangles(&harness), Some(2));
     assert_eq!(harness.state().camera().distance, before, "the camera stays");
-    harness.get_by_label("1 of 11 parts shown");
+    harness.get_by_label("1 of 11 shown");
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts, ShownParts::alone("Part7"));
     harness.get_by_label("Part7").click_secondary();
     settle(&mut harness);

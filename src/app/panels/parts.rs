@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::app::App;
 use crate::app::sections::Section;
-use crate::app::text::counted;
+use crate::app::text::{counted, grouped};
 use crate::app::widgets::{list, switch_button};
 use crate::commands::{Action, CameraAction, all};
 use geometry::names::{shortened, shown};
@@ -64,7 +64,8 @@ impl App {
             if button.on_hover_text("Shows the parts that are hidden.").clicked() {
                 action = Some(PartAction::ShowAll);
             }
-            ui.weak(format!("{} of {} shown", parts.len() - hidden, counted(parts.len() as u64, "part")));
+            let [shown, all] = [parts.len() - hidden, parts.len()].map(|count| grouped(count as u64));
+            ui.weak(format!("{shown} of {all} shown"));
         });
         action.into_iter().for_each(|action| self.act_on_parts(&parts, action));
     }
