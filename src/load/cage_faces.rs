@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 use super::import::Subdivision;
 use super::recent_corners::NumberedCorner;
@@ -12,9 +12,13 @@ use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::polygon::{WorkBudget, triangulate};
 use geometry::mesh::subdivision::{Cage, CageError, Refinement, Scheme};
 
-/// Memory for a corner of a cage, with its point, in bytes; and for a refined corner while it is made.
-const PER_CORNER: u64 = 160;
-const PER_REFINED: u64 = 120;
+/// Memory in bytes: for a corner of a cage, with its point; for a refined point, also while limits are computed; for a
+/// refined corner, which has a normal; and for its texture coordinates.
+const PER_CORNER: u64 = 200;
+const PER_POINT: u64 = 12;
+const PER_POINT_MEANWHILE: u64 = 48;
+const PER_NORMAL: u64 = 12;
+const PER_UV: u64 = 32;
 
 /// What a face has beside its corners.
 #[derive(Clone, Copy)]
@@ -65,7 +69,9 @@ impl CageFaces {
         work: &mut WorkBudget,
         budget: &Budget,
     ) -> Result<(), MemoryRefused> {
-        let bytes = PER_CORNER * 3 * corners.len() as u64;
+        // A polygon of n corners has n - 2 triangles.
+        let stored = if self.subdivision.scheme == Scheme::Loop { 3 * (corners.len() - 2) } else { corners.len() };
+        let bytes = PER_CORNER * stored as u64;
         budget.hold(bytes)?;
         self.held += bytes;
         let (whole, mut triangles) = ((0..corners.len()).collect::<Vec<_>>(), Vec::new());
@@ -115,15 +121,23 @@ impl CageFaces {
         let own =
             Cage { points, starts: &self.starts, corners: &self.points, scheme, boundary, creases, ..Cage::default() };
         let size = own.size_at_most(levels);
-        let memory = size.bytes().saturating_mul(2).saturating_add(size.corners.saturating_mul(PER_REFINED));
-        budget.check(memory)?;
+        let has_uvs = self.corners.iter().any(|at| at.corner.uv != Vec2::ZERO);
+        let per_corner = PER_NORMAL + if has_uvs { PER_UV } else { 0 };
+        // All levels together have at most four thirds of the elements of the last one.
+        let counted = [(size.bytes(), 4, 3), (size.points, PER_POINT, 1), (size.corners, per_corner, 1)];
+        let memory = counted
+            .into_iter()
+            .fold(0_u64, |sum, (count, each, part)| sum.saturating_add(count.saturating_mul(each) / part));
+        let meanwhile = size.points.saturating_mul(PER_POINT_MEANWHILE);
+        budget.hold(memory)?;
+        budget.check(meanwhile)?;
         let (refinement, why_not) = match Refinement::new(&own, levels, MAX_TRIANGLES) {
             Ok(refinement) => (Some(refinement), None),
             Err(error) => (None, Some(error)),
         };
         let mut corners = Vec::new();
         match refinement {
-            Some(refinement) => self.refined(&refinement, |face, own| {
+            Some(refinement) => self.refined(&refinement, has_uvs, |face, own| {
                 corners.clear();
                 corners.extend(face);
                 add(&mut corners, own)
@@ -137,21 +151,19 @@ impl CageFaces {
                 }
             }
         }
-        budget.release(self.held);
+        budget.release(self.held.saturating_add(memory));
         Ok(why_not)
     }
 
     fn refined<E>(
         &self,
         refinement: &Refinement,
+        has_uvs: bool,
         mut add: impl FnMut(&mut dyn Iterator<Item = NumberedCorner>, OfFace) -> Result<(), E>,
     ) -> Result<(), E> {
-        let positions: Vec<DVec3> = self.positions.iter().map(|position| position.as_dvec3()).collect();
-        let refined = refinement.refine(&positions);
-        let limit = refinement.limit(&refined);
-        let (places, normals) = (limit.values(), limit.normals());
-        let uvs: Vec<DVec2> = self.corners.iter().map(|at| at.corner.uv.as_dvec2()).collect();
-        let uvs = refinement.refine_corners(&uvs);
+        let (places, normals) = self.limit(refinement);
+        let uvs: Vec<DVec2> = self.corners.iter().map(|at| at.corner.uv.as_dvec2()).filter(|_| has_uvs).collect();
+        let uvs = if has_uvs { refinement.refine_corners(&uvs) } else { uvs };
         // Parts of a face of the cage follow one another, those nearest to its first corner first.
         let mut nth = (u32::MAX, 0);
         for face in refinement.faces() {
@@ -159,9 +171,9 @@ impl CageFaces {
             let nearest = self.nearest_corner(face.cage_face as usize, nth.1);
             let mut corners = face.corners.map(|k| NumberedCorner {
                 corner: InputCorner {
-                    position: places[refinement.corners()[k] as usize].as_vec3(),
+                    position: places[refinement.corners()[k] as usize],
                     normal: Some(normals[k]).filter(|_| self.has_normals),
-                    uv: uvs[k].as_vec2(),
+                    uv: uvs.get(k).map_or(Vec2::ZERO, |uv| uv.as_vec2()),
                 },
                 number: nearest.number,
                 vertex: None,
@@ -169,6 +181,14 @@ impl CageFaces {
             add(&mut corners, self.faces[face.cage_face as usize])?;
         }
         Ok(())
+    }
+
+    /// The points of the limit surface, and its normals at the corners of faces.
+    fn limit(&self, refinement: &Refinement) -> (Vec<Vec3>, Vec<Vec3>) {
+        let positions: Vec<DVec3> = self.positions.iter().map(|position| position.as_dvec3()).collect();
+        let refined = refinement.refine(&positions);
+        let limit = refinement.limit(&refined);
+        (limit.values().into_iter().map(DVec3::as_vec3).collect(), limit.normals())
     }
 
     /// The corner of a face that is nearest to its refined part number `nth`.

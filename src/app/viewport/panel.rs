@@ -358,7 +358,8 @@ impl App {
         let distance = self.viewport.ruler.map(|ruler| ruler.text());
         let bookmarked = self.viewport.bookmarks.iter().position(|bookmark| *bookmark == self.viewport.camera);
         let bookmark = bookmarked.map(|index| format!("Bookmark {}", index + 1));
-        let texts = [previewed, frozen, self.left_out_note(), difference, grid, distance, bookmark].into_iter().flatten();
+        let texts =
+            [previewed, frozen, self.left_out_note(), difference, grid, distance, bookmark].into_iter().flatten();
         let notes: Vec<_> = texts.map(|text| (note_text(ui, &text, egui::Color32::from_gray(235)), text)).collect();
         let widest = notes.iter().map(|(galley, _)| galley.size().x).fold(0.0, f32::max);
         // In a narrow picture they are above the progress.
