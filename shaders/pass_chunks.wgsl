@@ -1,4 +1,4 @@
-// Divides a slab into chunks of patches, and writes the indirect arguments of emission and draws.
+// Divides a slab into chunks of patches, and writes the indirect arguments of emission, and then those of draws.
 
 @group(0) @binding(0) var<uniform> slab: Slab;
 @group(0) @binding(1) var<storage, read> offsets: array<vec2<u32>>;
@@ -68,8 +68,13 @@ fn chunks_main(@builtin(local_invocation_index) local: u32) {
     for (var i = used + local; i < slab.chunk_capacity; i += WORKGROUP) {
         write_chunk(i, slab.patch_count, slab.patch_count);
     }
-    storageBarrier();
-    for (var i = local; i < slab.chunk_capacity * slab.material_count; i += WORKGROUP) {
-        write_draw(i / slab.material_count, i % slab.material_count);
+}
+
+// One invocation for each material of each chunk.
+@compute @workgroup_size(256)
+fn draws_main(invocation: Invocation) {
+    let index = grid_index(invocation);
+    if index < slab.chunk_capacity * slab.material_count {
+        write_draw(index / slab.material_count, index % slab.material_count);
     }
 }

@@ -40,8 +40,10 @@ pub(super) const COUNTS: Pass = Pass::new("pass_counts", "counts_main");
 pub(super) const HULL_FACTORS: Pass = Pass::new("pass_counts", "hull_factors_main");
 /// Sums within blocks to offsets within the slab.
 pub(super) const SCAN: Pass = Pass::new("pass_scan", "scan_main");
-/// Chunks that fit the arena, and their indirect arguments.
+/// Chunks that fit the arena, and the indirect arguments that emit them.
 pub(super) const CHUNKS: Pass = Pass::new("pass_chunks", "chunks_main");
+/// The indirect arguments that draw each material of each chunk.
+pub(super) const DRAWS: Pass = Pass::new("pass_chunks", "draws_main");
 /// The vertices of a chunk.
 pub(super) const EMIT_VERTICES: Pass = Pass::new("pass_emit", "emit_vertices_main");
 /// The triangles of a chunk.

@@ -37,6 +37,7 @@ pub(super) struct CageFaces {
     corners: Vec<NumberedCorner>,
     faces: Vec<OfFace>,
     creases: Vec<([u32; 2], f32)>,
+    sharp_points: Vec<(u32, f32)>,
     /// Whether refined corners get the normals of the limit surface.
     has_normals: bool,
     held: u64,
@@ -53,6 +54,7 @@ impl CageFaces {
             corners: Vec::new(),
             faces: Vec::new(),
             creases: Vec::new(),
+            sharp_points: Vec::new(),
             has_normals,
             held: 0,
         }
@@ -92,10 +94,12 @@ impl CageFaces {
         Ok(())
     }
 
-    /// Makes the edge between two positions a crease.
+    /// Makes the edge between two positions a crease, or the point sharp that is both.
     pub(super) fn crease(&mut self, ends: [Vec3; 2], sharpness: f32) {
-        let ends = ends.map(|end| self.point(end));
-        self.creases.push((ends, sharpness));
+        match ends.map(|end| self.point(end)) {
+            [a, b] if a == b => self.sharp_points.push((a, sharpness)),
+            ends => self.creases.push((ends, sharpness)),
+        }
     }
 
     fn point(&mut self, position: Vec3) -> u32 {
@@ -117,9 +121,17 @@ impl CageFaces {
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
     ) -> Result<Option<CageError>, E> {
         let Subdivision { scheme, levels, boundary } = self.subdivision;
-        let (points, creases) = (self.positions.len(), &self.creases[..]);
-        let own =
-            Cage { points, starts: &self.starts, corners: &self.points, scheme, boundary, creases, ..Cage::default() };
+        let (points, creases, sharp_points) = (self.positions.len(), &self.creases[..], &self.sharp_points[..]);
+        let own = Cage {
+            points,
+            starts: &self.starts,
+            corners: &self.points,
+            scheme,
+            boundary,
+            creases,
+            sharp_points,
+            holes: &[],
+        };
         let size = own.size_at_most(levels);
         let has_uvs = self.corners.iter().any(|at| at.corner.uv != Vec2::ZERO);
         let per_corner = PER_NORMAL + if has_uvs { PER_UV } else { 0 };

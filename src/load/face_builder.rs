@@ -141,7 +141,7 @@ impl<'a> FaceBuilder<'a> {
         self.cage = subdivision.map(|own| CageFaces::new(own, has_normals));
     }
 
-    /// Makes the edge between two positions a crease of the cage that is collected.
+    /// Makes the edge between two positions a crease of the cage that is collected, or the point sharp that is both.
     pub(super) fn crease(&mut self, ends: [Vec3; 2], sharpness: f32) {
         self.cage.iter_mut().for_each(|cage| cage.crease(ends, sharpness));
     }

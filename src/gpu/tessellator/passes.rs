@@ -5,12 +5,12 @@ use std::collections::HashSet;
 use super::Tessellator;
 use crate::bound_pass::{BoundPass, Step, Workgroups};
 use crate::compute_pipeline::Pass;
-use crate::layout::{EmitArgs, Params};
+use crate::layout::{EmitArgs, Params, Slab};
 use crate::minimum::{self, Minimum};
 use crate::params::params_of;
 use crate::pass_inputs::PassInputs;
 use crate::pipelines::{
-    CENTERS, CHUNKS, COUNTS, CURVE_NETS, DIRECTIONS, DISPLACE, EDGE_FACTORS, EMIT_TRIANGLES, EMIT_VERTICES,
+    CENTERS, CHUNKS, COUNTS, CURVE_NETS, DIRECTIONS, DISPLACE, DRAWS, EDGE_FACTORS, EMIT_TRIANGLES, EMIT_VERTICES,
     FACTOR_LEVELS, FRAMES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
 };
 use crate::readback::Readback;
@@ -231,13 +231,20 @@ impl Tessellator {
     }
 
     /// What a slab will emit.
-    fn counts(&self, slab: usize) -> Result<[(&'static str, Step); 3], GpuError> {
+    fn counts(&self, slab: usize) -> Result<[(&'static str, Step); 4], GpuError> {
         let on = self.inputs_of_slab(slab);
-        let blocks = (self.slabs[slab].slab.patch_count + 1).div_ceil(SCAN_BLOCK);
+        let Slab { patch_count, chunk_capacity, material_count, .. } = self.slabs[slab].slab;
+        let blocks = (patch_count + 1).div_ceil(SCAN_BLOCK);
         let step = |pass, workgroups| {
             Ok::<_, GpuError>(Step { bound: on.bound(pass)?, workgroups: Workgroups::Grid([workgroups, 1, 1]) })
         };
-        Ok([("counts", step(COUNTS, blocks)?), ("scan", step(SCAN, blocks)?), ("chunks", step(CHUNKS, 1)?)])
+        let draws = on.over(DRAWS, chunk_capacity * material_count)?;
+        Ok([
+            ("counts", step(COUNTS, blocks)?),
+            ("scan", step(SCAN, blocks)?),
+            ("chunks", step(CHUNKS, 1)?),
+            ("chunks", draws),
+        ])
     }
 
     /// What emits the vertices of a chunk of a slab and its triangles, and what displaces it.

@@ -194,10 +194,15 @@ impl MeshReader<'_, '_, '_> {
         Some(Subdivision { levels, boundary, ..import.subdivision().unwrap_or_default() })
     }
 
-    /// Tells which edges are creases. FBX files have a sharpness of 10 as 1.
+    /// Tells which edges are creases, and which points are sharp. FBX files have a sharpness of 10 as 1.
     fn creases(&mut self) -> Result<(), ReadError> {
         let sharp = self.mesh.edges.iter().zip(self.mesh.edge_crease.iter()).filter(|(_, crease)| **crease > 0.0);
-        let sharp: Vec<_> = sharp.map(|(edge, crease)| ([edge.a, edge.b], (10.0 * crease) as f32)).collect();
+        let mut sharp: Vec<_> = sharp.map(|(edge, crease)| ([edge.a, edge.b], (10.0 * crease) as f32)).collect();
+        let points = &self.mesh.vertex_crease;
+        for (corner, index) in (0..).zip(points.indices.iter()) {
+            let crease = points.values.get(*index as usize).copied().unwrap_or_default();
+            sharp.extend((crease > 0.0).then_some(([corner; 2], (10.0 * crease) as f32)));
+        }
         for (ends, sharpness) in sharp {
             let mut positions = [Vec3::ZERO; 2];
             for (position, corner) in positions.iter_mut().zip(ends) {
