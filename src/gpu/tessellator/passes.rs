@@ -101,7 +101,7 @@ impl Tessellator {
         record(recorder, "factors", &self.factors(choices)?);
         record(recorder, "levels", &self.levels(choices)?);
         for slab in 0..self.slabs.len() {
-            self.counts(slab)?.into_iter().for_each(|(name, step)| record(recorder, name, &[step]));
+            self.counts(slab)?.iter().for_each(|(name, steps)| record(recorder, name, steps));
         }
         Ok(())
     }
@@ -231,7 +231,7 @@ impl Tessellator {
     }
 
     /// What a slab will emit.
-    fn counts(&self, slab: usize) -> Result<[(&'static str, Step); 4], GpuError> {
+    fn counts(&self, slab: usize) -> Result<[(&'static str, Vec<Step>); 3], GpuError> {
         let on = self.inputs_of_slab(slab);
         let Slab { patch_count, chunk_capacity, material_count, .. } = self.slabs[slab].slab;
         let blocks = (patch_count + 1).div_ceil(SCAN_BLOCK);
@@ -240,10 +240,9 @@ impl Tessellator {
         };
         let draws = on.over(DRAWS, chunk_capacity * material_count)?;
         Ok([
-            ("counts", step(COUNTS, blocks)?),
-            ("scan", step(SCAN, blocks)?),
-            ("chunks", step(CHUNKS, 1)?),
-            ("chunks", draws),
+            ("counts", vec![step(COUNTS, blocks)?]),
+            ("scan", vec![step(SCAN, blocks)?]),
+            ("chunks", vec![step(CHUNKS, 1)?, draws]),
         ])
     }
 
