@@ -8,6 +8,7 @@ use super::{
 };
 use geometry::mesh::Shape;
 use inspect::render::Standpoint;
+use inspect::settings::Choice;
 
 pub(crate) const HEIGHT_IMAGE: &str =
     "Displaces the mesh by the brightness of a PNG, JPEG or WebP image, which covers all materials.";
@@ -193,12 +194,12 @@ fn view() -> Vec<Command> {
 fn standpoints() -> Vec<Command> {
     use Standpoint::{Back, Bottom, Front, Left, Right, Top};
     declared! {
-        "Look from: Front" [plain(Key::Num1)] below LookFrom => CameraAction::LookFrom(Front), "Looks from the front.";
-        "Look from: Back" [ctrl(Key::Num1)] below LookFrom => CameraAction::LookFrom(Back), "Looks from the back.";
-        "Look from: Right" [plain(Key::Num3)] below LookFrom => CameraAction::LookFrom(Right), "Looks from the right.";
-        "Look from: Left" [ctrl(Key::Num3)] below LookFrom => CameraAction::LookFrom(Left), "Looks from the left.";
-        "Look from: Top" [plain(Key::Num7)] below LookFrom => CameraAction::LookFrom(Top), "Looks from the top.";
-        "Look from: Bottom" [ctrl(Key::Num7)] below LookFrom => CameraAction::LookFrom(Bottom), "Looks from the bottom.";
+        "Look from: Front" [plain(Key::Num1)] below LookFrom => CameraAction::LookFrom(Front), Front.text();
+        "Look from: Back" [ctrl(Key::Num1)] below LookFrom => CameraAction::LookFrom(Back), Back.text();
+        "Look from: Right" [plain(Key::Num3)] below LookFrom => CameraAction::LookFrom(Right), Right.text();
+        "Look from: Left" [ctrl(Key::Num3)] below LookFrom => CameraAction::LookFrom(Left), Left.text();
+        "Look from: Top" [plain(Key::Num7)] below LookFrom => CameraAction::LookFrom(Top), Top.text();
+        "Look from: Bottom" [ctrl(Key::Num7)] below LookFrom => CameraAction::LookFrom(Bottom), Bottom.text();
     }
 }
 
