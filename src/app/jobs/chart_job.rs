@@ -137,11 +137,6 @@ impl ChartJob {
         });
     }
 
-    /// Frees the device.
-    pub(crate) fn free(&mut self) {
-        self.engine = None;
-    }
-
     /// Makes the run wait before its next setting, or lets it go on.
     pub(crate) fn hold(&self, hold: bool) {
         self.held.store(hold, Ordering::Relaxed);
@@ -158,7 +153,7 @@ impl App {
     pub(in crate::app) fn close_chart(&mut self) {
         self.jobs.stop(Work::Chart);
         self.panels.chart.still = None;
-        self.panels.chart.charting.free();
+        self.panels.chart.charting.engine = None;
     }
 
     /// Takes what a run has found; none if it has ended.

@@ -150,11 +150,6 @@ impl App {
         let job = Job { adapter, loaded, of, reference_shape, current: Some(current), settings, effort };
         self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
-
-    /// Makes the chart's measuring wait while the window draws or measures.
-    pub(in crate::app) fn hold_chart(&self) {
-        self.panels.chart.charting.hold(self.is_busy());
-    }
 }
 
 impl ChartBasis {

@@ -31,7 +31,8 @@ pub(crate) struct WarmUp {
     /// Since when the window has had nothing to do.
     idle: Option<Instant>,
     step: Option<Step>,
-    drawings: u64,
+    /// How many pictures have been drawn.
+    pub drawings: u64,
 }
 
 enum Step {
@@ -43,11 +44,6 @@ enum Step {
 }
 
 impl WarmUp {
-    /// How many pictures have been drawn.
-    pub(crate) fn drawings(&self) -> u64 {
-        self.drawings
-    }
-
     pub(crate) fn is_busy(&self) -> bool {
         self.step.is_some()
     }
