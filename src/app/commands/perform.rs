@@ -4,7 +4,7 @@ use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 
 use crate::app::App;
 use crate::app::dialogs::Forgetting;
-use crate::app::panels::destinations::Step;
+use crate::app::panels::destinations::{Destination, Step};
 use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
@@ -39,9 +39,9 @@ impl App {
             (Need::Surface, !self.uses_surface_shader()),
             (Need::Environment, self.environment.is_some()),
             (Need::Undo, self.can_undo()),
-            (Need::Redo, self.can_redo()),
-            (Need::ViewBefore, self.has_view_before()),
-            (Need::ViewAfter, self.has_view_after()),
+            (Need::Redo, !self.history.future.is_empty()),
+            (Need::ViewBefore, !self.view_history.views.past.is_empty()),
+            (Need::ViewAfter, !self.view_history.views.future.is_empty()),
             (Need::Bookmarks, bookmarks > 0),
             (Need::RoomForBookmarks, bookmarks < MOST_BOOKMARKS),
             (Need::Selection, self.selected_edge().is_some() || self.selected_triangle().is_some()),
@@ -101,7 +101,7 @@ impl App {
             Action::Background => self.dialogs.chooses_background = true,
             Action::Chart => self.toggle_chart(),
             Action::MeasureChart => self.measure_chart(context),
-            Action::WidestCrack => self.go_to_widest_crack(),
+            Action::WidestCrack => self.follow(Destination::Cracks, Step::Worst),
             Action::NextPlace => self.step_through_finding(Step::Next),
             Action::PreviousPlace => self.step_through_finding(Step::Previous),
             Action::Theme(theme) => context.set_theme(*theme),

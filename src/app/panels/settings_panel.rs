@@ -244,7 +244,7 @@ impl App {
         let mut chosen = weld;
         let combo = egui::ComboBox::from_id_salt("Weld").selected_text(tolerance(weld)).show_ui(ui, |ui| {
             ui.selectable_value(&mut chosen, 0.0, "Exact").on_hover_text("Only exactly equal positions are one point.");
-            match document.checks.joins() {
+            match document.checks.joins.get() {
                 Some(all) => {
                     for joins in all {
                         let text = format!("{}: {joins}", tolerance(joins.tolerance));

@@ -82,8 +82,8 @@ impl App {
                     let veil = egui::Color32::from_rgba_unmultiplied(r, g, b, VEIL);
                     ui.painter().rect_filled(rect, 0.0, veil);
                 }
-                if let Some(outlines) = self.outlines_texture().filter(|_| previewed.is_none()) {
-                    self.paint_outlines(ui, rect, outlines, size[0]);
+                if let Some(outlines) = self.found_outlines().filter(|_| previewed.is_none()) {
+                    self.paint_outlines(ui, rect, outlines.texture.id(), size[0]);
                 }
                 self.over_picture(ui, rect);
             }
