@@ -1,13 +1,15 @@
 //! The settings in the left panel.
 
-use super::option_rows::{option_hover, option_row, with_note};
+use super::option_rows::{option_hover, option_row};
 use crate::app::App;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::left_mesh::LeftMesh;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
-use crate::commands::{Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key};
+use crate::commands::{
+    Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
+};
 use geometry::tessellate::{Lod, Surface, Tessellation};
 use inspect::settings::{Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, SplitSide, options};
 
