@@ -52,8 +52,7 @@ impl App {
         let own = self.settings.tessellation;
         let (wanted, partitioning) = (path.clone(), own.partitioning);
         let read = move |_: &_| {
-            let factors =
-                read_factors(&wanted, &mesh, &topology, partitioning).map_err(|error| Some(error.to_string()))?;
+            let factors = read_factors(&wanted, &mesh, &topology, partitioning).map_err(|error| error.to_string())?;
             let compared = ComparedFactors::new(&topology, &factors, own.convention);
             Ok((Arc::new(factors), compared))
         };
