@@ -4,6 +4,7 @@ use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 
 use crate::app::App;
 use crate::app::dialogs::Forgetting;
+use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::panels::destinations::{Destination, Step};
 use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
@@ -83,7 +84,7 @@ impl App {
             Action::Prepare(preparing) => self.prepare_as(context, *preparing),
             Action::Undo => self.undo(context),
             Action::Redo => self.redo(context),
-            Action::CopyAsCommand => self.copy_command(context),
+            Action::CopyAsCommand => self.copy_command(context, &PictureChoices::default()),
             Action::CopyPicture => self.copy_picture(context),
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),

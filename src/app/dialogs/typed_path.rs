@@ -6,7 +6,7 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Event, Id, Key, TextEdit};
 
 use super::desktop_dialog::{Asked, ask};
-use super::purpose::{self, AskedFile, is_written, proposed, proposed_name};
+use super::purpose::{self, AskedFile, proposed, proposed_name};
 use super::typed_text::{Completion, completion, path_of};
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
@@ -221,7 +221,9 @@ impl App {
             _ => path.parse::<Source>().map_err(|error| error.to_string()).and_then(found),
         };
         match source.and_then(|source| self.take_source(context, purpose, source)) {
-            Ok(()) if is_written(purpose) => self.dialogs.folder = Path::new(path).parent().map(Path::to_owned),
+            Ok(()) if matches!(purpose, Purpose::Write(_)) => {
+                self.dialogs.folder = Path::new(path).parent().map(Path::to_owned)
+            }
             Ok(()) => self.dialogs.typed = Some((purpose, typed)),
             Err(why) => return self.dialogs.error = Some(why),
         }

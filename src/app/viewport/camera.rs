@@ -37,7 +37,7 @@ impl App {
             CameraAction::After => *camera = self.view_history.views.redo(camera).unwrap_or(*camera),
             CameraAction::Bookmark(index) => *camera = self.viewport.bookmarks.get(index).copied().unwrap_or(*camera),
             CameraAction::OfFile(index) => self.look_through_file_camera(index),
-            CameraAction::ThroughFrozen => self.look_through_frozen(),
+            CameraAction::ThroughFrozen => *camera = self.viewport.frozen.map_or(*camera, |frozen| frozen.camera),
             CameraAction::Orthographic => camera.orthographic = !camera.orthographic,
             CameraAction::Orbit(direction) => camera.orbit(towards(direction) * DEGREES_PER_KEY),
             CameraAction::Pan(direction) => {

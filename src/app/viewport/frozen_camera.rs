@@ -76,11 +76,6 @@ impl App {
             .then(|| format!("Left out, since the frozen camera doesn't see them: {left_out} ({key} thaws LOD)"))
     }
 
-    /// Moves the camera to where the frozen one is.
-    pub(in crate::app) fn look_through_frozen(&mut self) {
-        self.viewport.camera = self.viewport.frozen.map_or(self.viewport.camera, |frozen| frozen.camera);
-    }
-
     /// What the lines of the frozen camera depend on; none if there is no such camera, or the picture is seen through it.
     pub(in crate::app) fn frozen_shown(&self) -> Option<(FrozenCamera, Bounds)> {
         let bounds = self.document.as_ref()?.scene.bounds;

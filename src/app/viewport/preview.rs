@@ -171,17 +171,28 @@ impl Preview {
             return Ok(());
         }
         let Some((target, _)) = &self.target else { return Ok(()) };
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-        engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
-        recorder.submit();
-        let done = Arc::new(AtomicBool::new(false));
-        self.pace.submit(done.clone(), Instant::now());
-        engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
+        self.pace.submit(draw(engine, scene, target, wanted)?, Instant::now());
         self.drawn = Some((*wanted, shape));
         self.drawings += 1;
         Ok(())
     }
+}
+
+/// Draws what is wanted. What is returned is set once the device has finished it.
+pub(super) fn draw(
+    engine: &Engine,
+    scene: &mut Scene,
+    target: &Target,
+    wanted: &PictureRequest,
+) -> Result<Arc<AtomicBool>, GpuError> {
+    let mut timing = Timing::Off;
+    let mut recorder = Recorder::new(&engine.gpu, &mut timing);
+    engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
+    recorder.submit();
+    let done = Arc::new(AtomicBool::new(false));
+    let own = done.clone();
+    engine.gpu.queue.on_submitted_work_done(move || own.store(true, Ordering::Release));
+    Ok(done)
 }
 
 /// Lets the device count what each half emits. Returns true once that is known.
