@@ -57,18 +57,6 @@ pub(crate) struct Charted {
 }
 
 impl Charted {
-    pub(crate) fn new(
-        of: ChartBasis,
-        title: String,
-        reference_shape: Option<(&ReferenceShape, String)>,
-        adapter: String,
-    ) -> Self {
-        let (diagonal, reference_shape) =
-            reference_shape.map(|(reference_shape, words)| (reference_shape.diagonal(), words)).unzip();
-        let subject = Subject { title, reference_shape, adapter, size: of.size, rows: Vec::new() };
-        Self { of, subject, left_out: Vec::new(), diagonal, current: None }
-    }
-
     /// Inserts a row among those of its method, which go from coarse to fine.
     fn add(&mut self, row: Row) {
         let rows = &mut self.subject.rows;

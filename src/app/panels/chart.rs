@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
 use geometry::tessellate::Tessellation;
 use inspect::settings::Settings;
-use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
+use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, Subject, coarse_first, save, whole};
 use load::Source;
 
 #[derive(Default)]
@@ -90,9 +90,11 @@ impl App {
         let missing: Vec<_> = all.iter().filter(|setting| !is_known(setting)).copied().collect();
         let starts_over = missing.is_empty() || self.panels.chart.charted().is_none_or(|charted| charted.of != of);
         if starts_over {
-            let adapter = self.engine.gpu.info.name.clone();
-            let compared = reference_shape.as_deref().map(|reference_shape| (reference_shape, words));
-            self.panels.chart.charting.charted = Some(Charted::new(of, title, compared, adapter));
+            let (adapter, size) = (self.engine.gpu.info.name.clone(), of.size);
+            let (diagonal, reference_shape) = reference_shape.map(|compared| (compared.diagonal(), words)).unzip();
+            let subject = Subject { title, reference_shape, adapter, size, rows: Vec::new() };
+            let charted = Charted { of, subject, left_out: Vec::new(), diagonal, current: None };
+            self.panels.chart.charting.charted = Some(charted);
         }
         let mut settings = if starts_over { all } else { missing };
         // The window's own setting comes first.
