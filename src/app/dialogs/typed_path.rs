@@ -48,19 +48,15 @@ impl PendingDialog {
 /// Why a path is typed where a dialog was asked for.
 const NO_DIALOG: &str = "This desktop has no file dialog (neither a portal nor zenity). Type the path instead.";
 
-enum Answer {
-    Accept,
-    Cancel,
-}
-
 impl TypedPath {
-    fn show(&mut self, context: &egui::Context) -> Option<Answer> {
+    /// Shows the window. Returns true if the path is accepted, and false if the window is closed.
+    fn show(&mut self, context: &egui::Context) -> Option<bool> {
         let window = egui::Window::new(AskedFile::new(self.purpose).title).resizable(false).collapsible(false);
         let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         window.show(context, |ui| self.rows(ui)).and_then(|shown| shown.inner).flatten()
     }
 
-    fn rows(&mut self, ui: &mut egui::Ui) -> Option<Answer> {
+    fn rows(&mut self, ui: &mut egui::Ui) -> Option<bool> {
         if let Some(why) = self.why {
             ui.label(why);
         }
@@ -88,7 +84,7 @@ impl TypedPath {
             let accepted = ui.add_enabled(!is_empty, egui::Button::new(purpose::button(self.purpose))).clicked()
                 || (entered && !is_empty);
             let cancelled = ui.button("Cancel").clicked();
-            accepted.then_some(Answer::Accept).or(cancelled.then_some(Answer::Cancel))
+            accepted.then_some(true).or(cancelled.then_some(false))
         })
         .inner
     }
@@ -197,8 +193,8 @@ impl App {
 
     pub(in crate::app) fn path_window(&mut self, context: &egui::Context) {
         match self.dialogs.typed_path.as_mut().and_then(|typed| typed.show(context)) {
-            Some(Answer::Accept) => self.take_typed(context),
-            Some(Answer::Cancel) => self.dialogs.typed_path = None,
+            Some(true) => self.take_typed(context),
+            Some(false) => self.dialogs.typed_path = None,
             None => {}
         }
     }

@@ -165,7 +165,8 @@ impl App {
             None => option_row(ui, &options::LOD, settings, key_name(&Action::Setting(Change::AdaptiveLod))),
         }
         if (options::FACTOR.no_effect)(settings).is_none() {
-            option_row(ui, &options::FACTOR, settings, &factor_keys());
+            let [up, down] = [Change::FactorUp, Change::FactorDown].map(|change| key_name(&change.into()));
+            option_row(ui, &options::FACTOR, settings, &format!("{up} and {down}"));
         }
         let own: Vec<_> = options_of_lods().filter(|option| (option.no_effect)(settings).is_none()).collect();
         for option in own {
@@ -314,11 +315,6 @@ fn options_of_lods() -> impl Iterator<Item = &'static Declaration> {
         (1..Lod::ALL.len()).contains(&idle)
     };
     options::TESSELLATION.into_iter().filter(depends_on_lod).filter(|option| option.name != options::FACTOR.name)
-}
-
-fn factor_keys() -> String {
-    let [up, down] = [Change::FactorUp, Change::FactorDown].map(|change| key_name(&Action::Setting(change)));
-    format!("{up} and {down}")
 }
 
 /// A row that is there only where the option has an effect.

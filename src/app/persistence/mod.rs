@@ -198,7 +198,7 @@ impl App {
     /// Takes over the state that the last window saved.
     pub fn resume(&mut self, context: &egui::Context, mut lasting: Persistence) {
         // A first start shows what it has to show.
-        if !lasting.kept.is_of_a_first_start() {
+        if lasting.kept.settings != Settings::opening() || !lasting.kept.files.is_empty() {
             self.settings = *lasting.settings();
             self.viewport.greets = false;
         }

@@ -143,11 +143,6 @@ impl SavedState {
         format!("{written:#}\n")
     }
 
-    /// Whether no setting was changed and no file was opened yet.
-    pub(super) fn is_of_a_first_start(&self) -> bool {
-        self.settings == Settings::opening() && self.files.is_empty()
-    }
-
     /// Takes settings, without displacement, axis and unit, which depend on the mesh.
     pub(super) fn take_settings(&mut self, settings: &Settings) {
         let own = settings.with(settings.tessellation.undisplaced());

@@ -75,7 +75,7 @@ pub(crate) struct Picture {
     before: Option<ShownPicture>,
     pub drawn: Option<PictureRequest>,
     /// The document of the last picture that was drawn, in whatever size.
-    shows: Option<u64>,
+    pub shows: Option<u64>,
     /// The picture that the device is counting for. It is drawn before any newer one, so that a long drag shows pictures.
     counting: Option<PictureRequest>,
     /// The picture that is being drawn, step by step.
@@ -194,11 +194,6 @@ impl Picture {
     pub(crate) fn shown(&self) -> Option<&ShownPicture> {
         let drawn = self.target.as_ref().filter(|_| self.drawn.is_some());
         drawn.map(|(_, shown)| shown).or(self.before.as_ref())
-    }
-
-    /// Whether what is shown is another mesh than that of a document.
-    pub(crate) fn shows_another(&self, document: u64) -> bool {
-        self.shows.is_some_and(|shown| shown != document)
     }
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free, in steps that keep the device busy for about so many ms
