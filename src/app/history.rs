@@ -117,7 +117,7 @@ impl App {
     }
 
     /// Whether the mesh, or a file beside it, is being read anew, so that settings may follow from it.
-    fn is_opening(&self) -> bool {
+    pub(super) fn is_opening(&self) -> bool {
         self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_companions()
     }
 
@@ -134,10 +134,6 @@ impl App {
                 step.companions[companion as usize] = None;
             }
         });
-    }
-
-    pub(super) fn can_undo(&self) -> bool {
-        !self.history.past.is_empty() || self.is_opening()
     }
 
     /// Goes back to what there was before the last change.

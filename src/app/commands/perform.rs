@@ -39,7 +39,7 @@ impl App {
             (Need::SurfaceShader, self.surface_shader.is_some()),
             (Need::Surface, !self.uses_surface_shader()),
             (Need::Environment, self.environment.is_some()),
-            (Need::Undo, self.can_undo()),
+            (Need::Undo, !self.history.past.is_empty() || self.is_opening()),
             (Need::Redo, !self.history.future.is_empty()),
             (Need::ViewBefore, !self.view_history.views.past.is_empty()),
             (Need::ViewAfter, !self.view_history.views.future.is_empty()),
@@ -97,7 +97,8 @@ impl App {
             Action::FreezeLodCamera => self.toggle_frozen(),
             Action::Ruler => self.toggle_ruler(),
             Action::Previews => self.switch_previews(),
-            Action::AddBookmark => self.add_bookmark(),
+            Action::AddBookmark if self.viewport.bookmarks.contains(&self.viewport.camera) => {}
+            Action::AddBookmark => self.viewport.bookmarks.push(self.viewport.camera),
             Action::ForgetBookmarks => self.dialogs.asks_to_forget = Some(Forgetting::Bookmarks),
             Action::Background => self.dialogs.chooses_background = true,
             Action::Chart => self.toggle_chart(),
@@ -117,13 +118,6 @@ impl App {
             Action::SearchCommands => self.search_commands(),
             Action::Keys => self.commands.shows_keys = true,
             Action::WhitePaper => context.open_url(OpenUrl::new_tab(WHITE_PAPER)),
-        }
-    }
-
-    /// Bookmarks this view, unless it is a bookmark already.
-    fn add_bookmark(&mut self) {
-        if !self.viewport.bookmarks.contains(&self.viewport.camera) {
-            self.viewport.bookmarks.push(self.viewport.camera);
         }
     }
 
