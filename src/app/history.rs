@@ -19,7 +19,7 @@ const MOST: usize = 200;
 /// Movements of the camera that follow each other within so many seconds are one step.
 const ONE_MOVEMENT: f64 = 0.5;
 
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Undoable {
     /// Those that files with factors or functions of the user's own take the place of are as before.
     pub settings: Settings,
@@ -29,17 +29,12 @@ pub(super) struct Undoable {
 }
 
 /// The states before and after the present one.
+#[derive(Default)]
 pub(super) struct History<T> {
     /// None before the first frame.
     now: Option<T>,
-    past: VecDeque<T>,
-    future: Vec<T>,
-}
-
-impl<T> Default for History<T> {
-    fn default() -> Self {
-        Self { now: None, past: VecDeque::new(), future: Vec::new() }
-    }
+    pub past: VecDeque<T>,
+    pub future: Vec<T>,
 }
 
 impl<T: Clone + PartialEq> History<T> {
@@ -56,14 +51,14 @@ impl<T: Clone + PartialEq> History<T> {
         self.future.clear();
     }
 
-    fn undo(&mut self, state: &T) -> Option<T> {
+    pub(super) fn undo(&mut self, state: &T) -> Option<T> {
         self.note(state);
         let before = self.past.pop_back()?;
         self.future.extend(self.now.replace(before.clone()));
         Some(before)
     }
 
-    fn redo(&mut self, state: &T) -> Option<T> {
+    pub(super) fn redo(&mut self, state: &T) -> Option<T> {
         self.note(state);
         let after = self.future.pop()?;
         self.past.extend(self.now.replace(after.clone()));
@@ -81,7 +76,7 @@ impl History<Undoable> {
 /// The views before and after the present one.
 #[derive(Default)]
 pub(super) struct ViewHistory {
-    views: History<Camera>,
+    pub views: History<Camera>,
     /// When the camera was last seen to have moved, in s.
     moved: Option<f64>,
 }
@@ -122,7 +117,7 @@ impl App {
     }
 
     /// Whether the mesh, or a file beside it, is being read anew, so that settings may follow from it.
-    fn is_opening(&self) -> bool {
+    pub(super) fn is_opening(&self) -> bool {
         self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_companions()
     }
 
@@ -139,34 +134,6 @@ impl App {
                 step.companions[companion as usize] = None;
             }
         });
-    }
-
-    pub(super) fn can_undo(&self) -> bool {
-        !self.history.past.is_empty() || self.is_opening()
-    }
-
-    pub(super) fn can_redo(&self) -> bool {
-        !self.history.future.is_empty()
-    }
-
-    pub(super) fn has_view_before(&self) -> bool {
-        !self.view_history.views.past.is_empty()
-    }
-
-    pub(super) fn has_view_after(&self) -> bool {
-        !self.view_history.views.future.is_empty()
-    }
-
-    /// Goes back to the view before the last movement of the camera.
-    pub(super) fn view_before(&mut self) {
-        let before = self.view_history.views.undo(&self.viewport.camera);
-        self.viewport.camera = before.unwrap_or(self.viewport.camera);
-    }
-
-    /// Goes forward to the view that [`Self::view_before`] left.
-    pub(super) fn view_after(&mut self) {
-        let after = self.view_history.views.redo(&self.viewport.camera);
-        self.viewport.camera = after.unwrap_or(self.viewport.camera);
     }
 
     /// Goes back to what there was before the last change.

@@ -175,7 +175,7 @@ impl App {
     /// Vertices and triangles of what is shown.
     pub fn totals(&self) -> Option<(u64, u64)> {
         let totals = |document: &Document| document.scene.tessellator.totals();
-        self.viewport.preview.kept_totals().or(self.document.as_ref().map(totals))
+        self.viewport.preview.totals.or(self.document.as_ref().map(totals))
     }
 
     /// The source of the mesh that is open, not of one that is being loaded.
@@ -201,17 +201,17 @@ impl App {
 
     /// How many pictures have been drawn.
     pub fn pictures(&self) -> u64 {
-        self.viewport.picture.pictures()
+        self.viewport.picture.pictures
     }
 
     /// How many previews have been drawn while the camera moved.
     pub fn previews(&self) -> u64 {
-        self.viewport.preview.drawings()
+        self.viewport.preview.drawings
     }
 
     /// How many previews have been drawn out of sight, before the camera moved.
     pub fn warm_ups(&self) -> u64 {
-        self.viewport.warm_up.drawings()
+        self.viewport.warm_up.drawings
     }
 
     /// Whether such a preview is being drawn.
@@ -295,7 +295,8 @@ impl eframe::App for App {
         self.timeline(ui);
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
         self.windows(ui.ctx());
-        self.hold_chart();
+        // Measuring the chart waits while the window draws or measures.
+        self.panels.chart.charting.hold(self.is_busy());
         self.note_state(ui.ctx());
         self.keep(ui.ctx());
         if self.is_lost() {

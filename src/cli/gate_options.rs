@@ -70,12 +70,8 @@ pub(super) fn write_evidence_of(
 ) -> Result<(), CliError> {
     let Some(picture) = shot.evidence(judgement, &Progress::new())? else { return Ok(()) };
     make_folder(folder)?;
-    Ok(write_picture(&folder.join(evidence_name(stem, judgement.kind)), &picture.into())?)
-}
-
-/// The name of the picture of a gate, beside an output of this name.
-fn evidence_name(output: &Path, gate: GateKind) -> String {
-    format!("{}-{}.png", output.file_stem().unwrap_or_default().to_string_lossy(), gate.name())
+    let stem = stem.file_stem().unwrap_or_default().to_string_lossy();
+    Ok(write_picture(&folder.join(format!("{stem}-{}.png", judgement.kind.name())), &picture.into())?)
 }
 
 /// Returns a sentence for each gate that failed on the mesh with this name.

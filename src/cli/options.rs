@@ -74,16 +74,23 @@ pub(crate) fn mesh_help() -> String {
 }
 
 /// The options of an empty command line.
-pub(crate) fn defaults<T: Args>() -> T {
+fn defaults<T: Args>() -> T {
     let matches = T::augment_args(clap::Command::new("pnaen")).get_matches_from(["pnaen"]);
     T::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
 }
 
-impl Default for SurfaceOptions {
-    fn default() -> Self {
-        defaults()
-    }
+/// Lets options by default be those of an empty command line.
+macro_rules! empty_by_default {
+    ($($options:ty),+) => {
+        $(impl Default for $options {
+            fn default() -> Self {
+                defaults()
+            }
+        })+
+    };
 }
+
+empty_by_default!(SurfaceOptions, LimitOption, LodCameraOption, ViewOptions);
 
 impl SurfaceOptions {
     /// Checks what parsing can't: options that need one another. `other` is a second surface that is tessellated with them too.
@@ -271,12 +278,6 @@ pub struct LimitOption {
     /// to it: a number of bytes, or one with the unit KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "512MiB", value_parser = values::bytes)]
     pub max_memory: u64,
-}
-
-impl Default for LimitOption {
-    fn default() -> Self {
-        defaults()
-    }
 }
 
 impl LimitOption {

@@ -295,10 +295,12 @@ pub(crate) fn key_name(action: &Action) -> &'static str {
 
 /// Appends the keys of an action, if it has some, to a sentence.
 pub(crate) fn with_key(sentence: &str, action: &Action) -> String {
-    match key_name(action) {
-        "" => sentence.to_owned(),
-        keys => format!("{} ({keys}).", sentence.trim_end_matches('.')),
-    }
+    with_note(sentence, key_name(action))
+}
+
+/// A sentence with a note in parentheses at its end, if there is one.
+pub(crate) fn with_note(sentence: &str, note: &str) -> String {
+    if note.is_empty() { sentence.to_owned() } else { format!("{} ({note}).", sentence.trim_end_matches('.')) }
 }
 
 /// The names of keys as on a PC, on any platform.

@@ -14,7 +14,9 @@ pub struct PassTime {
 }
 
 /// How passes are timed. A pass is named by the label given to [`Recorder::compute`] or [`Recorder::render`].
+#[derive(Default)]
 pub enum Timing {
+    #[default]
     Off,
     /// By the clock of the host: every pass is submitted alone and waited for. For drivers without usable timestamps, such as
     /// those in software.

@@ -9,12 +9,8 @@ use inspect::shot::{CopiedCommand, Turn};
 use load::{HeightSource, Source};
 
 impl App {
-    /// Copies the command that draws what is shown, and shows that command in a window.
-    pub(in crate::app) fn copy_command(&mut self, context: &egui::Context) {
-        self.copy_command_of(context, &PictureChoices::default());
-    }
-
-    pub(in crate::app) fn copy_command_of(&mut self, context: &egui::Context, choices: &PictureChoices) {
+    /// Copies the command that draws what is shown with these choices, and shows that command in a window.
+    pub(in crate::app) fn copy_command(&mut self, context: &egui::Context, choices: &PictureChoices) {
         self.copy_line(context, self.command_of(context.theme(), choices, &self.viewport.camera, None, None));
     }
 

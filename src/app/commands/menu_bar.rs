@@ -6,7 +6,9 @@ use std::path::Path;
 use crate::app::App;
 use crate::app::jobs::folder_job::Neighbours;
 use crate::app::text::shortened;
-use crate::commands::{Action, Availability, CameraAction, Command, FileAction, Menu, Place, Submenu, all, shown_key};
+use crate::commands::{
+    Action, Availability, CameraAction, Change, Command, FileAction, Menu, Place, Submenu, all, shown_key,
+};
 
 impl App {
     pub(in crate::app) fn menu_bar(&mut self, ui: &mut egui::Ui) {
@@ -75,12 +77,12 @@ impl App {
                 ui.separator();
             }
             for command in commands.iter().filter(|command| group_of(command) == Some(group)) {
-                if self.menu_entry(ui, command, &now) {
+                if self.entry(ui, command, &now) {
                     chosen = Some(command);
                 }
             }
             for (_, submenu) in menu.submenus().iter().filter(|(of, _)| *of == group) {
-                chosen = submenu_entries(ui, *submenu, &commands, &now).or(chosen);
+                chosen = self.submenu_entries(ui, *submenu, &commands, &now).or(chosen);
             }
         }
         if let Some(command) = chosen {
@@ -90,25 +92,43 @@ impl App {
     }
 
     /// Shows a command in a menu. Returns true if it is chosen.
-    fn menu_entry(&self, ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
-        let why_not = command.why_not(now);
+    fn entry(&self, ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
+        let (why_not, name) = (command.why_not(now), command.value_name());
         let key = command.keys.first().map(|key| shown_key(ui.ctx(), key)).unwrap_or_default();
-        let response = ui.add_enabled_ui(why_not.is_none(), |ui| match self.is_on(ui.ctx(), &command.action) {
-            Some(is_on) if matches!(command.action, Action::Theme(_)) => ui.radio(is_on, &*command.name),
-            Some(mut is_on) => with_key_beside(ui, &key, |ui| ui.checkbox(&mut is_on, &*command.name)),
-            None if key.is_empty() => ui.button(&*command.name),
-            None => ui.add(egui::Button::new(&*command.name).shortcut_text(&key)),
-        });
-        let response = response.inner.on_hover_text(&*command.text);
+        let show = |ui: &mut egui::Ui| match (&command.action, self.is_on(ui.ctx(), &command.action)) {
+            (Action::File(FileAction::OpenRecent(path)), _) => ui.add(recent_button(path)),
+            (Action::Theme(_), Some(is_on)) => ui.radio(is_on, name),
+            (_, Some(mut is_on)) => with_key_beside(ui, &key, |ui| ui.checkbox(&mut is_on, name)),
+            (_, None) if key.is_empty() => ui.button(name),
+            (_, None) => ui.add(egui::Button::new(name).shortcut_text(&key)),
+        };
+        let response = ui.add_enabled_ui(why_not.is_none(), show).inner.on_hover_text(&*command.text);
         response.on_disabled_hover_text(why_not.unwrap_or_default()).clicked()
     }
 
-    /// Whether a menu's command that switches something is on; none for other commands, also those that are in no menu.
-    fn is_on(&self, context: &egui::Context, action: &Action) -> Option<bool> {
+    fn submenu_entries<'a>(
+        &self,
+        ui: &mut egui::Ui,
+        submenu: Submenu,
+        commands: &'a [Command],
+        now: &Availability,
+    ) -> Option<&'a Command> {
+        let of_submenu = |command: &&Command| command.place == Some(Place::Submenu(submenu));
+        let entries: Vec<_> = commands.iter().filter(of_submenu).collect();
+        let list = |ui: &mut egui::Ui| entries.iter().copied().filter(|command| self.entry(ui, command, now)).last();
+        let show = |ui: &mut egui::Ui| ui.menu_button(submenu.name(), list).inner;
+        ui.add_enabled_ui(!entries.is_empty(), show).inner.flatten()
+    }
+
+    /// Whether a command that switches something is on; none for commands that no menu and no toolbar shows as a switch.
+    pub(in crate::app) fn is_on(&self, context: &egui::Context, action: &Action) -> Option<bool> {
         match action {
             Action::Camera(CameraAction::Orthographic) => Some(self.viewport.camera.orthographic),
             Action::Chart => Some(self.panels.chart.is_open),
             Action::HidePanels => Some(self.panels.are_hidden),
+            Action::SplitView => Some(self.settings.split.is_some()),
+            Action::FreezeLodCamera => Some(self.viewport.frozen.is_some()),
+            Action::Setting(Change::Overlay(overlay)) => Some(self.settings.overlays.on().any(|on| on == *overlay)),
             Action::Ruler => Some(self.viewport.ruler.is_some()),
             Action::Previews => Some(self.viewport.preview.is_on),
             Action::Theme(theme) => Some(context.options(|options| options.theme_preference) == *theme),
@@ -141,32 +161,6 @@ const MARGIN: f32 = 60.0;
 fn scrolled(ui: &mut egui::Ui, entries: impl FnOnce(&mut egui::Ui)) {
     let most = (ui.ctx().content_rect().height() - MARGIN).max(100.0);
     egui::ScrollArea::vertical().min_scrolled_height(most).max_height(most).show(ui, entries);
-}
-
-fn submenu_entries<'a>(
-    ui: &mut egui::Ui,
-    submenu: Submenu,
-    commands: &'a [Command],
-    now: &Availability,
-) -> Option<&'a Command> {
-    let entries: Vec<_> = commands.iter().filter(|command| command.place == Some(Place::Submenu(submenu))).collect();
-    let show = |ui: &mut egui::Ui| {
-        ui.menu_button(submenu.name(), |ui| entries.iter().copied().filter(|command| entry(ui, command, now)).last())
-            .inner
-    };
-    ui.add_enabled_ui(!entries.is_empty(), show).inner.flatten()
-}
-
-fn entry(ui: &mut egui::Ui, command: &Command, now: &Availability) -> bool {
-    let key = command.keys.first().map(|key| shown_key(ui.ctx(), key)).unwrap_or_default();
-    let button = match &command.action {
-        Action::File(FileAction::OpenRecent(path)) => recent_button(path),
-        _ if key.is_empty() => egui::Button::new(command.value_name()),
-        _ => egui::Button::new(command.value_name()).shortcut_text(key),
-    };
-    let why_not = command.why_not(now);
-    let response = ui.add_enabled(why_not.is_none(), button).on_hover_text(&*command.text);
-    response.on_disabled_hover_text(why_not.unwrap_or_default()).clicked()
 }
 
 /// A button with a file's name and its folder.

@@ -53,7 +53,8 @@ impl Palette {
         let last = found.len().saturating_sub(1);
         self.at = if self.query == before { self.at } else { 0 };
         self.at = (self.at + usize::from(down)).saturating_sub(usize::from(up)).min(last);
-        let mut chosen = found.get(self.at).copied().filter(|&index| enter && self.is_possible(index));
+        let is_possible = |index: &usize| self.commands[*index].why_not(&self.now).is_none();
+        let mut chosen = found.get(self.at).copied().filter(|index| enter && is_possible(index));
         let first = (self.at + 1).saturating_sub(LISTED);
         for (row, &index) in found.iter().enumerate().skip(first).take(LISTED) {
             if self.row(ui, index, row == self.at) {
@@ -64,10 +65,6 @@ impl Palette {
             ui.weak("No command has these words.");
         }
         chosen
-    }
-
-    fn is_possible(&self, index: usize) -> bool {
-        self.commands[index].why_not(&self.now).is_none()
     }
 
     /// Shows a command with its key, dim if it isn't possible. Returns true if it is clicked.

@@ -4,7 +4,8 @@ use egui::{Context, OpenUrl, ViewportCommand, gui_zoom};
 
 use crate::app::App;
 use crate::app::dialogs::Forgetting;
-use crate::app::panels::destinations::Step;
+use crate::app::jobs::picture_job::PictureChoices;
+use crate::app::panels::destinations::{Destination, Step};
 use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
@@ -38,10 +39,10 @@ impl App {
             (Need::SurfaceShader, self.surface_shader.is_some()),
             (Need::Surface, !self.uses_surface_shader()),
             (Need::Environment, self.environment.is_some()),
-            (Need::Undo, self.can_undo()),
-            (Need::Redo, self.can_redo()),
-            (Need::ViewBefore, self.has_view_before()),
-            (Need::ViewAfter, self.has_view_after()),
+            (Need::Undo, !self.history.past.is_empty() || self.is_opening()),
+            (Need::Redo, !self.history.future.is_empty()),
+            (Need::ViewBefore, !self.view_history.views.past.is_empty()),
+            (Need::ViewAfter, !self.view_history.views.future.is_empty()),
             (Need::Bookmarks, bookmarks > 0),
             (Need::RoomForBookmarks, bookmarks < MOST_BOOKMARKS),
             (Need::Selection, self.selected_edge().is_some() || self.selected_triangle().is_some()),
@@ -83,7 +84,7 @@ impl App {
             Action::Prepare(preparing) => self.prepare_as(context, *preparing),
             Action::Undo => self.undo(context),
             Action::Redo => self.redo(context),
-            Action::CopyAsCommand => self.copy_command(context),
+            Action::CopyAsCommand => self.copy_command(context, &PictureChoices::default()),
             Action::CopyPicture => self.copy_picture(context),
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),
@@ -96,12 +97,13 @@ impl App {
             Action::FreezeLodCamera => self.toggle_frozen(),
             Action::Ruler => self.toggle_ruler(),
             Action::Previews => self.switch_previews(),
-            Action::AddBookmark => self.add_bookmark(),
+            Action::AddBookmark if self.viewport.bookmarks.contains(&self.viewport.camera) => {}
+            Action::AddBookmark => self.viewport.bookmarks.push(self.viewport.camera),
             Action::ForgetBookmarks => self.dialogs.asks_to_forget = Some(Forgetting::Bookmarks),
             Action::Background => self.dialogs.chooses_background = true,
             Action::Chart => self.toggle_chart(),
             Action::MeasureChart => self.measure_chart(context),
-            Action::WidestCrack => self.go_to_widest_crack(),
+            Action::WidestCrack => self.follow(Destination::Cracks, Step::Worst),
             Action::NextPlace => self.step_through_finding(Step::Next),
             Action::PreviousPlace => self.step_through_finding(Step::Previous),
             Action::Theme(theme) => context.set_theme(*theme),
@@ -116,13 +118,6 @@ impl App {
             Action::SearchCommands => self.search_commands(),
             Action::Keys => self.commands.shows_keys = true,
             Action::WhitePaper => context.open_url(OpenUrl::new_tab(WHITE_PAPER)),
-        }
-    }
-
-    /// Bookmarks this view, unless it is a bookmark already.
-    fn add_bookmark(&mut self) {
-        if !self.viewport.bookmarks.contains(&self.viewport.camera) {
-            self.viewport.bookmarks.push(self.viewport.camera);
         }
     }
 

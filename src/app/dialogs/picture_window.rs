@@ -41,7 +41,7 @@ impl App {
         if saves {
             self.ask_for(context, Purpose::Write(Written::Picture));
         } else if copies {
-            self.copy_command_of(context, &choices);
+            self.copy_command(context, &choices);
         }
     }
 

@@ -100,10 +100,6 @@ pub(super) fn button(purpose: Purpose) -> &'static str {
     }
 }
 
-pub(super) fn is_written(purpose: Purpose) -> bool {
-    matches!(purpose, Purpose::Write(_))
-}
-
 /// The proposed name of a file to write, after that of the mesh; none of a file to read.
 pub(super) fn proposed_name(purpose: Purpose, open: Option<&Source>) -> Option<String> {
     let title = open.map_or_else(|| "mesh".to_owned(), Source::title);

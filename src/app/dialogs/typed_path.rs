@@ -6,7 +6,7 @@ use egui::text::{CCursor, CCursorRange};
 use egui::{Event, Id, Key, TextEdit};
 
 use super::desktop_dialog::{Asked, ask};
-use super::purpose::{self, AskedFile, is_written, proposed, proposed_name};
+use super::purpose::{self, AskedFile, proposed, proposed_name};
 use super::typed_text::{Completion, completion, path_of};
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
@@ -48,19 +48,15 @@ impl PendingDialog {
 /// Why a path is typed where a dialog was asked for.
 const NO_DIALOG: &str = "This desktop has no file dialog (neither a portal nor zenity). Type the path instead.";
 
-enum Answer {
-    Accept,
-    Cancel,
-}
-
 impl TypedPath {
-    fn show(&mut self, context: &egui::Context) -> Option<Answer> {
+    /// Shows the window. Returns true if the path is accepted, and false if the window is closed.
+    fn show(&mut self, context: &egui::Context) -> Option<bool> {
         let window = egui::Window::new(AskedFile::new(self.purpose).title).resizable(false).collapsible(false);
         let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         window.show(context, |ui| self.rows(ui)).and_then(|shown| shown.inner).flatten()
     }
 
-    fn rows(&mut self, ui: &mut egui::Ui) -> Option<Answer> {
+    fn rows(&mut self, ui: &mut egui::Ui) -> Option<bool> {
         if let Some(why) = self.why {
             ui.label(why);
         }
@@ -88,7 +84,7 @@ impl TypedPath {
             let accepted = ui.add_enabled(!is_empty, egui::Button::new(purpose::button(self.purpose))).clicked()
                 || (entered && !is_empty);
             let cancelled = ui.button("Cancel").clicked();
-            accepted.then_some(Answer::Accept).or(cancelled.then_some(Answer::Cancel))
+            accepted.then_some(true).or(cancelled.then_some(false))
         })
         .inner
     }
@@ -197,8 +193,8 @@ impl App {
 
     pub(in crate::app) fn path_window(&mut self, context: &egui::Context) {
         match self.dialogs.typed_path.as_mut().and_then(|typed| typed.show(context)) {
-            Some(Answer::Accept) => self.take_typed(context),
-            Some(Answer::Cancel) => self.dialogs.typed_path = None,
+            Some(true) => self.take_typed(context),
+            Some(false) => self.dialogs.typed_path = None,
             None => {}
         }
     }
@@ -221,7 +217,9 @@ impl App {
             _ => path.parse::<Source>().map_err(|error| error.to_string()).and_then(found),
         };
         match source.and_then(|source| self.take_source(context, purpose, source)) {
-            Ok(()) if is_written(purpose) => self.dialogs.folder = Path::new(path).parent().map(Path::to_owned),
+            Ok(()) if matches!(purpose, Purpose::Write(_)) => {
+                self.dialogs.folder = Path::new(path).parent().map(Path::to_owned)
+            }
             Ok(()) => self.dialogs.typed = Some((purpose, typed)),
             Err(why) => return self.dialogs.error = Some(why),
         }

@@ -6,10 +6,8 @@ use super::notice::Notice;
 use super::turntable_window::TurntableWindow;
 use crate::app::App;
 use crate::app::jobs::companion_files::file_name;
-use crate::app::jobs::export_job::Export;
 use crate::app::jobs::job_list::Work;
-use crate::app::jobs::picture_job::PictureChoices;
-use crate::app::jobs::scenes::arena_bytes;
+use crate::app::jobs::picture_job::{PictureChoices, ShotParts};
 use crate::commands::Written;
 use geometry::mesh::adjacency::Layout;
 use geometry::names::shown_path;
@@ -61,14 +59,20 @@ impl App {
         Ok(())
     }
 
-    /// Starts to write the factors of this view, or of the frozen one, as a .csv file.
+    /// Starts to write numbers of this view, or of the frozen one, as a file with this ending.
     ///
     /// # Errors
     /// The path has another ending; as a sentence.
-    pub fn save_factors(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        check_ending(&path, &["csv"])?;
+    fn save_numbers(
+        &mut self,
+        context: &egui::Context,
+        path: PathBuf,
+        ending: &str,
+        save: impl FnOnce(ShotParts, &Path, &Progress) -> Result<(), String> + Send + 'static,
+    ) -> Result<(), String> {
+        check_ending(&path, &[ending])?;
         let Some(parts) = self.shot_parts(context.theme(), &PictureChoices::default()) else { return Ok(()) };
-        self.write(context, path, move |path, progress| parts.save_factors(path, progress));
+        self.write(context, path, move |path, progress| save(parts, path, progress));
         Ok(())
     }
 
@@ -76,7 +80,7 @@ impl App {
     ///
     /// # Errors
     /// The path has another ending; as a sentence.
-    pub fn save_adjacency(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
+    fn save_adjacency(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
         check_ending(&path, &["json", "bin"])?;
         let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return Ok(()) };
         self.write(context, path, move |path, progress| {
@@ -87,18 +91,6 @@ impl App {
                 .and_then(|()| write_adjacency(&loaded, Layout::Nine, &indices, Format::from_name(path), path));
             written.map_err(|error| error.to_string())
         });
-        Ok(())
-    }
-
-    /// Starts to measure what is shown, and to write the numbers as a .json file.
-    ///
-    /// # Errors
-    /// The path has another ending; as a sentence.
-    pub fn save_stats(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        check_ending(&path, &["json"])?;
-        let Some(parts) = self.shot_parts(context.theme(), &PictureChoices::default()) else { return Ok(()) };
-        let adapter = self.render_state.adapter.clone();
-        self.write(context, path, move |path, progress| parts.save_stats(&adapter, path, progress));
         Ok(())
     }
 
@@ -117,9 +109,15 @@ impl App {
             Written::Chart => self.write_chart(context, path),
             Written::Picture => self.save_picture(context, path)?,
             Written::Folder | Written::Gif => self.save_turntable(context, path)?,
-            Written::Factors => self.save_factors(context, path)?,
+            Written::Factors => self.save_numbers(context, path, "csv", ShotParts::save_factors)?,
             Written::Adjacency => self.save_adjacency(context, path)?,
-            Written::Stats => self.save_stats(context, path)?,
+            Written::Stats => {
+                let adapter = self.render_state.adapter.clone();
+                let save = move |parts: ShotParts, path: &Path, progress: &Progress| {
+                    parts.save_stats(&adapter, path, progress)
+                };
+                self.save_numbers(context, path, "json", save)?;
+            }
             Written::Mesh => self.export_mesh(context, path)?,
         }
         Ok(())
@@ -163,14 +161,8 @@ impl App {
     /// The path has another ending; as a sentence.
     pub fn export_mesh(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
         Exported::check_ending(&path).map_err(|error| error.to_string())?;
-        let Some(document) = &self.document else { return Ok(()) };
-        let view = self.viewport.camera.lod_view(self.viewport.picture.size(), &document.scene.bounds);
-        let inputs = self.settings.inputs(self.viewport.frozen.map_or(view, |frozen| frozen.view));
-        let (engine, loaded, moment) = (self.engine.clone(), document.loaded.clone(), document.moment);
-        let make = document.scene.sibling(arena_bytes(&engine));
-        let export = Export { engine, loaded, moment, inputs };
-        let write = move |path: &Path, progress: &_| export.run(make, path, progress);
-        self.write_with_warnings(context, "Exporting", path, write);
+        let Some(parts) = self.shot_parts(context.theme(), &PictureChoices::default()) else { return Ok(()) };
+        self.write_with_warnings(context, "Exporting", path, move |path, progress| parts.export(path, progress));
         Ok(())
     }
 }

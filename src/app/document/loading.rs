@@ -42,25 +42,21 @@ impl NotLoaded {
 const READ: f32 = 0.8;
 
 /// Loads a mesh, and makes the pipelines that a picture with these settings needs, so that the first picture doesn't wait for the
-/// driver's compiler. No reason is given if it was cancelled.
+/// driver's compiler.
 fn load(
     engine: &Engine,
     source: &Source,
     preparation: &Preparation,
     settings: &Settings,
     progress: &Progress,
-) -> Result<Document, Option<NotLoaded>> {
+) -> Result<Document, NotLoaded> {
     let read_from = Stamped::now(sources(source, preparation.heights.as_ref()));
-    let loaded = match engine::load(source, preparation, &progress.part(0.0, READ)) {
-        Ok(loaded) => loaded,
-        Err(LoadError::Cancelled(_)) => return Err(None),
-        Err(error) => {
-            let is_gone =
-                matches!(&error, LoadError::File(FileError::Io { source, .. }) if source.kind() == ErrorKind::NotFound);
-            return Err(Some(NotLoaded { why: error.to_string(), is_gone }));
-        }
-    };
-    let no_room = |error: GpuError| Some(NotLoaded::because(format!("{}: {error}", source.title())));
+    let loaded = engine::load(source, preparation, &progress.part(0.0, READ)).map_err(|error| {
+        let is_gone =
+            matches!(&error, LoadError::File(FileError::Io { source, .. }) if source.kind() == ErrorKind::NotFound);
+        NotLoaded { why: error.to_string(), is_gone }
+    })?;
+    let no_room = |error: GpuError| NotLoaded::because(format!("{}: {error}", source.title()));
     progress.enter(Stage::Device);
     progress.set(READ);
     let scene = scene_of(engine, &loaded).map_err(no_room)?;
@@ -168,11 +164,11 @@ impl App {
         source.into_iter().for_each(|source| self.open(context, source));
     }
 
-    fn take_loaded(&mut self, context: &egui::Context, ended: Result<Result<Document, Option<NotLoaded>>, Stopped>) {
+    fn take_loaded(&mut self, context: &egui::Context, ended: Result<Result<Document, NotLoaded>, Stopped>) {
         let Some(Load { source, keep_view, has_changed, .. }) = self.jobs.last_load.take() else { return };
-        match ended.unwrap_or_else(|stopped| Err(Some(NotLoaded::panicked(&source, &stopped)))) {
+        match ended.unwrap_or_else(|stopped| Err(NotLoaded::panicked(&source, &stopped))) {
             Ok(document) => self.take_document(context, Document { has_changed, ..document }, keep_view),
-            Err(Some(NotLoaded { mut why, is_gone })) => {
+            Err(NotLoaded { mut why, is_gone }) => {
                 if is_gone && self.persistence.gone(&source) {
                     why += "; it was removed from the recent files";
                 }
@@ -183,8 +179,6 @@ impl App {
                     self.open(context, Source::default());
                 }
             }
-            // It was cancelled in the window, so no message is needed.
-            Err(None) => {}
         }
     }
 

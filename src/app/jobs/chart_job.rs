@@ -57,18 +57,6 @@ pub(crate) struct Charted {
 }
 
 impl Charted {
-    pub(crate) fn new(
-        of: ChartBasis,
-        title: String,
-        reference_shape: Option<(&ReferenceShape, String)>,
-        adapter: String,
-    ) -> Self {
-        let (diagonal, reference_shape) =
-            reference_shape.map(|(reference_shape, words)| (reference_shape.diagonal(), words)).unzip();
-        let subject = Subject { title, reference_shape, adapter, size: of.size, rows: Vec::new() };
-        Self { of, subject, left_out: Vec::new(), diagonal, current: None }
-    }
-
     /// Inserts a row among those of its method, which go from coarse to fine.
     fn add(&mut self, row: Row) {
         let rows = &mut self.subject.rows;
@@ -137,11 +125,6 @@ impl ChartJob {
         });
     }
 
-    /// Frees the device.
-    pub(crate) fn free(&mut self) {
-        self.engine = None;
-    }
-
     /// Makes the run wait before its next setting, or lets it go on.
     pub(crate) fn hold(&self, hold: bool) {
         self.held.store(hold, Ordering::Relaxed);
@@ -158,7 +141,7 @@ impl App {
     pub(in crate::app) fn close_chart(&mut self) {
         self.jobs.stop(Work::Chart);
         self.panels.chart.still = None;
-        self.panels.chart.charting.free();
+        self.panels.chart.charting.engine = None;
     }
 
     /// Takes what a run has found; none if it has ended.

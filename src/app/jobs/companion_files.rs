@@ -48,24 +48,24 @@ pub(crate) fn new_generation() -> u64 {
 
 impl App {
     /// Starts to read `what`, a source as messages name it. `take` gets what was read; until then, all stays as it is. `read` fails with
-    /// a sentence, or without one if it was cancelled.
+    /// a sentence.
     pub(super) fn read_companion<T: Send + 'static>(
         &mut self,
         context: &egui::Context,
         work: Work,
         title: String,
         what: String,
-        read: impl FnOnce(&Progress) -> Result<T, Option<String>> + Send + 'static,
+        read: impl FnOnce(&Progress) -> Result<T, String> + Send + 'static,
         take: impl FnOnce(&mut Self, T) + 'static,
     ) {
         self.jobs.start(context, work, title, read, move |app, _, ended| {
-            match ended.unwrap_or_else(|stopped| Err(Some(format!("reading {what} {stopped}")))) {
+            match ended.unwrap_or_else(|stopped| Err(format!("reading {what} {stopped}"))) {
                 Ok(read) => take(app, read),
                 Err(why) => {
                     if work == Work::Light {
                         app.cancel_environment();
                     }
-                    app.dialogs.error = why.or(app.dialogs.error.take());
+                    app.dialogs.error = Some(why);
                 }
             }
         });

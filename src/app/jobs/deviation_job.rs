@@ -14,7 +14,8 @@ pub(crate) struct DeviationJob {
     /// What the measurement that was started last depends on.
     of: Option<DeviationBasis>,
     walk: Option<Walk<DeviationField>>,
-    found: Option<DeviationResult>,
+    /// The last result. While a new measurement is under way, it belongs to the previous inputs.
+    pub found: Option<DeviationResult>,
     /// Counts changes of the result.
     pub generation: u64,
 }
@@ -44,11 +45,6 @@ pub(crate) struct DeviationResult {
 }
 
 impl DeviationJob {
-    /// The last result. While a new measurement is under way, it belongs to the previous inputs.
-    pub(crate) fn found(&self) -> Option<&DeviationResult> {
-        self.found.as_ref()
-    }
-
     /// The result, if it is about this.
     pub(crate) fn found_of(&self, of: DeviationBasis) -> Option<&DeviationResult> {
         self.found.as_ref().filter(|found| found.of == of)

@@ -10,7 +10,7 @@ use geometry::names::shown_path;
 use geometry::progress::Progress;
 use inspect::render::environment::Environment;
 use inspect::settings::Lighting;
-use load::environment_file::{EnvironmentError, EnvironmentFile};
+use load::environment_file::EnvironmentFile;
 
 pub(crate) struct Light {
     /// What was repaired, in sentences.
@@ -32,11 +32,8 @@ impl App {
         let read = move |progress: &Progress| {
             let part = progress.part(0.0, 0.8);
             let EnvironmentFile { panorama, warnings } =
-                EnvironmentFile::load(&wanted, &limits, &part).map_err(|error| match error {
-                    EnvironmentError::Cancelled(_) => None,
-                    error => Some(error.to_string()),
-                })?;
-            let no_room = |error| Some(format!("{}: {error}", shown_path(&wanted)));
+                EnvironmentFile::load(&wanted, &limits, &part).map_err(|error| error.to_string())?;
+            let no_room = |error| format!("{}: {error}", shown_path(&wanted));
             let environment = Arc::new(Environment::from_panorama(&gpu, panorama).map_err(no_room)?);
             Ok(Light { warnings, environment })
         };

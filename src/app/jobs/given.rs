@@ -49,7 +49,7 @@ impl App {
         let (has, scene) = (&mut document.from_files, &mut document.scene);
         if !self.jobs.has(Work::LeftHalf) {
             if (has.factors, has.left_factors) != (wanted.factors, wanted.left_factors) {
-                let file = self.given.as_ref().map(|given| Given::Factors(given.content.factors()));
+                let file = self.given.as_ref().map(|given| Given::Factors(given.content.factors.to_vec()));
                 let shader = self.lod_shader.as_ref().and_then(OpenShader::shader);
                 let shader = shader.filter(|(_, generation)| *generation == wanted.factors);
                 let given = shader.map(|(shader, _)| Given::Shader(shader)).or(file);

@@ -16,7 +16,7 @@ use inspect::shot::read_factors;
 
 /// Factors that a file has for each patch of the mesh that is open.
 pub(crate) struct GivenFactors {
-    factors: Arc<Vec<HullFactors>>,
+    pub(super) factors: Arc<Vec<HullFactors>>,
     partitioning: Partitioning,
     /// Where they disagree; none while they are compared under another convention than before.
     pub compared: Option<ComparedFactors>,
@@ -28,12 +28,6 @@ pub(crate) struct GivenFactors {
 pub(crate) struct ComparedFactors {
     convention: Convention,
     pub agreement: Agreement,
-}
-
-impl GivenFactors {
-    pub(super) fn factors(&self) -> Vec<HullFactors> {
-        self.factors.to_vec()
-    }
 }
 
 impl ComparedFactors {
@@ -58,8 +52,7 @@ impl App {
         let own = self.settings.tessellation;
         let (wanted, partitioning) = (path.clone(), own.partitioning);
         let read = move |_: &_| {
-            let factors =
-                read_factors(&wanted, &mesh, &topology, partitioning).map_err(|error| Some(error.to_string()))?;
+            let factors = read_factors(&wanted, &mesh, &topology, partitioning).map_err(|error| error.to_string())?;
             let compared = ComparedFactors::new(&topology, &factors, own.convention);
             Ok((Arc::new(factors), compared))
         };

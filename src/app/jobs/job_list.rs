@@ -71,7 +71,7 @@ impl Work {
 /// What is done in the window with what a job found.
 type Landing = Box<dyn FnOnce(&mut App, &egui::Context)>;
 
-/// A job under way. Dropping it cancels it.
+/// A job under way. Dropping it cancels it, and nothing is done with what it finds.
 pub(crate) struct Job {
     work: Work,
     /// What is under way, such as "Saving torus.png", if it is shown.

@@ -5,7 +5,7 @@ use super::job_list::Work;
 use crate::app::App;
 use geometry::progress::Progress;
 use inspect::engine::{self, Loaded, Preparation};
-use load::{LoadError, Source};
+use load::Source;
 
 pub(crate) struct LeftMesh {
     /// What it was read from; none for the mesh before its file changed.
@@ -27,12 +27,8 @@ impl App {
         let import = self.preparation().import;
         let preparation = Preparation { import, limits: self.jobs.limits, ..Preparation::default() };
         let wanted = source.clone();
-        let load = move |progress: &Progress| {
-            engine::load(&wanted, &preparation, progress).map_err(|error| match error {
-                LoadError::Cancelled(_) => None,
-                error => Some(error.to_string()),
-            })
-        };
+        let load =
+            move |progress: &Progress| engine::load(&wanted, &preparation, progress).map_err(|error| error.to_string());
         let title = format!("Loading {} for the left half", source.title());
         self.read_companion(context, Work::LeftMesh, title, source.title(), load, |app, loaded| {
             app.show_left_mesh(Some(source), loaded);

@@ -15,7 +15,7 @@ impl App {
     pub fn open_matcap(&mut self, context: &egui::Context, path: PathBuf) {
         let path = absolute_path(path);
         let (wanted, limits, what) = (path.clone(), self.jobs.limits, shown_path(&path));
-        let read = move |_: &_| load_matcap(&wanted, &limits).map_err(|error| Some(error.to_string()));
+        let read = move |_: &_| load_matcap(&wanted, &limits).map_err(|error| error.to_string());
         self.read_companion(context, Work::Matcap, String::new(), what, read, |app, picture| {
             app.matcap = Some(OpenFile::new(path, Arc::new(picture)));
             app.settings.overlays.colors = Colors::Matcap;

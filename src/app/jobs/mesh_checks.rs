@@ -12,18 +12,15 @@ use inspect::gates::{Judgement, found_in_mesh};
 /// What the checks of a mesh have found so far.
 #[derive(Default)]
 pub(crate) struct Checks {
-    normal_faults: OnceLock<NormalFaults>,
+    /// Normals that are legal but suspicious.
+    pub normal_faults: OnceLock<NormalFaults>,
     t_junctions: OnceLock<Vec<TJunction>>,
     found: OnceLock<Vec<Judgement>>,
-    joins: OnceLock<Vec<WeldPreview>>,
+    /// What each weld tolerance would join.
+    pub joins: OnceLock<Vec<WeldPreview>>,
 }
 
 impl Checks {
-    /// Normals that are legal but suspicious, once counted.
-    pub(crate) fn normal_faults(&self) -> Option<&NormalFaults> {
-        self.normal_faults.get()
-    }
-
     pub(crate) fn t_junctions(&self) -> Option<&[TJunction]> {
         self.t_junctions.get().map(Vec::as_slice)
     }
@@ -31,11 +28,6 @@ impl Checks {
     /// What the gates of the mesh find in it; nothing until they are judged.
     pub(crate) fn found(&self) -> &[Judgement] {
         self.found.get().map(Vec::as_slice).unwrap_or_default()
-    }
-
-    /// What each weld tolerance would join, once known.
-    pub(crate) fn joins(&self) -> Option<&[WeldPreview]> {
-        self.joins.get().map(Vec::as_slice)
     }
 }
 

@@ -6,7 +6,6 @@ pub(super) mod companion_files;
 pub(super) mod deviation_job;
 pub(super) mod environment_job;
 pub(super) mod explain_job;
-pub(super) mod export_job;
 pub(super) mod file_watch;
 pub(super) mod folder_job;
 pub(super) mod given;

@@ -1,17 +1,23 @@
-//! What files of pictures are drawn from: the window's mesh, settings and camera, in a scene of their own.
+//! What files of pictures, of factors and of the tessellated mesh are made from: the window's mesh, settings and camera, in a scene of
+//! their own.
 
 use std::path::Path;
 
 use super::scenes::arena_bytes;
 use crate::app::App;
 use geometry::progress::Progress;
-use gpu::{Gpu, GpuError};
+use geometry::tessellate::{Inputs, Tessellated};
+use gpu::{Gpu, GpuError, Timing};
 use inspect::engine::Engine;
-use inspect::export::ending;
+use inspect::export::{Exported, ending};
+use inspect::measure::EmittedChunk;
 use inspect::render::Scene;
 use inspect::settings::{ARENA_BYTES, ColorSource, Overlays, Settings, SplitSide};
 use inspect::shot::files::write_factors;
 use inspect::shot::{ReferenceSurface, Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
+
+/// How much of the progress is for reading the mesh back from the device; the rest is for writing the file.
+const READING: f32 = 0.8;
 
 /// How a picture is saved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,13 +99,46 @@ impl ShotParts {
     /// # Errors
     /// The device fails, or the file can't be written; as a sentence.
     pub(crate) fn save_factors(self, path: &Path, progress: &Progress) -> Result<(), String> {
+        self.with_scene(|engine, scene, _, inputs| write_factors(engine, scene, inputs, path, progress))
+    }
+
+    /// Writes the mesh that is emitted for this view. Writes nothing if it was cancelled. Returns sentences about what is drawn but
+    /// couldn't be written.
+    ///
+    /// # Errors
+    /// The device fails, or the file can't be written; as a sentence.
+    pub(crate) fn export(self, path: &Path, progress: &Progress) -> Result<Vec<String>, String> {
+        self.with_scene(|engine, scene, subject, inputs| {
+            engine.count(scene, inputs, &mut Timing::Off)?;
+            let (vertices, triangles) = scene.tessellator.totals();
+            Exported::check(path, &subject.loaded.mesh, vertices, triangles)?;
+            let mut tessellated = Tessellated::default();
+            let mut append = |chunk: &EmittedChunk| tessellated.append(chunk.vertices, chunk.triangles);
+            engine.visit_watched(scene, &mut [&mut append], &progress.part(0.0, READING))?;
+            progress.check()?;
+            let posed = subject.loaded.posed(subject.moment);
+            let exported = Exported::new(&posed.mesh, &posed.topology, &tessellated);
+            progress.check()?;
+            let said = exported.write(path)?;
+            Ok(left_out(&tessellated, posed.topology.patches.len()).into_iter().chain(said).collect())
+        })
+    }
+
+    /// Hands over a scene of its own, so that the window's isn't changed, and what it is tessellated with.
+    ///
+    /// # Errors
+    /// The device fails, or `act` does; as a sentence.
+    fn with_scene<T>(
+        self,
+        act: impl FnOnce(&Engine, &mut Scene, &Subject, &Inputs) -> Result<T, ShotError>,
+    ) -> Result<T, String> {
         let Self { engine, make, subject, view } = self;
         let own = engine.clone();
         let attempted = engine.gpu.attempt(move || {
             let mut scene = make()?;
             subject.apply_to_scene(&own, &mut scene)?;
             let inputs = subject.settings.inputs(view.lod_view(&scene));
-            write_factors(&own, &mut scene, &inputs, path, progress)
+            act(&own, &mut scene, &subject, &inputs)
         });
         said(attempted)
     }
@@ -122,8 +161,22 @@ impl ShotParts {
 }
 
 /// What went wrong, as a sentence.
-fn said(attempted: Result<Result<(), ShotError>, GpuError>) -> Result<(), String> {
+fn said<T>(attempted: Result<Result<T, ShotError>, GpuError>) -> Result<T, String> {
     attempted.map_err(|error| error.to_string())?.map_err(|error| error.to_string())
+}
+
+/// A sentence about patches that aren't in the file, if there are any: somebody who didn't set clipping or culling expects all.
+fn left_out(tessellated: &Tessellated, patches: usize) -> Option<String> {
+    let mut is_written = vec![false; patches];
+    tessellated.vertices.iter().for_each(|vertex| is_written[vertex.patch() as usize] = true);
+    let left_out = is_written.iter().filter(|is_written| !**is_written).count();
+    let said = || {
+        format!(
+            "{left_out} of {patches} patches aren't drawn in this view, and aren't in the file. To export all of them, switch off \
+             Clipping and Cull back faces (under Advanced)."
+        )
+    };
+    (left_out > 0).then(said)
 }
 
 impl App {

@@ -9,7 +9,7 @@ use geometry::progress::Progress;
 use inspect::reference_shape::ReferenceShape;
 use inspect::settings::Colors;
 use load::import::Subdivide;
-use load::{Import, LoadError, Source};
+use load::{Import, Source};
 
 /// A reference surface that was chosen for the mesh.
 pub(crate) struct ChosenReferenceShape {
@@ -26,9 +26,8 @@ impl App {
         let import = Import { subdivide: Subdivide::File, ..self.preparation().import };
         let load = move |progress: &Progress| match ReferenceShape::load(&wanted, import, &limits, progress) {
             Ok(Some(reference_shape)) => Ok(Arc::new(reference_shape)),
-            Ok(None) => Err(Some(format!("{wanted} can't be a reference surface: it has no triangles"))),
-            Err(LoadError::Cancelled(_)) => Err(None),
-            Err(error) => Err(Some(error.to_string())),
+            Ok(None) => Err(format!("{wanted} can't be a reference surface: it has no triangles")),
+            Err(error) => Err(error.to_string()),
         };
         let title = format!("Loading the reference surface {}", source.title());
         self.read_companion(context, Work::ReferenceShape, title, source.title(), load, |app, reference_shape| {

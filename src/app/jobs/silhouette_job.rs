@@ -37,7 +37,8 @@ enum OutlineComparison {
 pub(crate) struct MeasuredOutlines {
     pub silhouette: Silhouette,
     picture: RgbaImage,
-    texture: TextureHandle,
+    /// The picture, which lies over that of the view.
+    pub texture: TextureHandle,
 }
 
 impl SilhouetteJob {
@@ -163,11 +164,6 @@ impl App {
         let document = self.document.as_ref().filter(|_| self.shows_silhouette())?;
         let view = self.viewport.picture.seen_from()?;
         document.silhouette.found((document.scene.tessellator.generation(), view))
-    }
-
-    /// The texture of the outlines that lie over the picture.
-    pub(in crate::app) fn outlines_texture(&self) -> Option<egui::TextureId> {
-        self.found_outlines().map(|found| found.texture.id())
     }
 
     /// Lays the outlines over a copy of the picture that is shown.

@@ -121,7 +121,7 @@ pub(crate) struct OpenShader<S: UserShaderSlot> {
     /// The version before that, should the present one take too long.
     before: Option<Version<S>>,
     /// Why the newest version can't be used, in a sentence.
-    error: Option<String>,
+    pub error: Option<String>,
     /// The setting that is there again when the file is closed.
     replaced: S::Setting,
 }
@@ -129,11 +129,6 @@ pub(crate) struct OpenShader<S: UserShaderSlot> {
 impl<S: UserShaderSlot> OpenShader<S> {
     pub(crate) fn name(&self) -> String {
         file_name(&self.path)
-    }
-
-    /// Why the newest version of the file can't be used, in a sentence.
-    pub(crate) fn error(&self) -> Option<&str> {
-        self.error.as_deref()
     }
 
     /// Whether some version of the file can be used.
@@ -244,12 +239,12 @@ impl App {
 
     /// Why the newest version of the LOD shader can't be used, in a sentence.
     pub fn lod_shader_error(&self) -> Option<&str> {
-        self.lod_shader.as_ref().and_then(OpenShader::error)
+        self.lod_shader.as_ref()?.error.as_deref()
     }
 
     /// Why the newest version of the surface shader can't be used, in a sentence.
     pub fn surface_shader_error(&self) -> Option<&str> {
-        self.surface_shader.as_ref().and_then(OpenShader::error)
+        self.surface_shader.as_ref()?.error.as_deref()
     }
 
     /// Closes the file, so that the setting holds again.

@@ -6,7 +6,8 @@ use crate::app::App;
 use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
 use geometry::tessellate::Tessellation;
 use inspect::settings::Settings;
-use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, coarse_first, save, whole};
+use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, Subject, coarse_first, save, whole};
+use load::Source;
 
 #[derive(Default)]
 pub(crate) struct Chart {
@@ -82,16 +83,18 @@ impl App {
     /// Starts to measure the settings that the chart lacks. Measures all anew if it lacks none, or is out of date.
     pub(in crate::app) fn measure_chart(&mut self, context: &egui::Context) {
         let Some(of) = self.chart_of() else { return };
-        let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
+        let Some(title) = self.source().map(Source::title) else { return };
         let (_, reference_shape, words) = self.yardstick();
         let all = self.chart_settings();
         let is_known = |setting: &Setting| self.panels.chart.charted().is_some_and(|charted| charted.has(setting));
         let missing: Vec<_> = all.iter().filter(|setting| !is_known(setting)).copied().collect();
         let starts_over = missing.is_empty() || self.panels.chart.charted().is_none_or(|charted| charted.of != of);
         if starts_over {
-            let (title, adapter) = (loaded.source.title(), self.engine.gpu.info.name.clone());
-            let compared = reference_shape.as_deref().map(|reference_shape| (reference_shape, words));
-            self.panels.chart.charting.charted = Some(Charted::new(of, title, compared, adapter));
+            let (adapter, size) = (self.engine.gpu.info.name.clone(), of.size);
+            let (diagonal, reference_shape) = reference_shape.map(|compared| (compared.diagonal(), words)).unzip();
+            let subject = Subject { title, reference_shape, adapter, size, rows: Vec::new() };
+            let charted = Charted { of, subject, left_out: Vec::new(), diagonal, current: None };
+            self.panels.chart.charting.charted = Some(charted);
         }
         let mut settings = if starts_over { all } else { missing };
         // The window's own setting comes first.
@@ -99,21 +102,28 @@ impl App {
         settings.sort_by_key(|setting| Some(*setting) != own);
         let is_listed = settings.first().is_some_and(|first| Some(*first) == own);
         let current = self.unknown_current().filter(|_| !is_listed);
-        let adapter = self.render_state.adapter.clone();
-        let job = Job { adapter, loaded, of, reference_shape, current, settings, effort: self.chart_effort() };
+        self.start_charting(context, of, current, settings);
+    }
+
+    /// Starts to measure settings and the window's own, with the effort of the command's chart, but with one core left for the window.
+    fn start_charting(
+        &mut self,
+        context: &egui::Context,
+        of: ChartBasis,
+        current: Option<Settings>,
+        settings: Vec<Setting>,
+    ) {
+        let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
+        let (adapter, reference_shape) = (self.render_state.adapter.clone(), self.yardstick().1);
+        let mut effort = self.panels.chart.effort;
+        effort.accuracy.threads = effort.accuracy.threads.saturating_sub(1).max(1);
+        let job = Job { adapter, loaded, of, reference_shape, current, settings, effort };
         self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
     pub(in crate::app) fn chart_settings(&self) -> Vec<Setting> {
         let plan = Plan { normals: vec![self.settings.tessellation.normals], ..self.panels.chart.plan.clone() };
         coarse_first(plan.settings())
-    }
-
-    /// The effort of the command's chart, but with one core left for the window.
-    fn chart_effort(&self) -> Effort {
-        let mut effort = self.panels.chart.effort;
-        effort.accuracy.threads = effort.accuracy.threads.saturating_sub(1).max(1);
-        effort
     }
 
     /// The window's settings, if they aren't measured yet.
@@ -144,16 +154,7 @@ impl App {
             context.request_repaint_after(std::time::Duration::from_secs_f64(STILL - (now - since)));
             return;
         }
-        let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
-        let (adapter, reference_shape) = (self.render_state.adapter.clone(), self.yardstick().1);
-        let (effort, settings) = (self.chart_effort(), Vec::new());
-        let job = Job { adapter, loaded, of, reference_shape, current: Some(current), settings, effort };
-        self.panels.chart.charting.start(&mut self.jobs, context, job);
-    }
-
-    /// Makes the chart's measuring wait while the window draws or measures.
-    pub(in crate::app) fn hold_chart(&self) {
-        self.panels.chart.charting.hold(self.is_busy());
+        self.start_charting(context, of, Some(current), Vec::new());
     }
 }
 

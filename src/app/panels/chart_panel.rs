@@ -158,18 +158,9 @@ impl App {
             ui.weak("Surfaces");
             Surface::ALL.into_iter().for_each(|surface| switch(ui, &mut plan.surfaces, surface, surface.label()));
             ui.weak("Level of detail");
-            LodKind::ALL.into_iter().for_each(|lod| switch(ui, &mut plan.lods, lod, lod_name(lod)));
+            LodKind::ALL.into_iter().for_each(|lod| switch(ui, &mut plan.lods, lod, lod.label()));
         });
         response.on_hover_text("The surfaces and LODs that are tried, with the normals of the settings panel.");
-    }
-}
-
-fn lod_name(lod: LodKind) -> &'static str {
-    match lod {
-        LodKind::Uniform => "Uniform factor",
-        LodKind::Paper => "White paper's LOD",
-        LodKind::Error => "LOD by error",
-        LodKind::ErrorRows => "LOD by error, rows",
     }
 }
 
@@ -252,7 +243,7 @@ fn legend(ui: &mut egui::Ui, charted: &Charted, plan: Option<&Plan>, is_stale: b
             line(ui.painter(), &[place.left_center(), place.right_center()], stroke, dash);
         };
         for lod in LodKind::ALL.into_iter().filter(|lod| has_lod(*lod)) {
-            let place = legend_entry(ui, 30.0, lod_name(lod), "The dashes of lines between settings with this LOD.");
+            let place = legend_entry(ui, 30.0, lod.label(), "The dashes of lines between settings with this LOD.");
             sample(ui, place, egui::Stroke::new(1.4, inks.text), dash(lod));
         }
         let place = legend_entry(ui, 26.0, "Front", "Settings that no other setting beats in both error and cost.");

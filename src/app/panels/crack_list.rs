@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{FoundRow, columns, fact, found_list, list, list_title, number, swatch};
 use crate::commands::{Action, with_key};
-use geometry::mesh::{EdgeKind, TJunction, Topology};
+use geometry::mesh::{TJunction, Topology};
 use geometry::view::ulp;
 use glam::Vec3;
 use inspect::gates::{EdgeSpot, Spot};
@@ -39,7 +39,7 @@ impl App {
         let which = document.generation as u32 ^ results.seen.inputs.tessellation.surface as u32;
         let clicked = found_list(ui, "worst edges", cracked.len(), which, |row| {
             let crack = &cracked[row];
-            let kind = kind_name(topology.edges[crack.edge as usize].kind);
+            let kind = topology.edges[crack.edge as usize].kind.label();
             FoundRow {
                 columns: format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap)),
                 is_selected: self.selected_edge() == Some(crack.edge),
@@ -63,7 +63,7 @@ impl App {
     pub(in crate::app) fn edge_details(&mut self, ui: &mut egui::Ui) {
         let (Some(edge), Some(document)) = (self.selected_edge(), &self.document) else { return };
         let topology = &document.loaded.topology;
-        let kind = kind_name(topology.edges[edge as usize].kind);
+        let kind = topology.edges[edge as usize].kind.label();
         let mut closed = false;
         ui.add_space(8.0);
         ui.horizontal(|ui| {
@@ -230,10 +230,6 @@ fn side_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
             ui.end_row();
         }
     });
-}
-
-pub(in crate::app) fn kind_name(kind: EdgeKind) -> &'static str {
-    kind.label()
 }
 
 /// A row for each point of an edge with the distance between its sides. The hover text has the positions.

@@ -66,11 +66,6 @@ enum FoundPlace {
 }
 
 impl App {
-    /// Shows the edge with the widest gap.
-    pub(in crate::app) fn go_to_widest_crack(&mut self) {
-        self.follow(Destination::Cracks, Step::Worst);
-    }
-
     /// Goes on to another place of the finding that is shown, or else to the first finding's worst place.
     pub(in crate::app) fn step_through_finding(&mut self, step: Step) {
         let shown = self.document.as_ref().and_then(|document| document.shown_finding).map(|finding| finding.leads);
@@ -80,7 +75,7 @@ impl App {
         }
     }
 
-    pub(super) fn follow(&mut self, leads: Destination, step: Step) {
+    pub(in crate::app) fn follow(&mut self, leads: Destination, step: Step) {
         self.turn_on(leads);
         let places = self.places(leads);
         let Some(document) = self.document.as_mut().filter(|_| !places.is_empty()) else { return };
@@ -143,23 +138,17 @@ impl App {
 
     /// Turns on what shows a finding: its overlay, its colours, its section or its window.
     fn turn_on(&mut self, leads: Destination) {
+        use Destination::{Cracks, Folds, Leaks, TJunctions};
         let (overlays, open) = (&mut self.settings.overlays, &mut self.panels.open);
+        if matches!(leads, Cracks | Leaks | Folds | TJunctions) {
+            open.set(Section::Cracks, true);
+        }
         match leads {
-            Destination::Cracks => {
-                overlays.cracks = true;
-                open.set(Section::Cracks, true);
-            }
-            Destination::Leaks => open.set(Section::Cracks, true),
-            Destination::Folds => {
-                overlays.folds = true;
-                open.set(Section::Cracks, true);
-            }
-            Destination::TJunctions => {
-                overlays.t_junctions = true;
-                open.set(Section::Cracks, true);
-            }
+            Cracks => overlays.cracks = true,
+            Folds => overlays.folds = true,
+            TJunctions => overlays.t_junctions = true,
             Destination::Mesh(gate) => gate.overlays().iter().for_each(|overlay| overlays.turn_on(*overlay)),
-            Destination::ShadingSeams => {}
+            Leaks | Destination::ShadingSeams => {}
             Destination::GivenFactors => {
                 let section = if self.uses_lod_shader() { Section::LodShader } else { Section::Factors };
                 self.panels.open.set(section, true);

@@ -96,7 +96,7 @@ impl App {
         let scene = &self.document.as_ref()?.scene;
         let shown = SplitSide::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
         let largest = shown
-            .filter_map(|half| self.deviating(half)?.found())
+            .filter_map(|half| self.deviating(half)?.found.as_ref())
             .map(|found| found.largest.at_least)
             .reduce(f64::max)?;
         Some(deviation_scale(largest, scene.ulp()))

@@ -1,9 +1,8 @@
 //! The row for the lit sphere of the matcap overlay: one that is made in code, or that of an image.
 
-use super::option_rows::with_note;
 use crate::app::App;
 use crate::app::jobs::companion_files::OpenFile;
-use crate::commands::{CompanionFile, MATCAP_IMAGE, Purpose};
+use crate::commands::{CompanionFile, MATCAP_IMAGE, Purpose, with_note};
 use inspect::settings::{Choice, Matcap, options};
 
 impl App {

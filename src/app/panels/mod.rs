@@ -38,6 +38,7 @@ use chart::Chart;
 use sides::Side;
 
 /// What the panels remember from one frame to the next.
+#[derive(Default)]
 pub(super) struct Panels {
     pub chart: Chart,
     pub open: OpenSections,
@@ -55,20 +56,4 @@ pub(super) struct Panels {
     pub patch_height: f32,
     /// The displacement before it was last switched.
     pub last_displacement: Displacement,
-}
-
-impl Default for Panels {
-    fn default() -> Self {
-        Self {
-            chart: Chart::default(),
-            open: OpenSections::default(),
-            are_hidden: false,
-            side: Side::default(),
-            edited: SplitSide::Right,
-            parts_filter: String::new(),
-            dragged_crease_band: None,
-            patch_height: 0.0,
-            last_displacement: Displacement::usual(false),
-        }
-    }
 }

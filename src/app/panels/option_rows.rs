@@ -2,6 +2,7 @@
 
 use crate::app::text::typed_number;
 use crate::app::widgets::{chooser, fixed, text_width};
+use crate::commands::with_note;
 use inspect::settings::{Declaration, Kind, Range, Settings, Value};
 
 /// What sliders of light reach, in EV. More can be typed, up to the option's own range, but over all of that a step of the slider
@@ -41,11 +42,6 @@ pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings:
 pub(super) fn option_hover(option: &Declaration, key: &str) -> String {
     let name = format!("--{}", option.name);
     with_note(option.text, &if key.is_empty() { name } else { format!("{key}; {name}") })
-}
-
-/// A text with a note in parentheses at its end, if there is one.
-pub(super) fn with_note(text: &str, note: &str) -> String {
-    if note.is_empty() { text.to_owned() } else { format!("{} ({note}).", text.trim_end_matches('.')) }
 }
 
 /// Returns by how much the button of a number is wider than usual, in points.

@@ -2,7 +2,6 @@
 
 use egui::{RichText, Ui};
 
-use super::crack_list::kind_name;
 use super::patch_explanation::ShownExplanation;
 use super::patch_pattern::{pattern_plot, weights_text};
 use crate::app::jobs::explain_job::EmittedPatch;
@@ -263,8 +262,7 @@ impl SelectedPatch<'_> {
                 if response.on_hover_text(format!("Selects the edge, number {}.", side.edge)).clicked() {
                     *wish = Some(Wish::Edge(side.edge));
                 }
-                let hover = edge.kind.text();
-                ui.label(kind_name(edge.kind)).on_hover_text(hover);
+                ui.label(edge.kind.label()).on_hover_text(edge.kind.text());
                 let others = self.topology.edge_sides(edge).iter().map(|side| side.patch());
                 let others: Vec<_> = others.filter(|&patch| patch != self.patch).collect();
                 if let Some(triangle) = neighbours(ui, self.topology, &others) {

@@ -1,13 +1,15 @@
 //! The settings in the left panel.
 
-use super::option_rows::{option_hover, option_row, with_note};
+use super::option_rows::{option_hover, option_row};
 use crate::app::App;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::left_mesh::LeftMesh;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
-use crate::commands::{Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key};
+use crate::commands::{
+    Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
+};
 use geometry::tessellate::{Lod, Surface, Tessellation};
 use inspect::settings::{Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, SplitSide, options};
 
@@ -163,7 +165,8 @@ impl App {
             None => option_row(ui, &options::LOD, settings, key_name(&Action::Setting(Change::AdaptiveLod))),
         }
         if (options::FACTOR.no_effect)(settings).is_none() {
-            option_row(ui, &options::FACTOR, settings, &factor_keys());
+            let [up, down] = [Change::FactorUp, Change::FactorDown].map(|change| key_name(&change.into()));
+            option_row(ui, &options::FACTOR, settings, &format!("{up} and {down}"));
         }
         let own: Vec<_> = options_of_lods().filter(|option| (option.no_effect)(settings).is_none()).collect();
         for option in own {
@@ -244,7 +247,7 @@ impl App {
         let mut chosen = weld;
         let combo = egui::ComboBox::from_id_salt("Weld").selected_text(tolerance(weld)).show_ui(ui, |ui| {
             ui.selectable_value(&mut chosen, 0.0, "Exact").on_hover_text("Only exactly equal positions are one point.");
-            match document.checks.joins() {
+            match document.checks.joins.get() {
                 Some(all) => {
                     for joins in all {
                         let text = format!("{}: {joins}", tolerance(joins.tolerance));
@@ -312,11 +315,6 @@ fn options_of_lods() -> impl Iterator<Item = &'static Declaration> {
         (1..Lod::ALL.len()).contains(&idle)
     };
     options::TESSELLATION.into_iter().filter(depends_on_lod).filter(|option| option.name != options::FACTOR.name)
-}
-
-fn factor_keys() -> String {
-    let [up, down] = [Change::FactorUp, Change::FactorDown].map(|change| key_name(&Action::Setting(change)));
-    format!("{up} and {down}")
 }
 
 /// A row that is there only where the option has an effect.

@@ -206,7 +206,7 @@ impl App {
     /// Normals that are legal but suspicious.
     fn normal_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
-        let faults = document.checks.normal_faults();
+        let faults = document.checks.normal_faults.get();
         let count = |number: Option<u32>| number.map_or_else(|| "…".into(), |count| grouped(count.into()));
         let hover = "Corners whose normal points to the back of their triangle.";
         fact(ui, "Normals inward", &count(faults.map(|faults| faults.against_face)), hover);

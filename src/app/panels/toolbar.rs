@@ -5,7 +5,9 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use super::settings_panel::{colors_hover, overlay_hover};
 use crate::app::App;
 use crate::app::widgets::{switch_button, text_width};
-use crate::commands::{Action, Availability, CameraAction, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key};
+use crate::commands::{
+    Action, Availability, CameraAction, Change, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key,
+};
 use inspect::settings::{Choice, ColorSource, Colors, Control, Overlay};
 
 /// The width of the list of colours, in points: that of its longest entry.
@@ -26,27 +28,17 @@ impl App {
             ui.spacing_mut().item_spacing.x = 4.0;
             let now = self.availability();
             let commands = all(&now);
-            let hover = "Shows the untessellated mesh, another tessellation or another mesh left of a divider.";
-            if toggle(ui, self.settings.split.is_some(), ["Split", "Split view"], &with_key(hover, &Action::SplitView))
-            {
-                self.toggle_split();
-            }
+            self.command_button(ui, &commands, &now, &Action::SplitView, ["Split", "Split view"]);
             for overlay in ON_TOOLBAR {
-                if let Control::Switch(switch) = self.settings.overlays.control(overlay)
-                    && toggle(ui, *switch, [overlay.label(); 2], &overlay_hover(overlay))
-                {
-                    *switch = !*switch;
-                }
+                let action = Action::Setting(Change::Overlay(overlay));
+                self.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
             }
             self.overlays_list(ui);
             self.colors_list(ui);
             divider(ui, "Frame");
             self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
-            let hover = "Keeps LOD and clipping as they are for this camera while you look from elsewhere.";
-            let hover = with_key(hover, &Action::FreezeLodCamera);
-            if toggle(ui, self.viewport.frozen.is_some(), ["Freeze LOD", "Freeze LOD camera"], &hover) {
-                self.toggle_frozen();
-            }
+            let names = ["Freeze LOD", "Freeze LOD camera"];
+            self.command_button(ui, &commands, &now, &Action::FreezeLodCamera, names);
             if !now.clips.is_empty() {
                 let label = if self.is_playing() { "Pause" } else { "Play" };
                 self.command_button(ui, &commands, &now, &Action::PlayOrPause, [label, "Play or pause"]);
@@ -92,7 +84,8 @@ impl App {
         ui.ctx().accesskit_node_builder(response.id, |node| node.set_label("Colours"));
     }
 
-    /// A button that gives a command, with its text and key as hover text. It is greyed out where the command isn't possible.
+    /// A button that gives a command, with its text and key as hover text, and with a name for screen readers that may say more than its
+    /// label. It stays pressed while what it switches is on, and is greyed out where the command isn't possible.
     pub(in crate::app) fn command_button(
         &mut self,
         ui: &mut egui::Ui,
@@ -102,9 +95,14 @@ impl App {
         [label, name]: [&str; 2],
     ) {
         let Some(command) = commands.iter().find(|command| command.action == *action) else { return };
-        let why_not = command.why_not(now);
-        let button = ui.add_enabled(why_not.is_none(), egui::Button::new(label));
-        button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, why_not.is_none(), name));
+        let (why_not, is_on) = (command.why_not(now), self.is_on(ui.ctx(), action));
+        let is_possible = why_not.is_none();
+        let button = is_on.map_or_else(|| egui::Button::new(label), |is_on| switch_button(is_on, label));
+        let button = ui.add_enabled(is_possible, button);
+        button.widget_info(|| match is_on {
+            Some(is_on) => egui::WidgetInfo::selected(egui::Role::CheckBox, is_possible, is_on, name),
+            None => egui::WidgetInfo::labeled(egui::Role::Button, is_possible, name),
+        });
         let button = button.on_hover_text(with_key(&command.text, action));
         if button.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
             self.give(ui.ctx(), command);
@@ -119,12 +117,4 @@ fn divider(ui: &mut egui::Ui, button: &str) {
     if text_width(ui, button) + beside <= ui.available_size_before_wrap().x {
         ui.add(egui::Separator::default().spacing(DIVIDER_WIDTH));
     }
-}
-
-/// A button that stays pressed while something is on, with a name for screen readers that says more than its label. Returns
-/// whether it was clicked.
-fn toggle(ui: &mut egui::Ui, is_on: bool, [label, name]: [&str; 2], hover: &str) -> bool {
-    let response = ui.add(switch_button(is_on, label)).on_hover_text(hover);
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::CheckBox, true, is_on, name));
-    response.clicked()
 }

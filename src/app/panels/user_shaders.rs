@@ -56,7 +56,7 @@ impl App {
         ui.label(texts.label).on_hover_text(texts.hover);
         ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
         ui.end_row();
-        if let Some(error) = open.error() {
+        if let Some(error) = &open.error {
             let stays = if open.is_used() { "The version before it stays." } else { texts.stays };
             ui.label("");
             let text = RichText::new(format!("{error}\n{stays}")).color(ui.visuals().error_fg_color);

@@ -14,12 +14,13 @@ use crate::app::App;
 use crate::app::dialogs::Forgetting;
 use crate::app::jobs::job_list::{Jobs, Work};
 use crate::app::sections::OpenSections;
+use crate::commands::CompanionFile;
 use gpu::{LodShader, SurfaceShader};
 use inspect::render::Camera;
 use inspect::settings::Settings;
 use load::{Import, Source};
 
-use saved_state::{MAX_FILES, Placement, SavedCamera, SavedFile, SavedState};
+use saved_state::{KEPT, MAX_FILES, Placement, SavedCamera, SavedFile, SavedState};
 
 pub(super) use saved_state::{LEAST_SIZE, WindowGeometry};
 pub(super) use state_file::folder;
@@ -113,14 +114,13 @@ impl Persistence {
         context: &egui::Context,
         settings: &Settings,
         open: OpenSections,
-        [environment, lod_shader, surface_shader]: [Option<String>; 3],
+        companions: [Option<String>; KEPT.len()],
         placement: Placement,
         seen: Option<(SavedCamera, Vec<SavedCamera>)>,
     ) {
         self.kept.take_settings(settings);
         self.kept.open = open;
-        self.kept.environment = environment;
-        (self.kept.lod_shader, self.kept.surface_shader) = (lod_shader, surface_shader);
+        self.kept.companions = companions;
         self.kept.frame = frame_now(context, &self.kept.frame);
         let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
         if let Some((file, seen)) = open.zip(seen) {
@@ -198,19 +198,17 @@ impl App {
     /// Takes over the state that the last window saved.
     pub fn resume(&mut self, context: &egui::Context, mut lasting: Persistence) {
         // A first start shows what it has to show.
-        if !lasting.kept.is_of_a_first_start() {
+        if lasting.kept.settings != Settings::opening() || !lasting.kept.files.is_empty() {
             self.settings = *lasting.settings();
             self.viewport.greets = false;
         }
-        match lasting.kept.environment.clone() {
-            Some(path) => self.read_environment(context, path.into(), false),
-            None => self.cancel_environment(),
-        }
-        if let Some(path) = lasting.kept.lod_shader.clone() {
-            self.open_lod_shader(context, path.into());
-        }
-        if let Some(path) = lasting.kept.surface_shader.clone() {
-            self.open_surface_shader(context, path.into());
+        for ((companion, _), path) in KEPT.into_iter().zip(lasting.kept.companions.clone()) {
+            match (companion, path) {
+                (CompanionFile::Environment, Some(path)) => self.read_environment(context, path.into(), false),
+                (CompanionFile::Environment, None) => self.cancel_environment(),
+                (_, Some(path)) => self.open_companion(context, companion, Source::File(path.into())),
+                (_, None) => {}
+            }
         }
         self.panels.open = lasting.kept.open;
         let divider = self.settings.split.filter(|split| *split > 0.0 && *split < 1.0);
@@ -248,9 +246,10 @@ impl App {
             let saved = |&camera: &Camera| SavedCamera { camera, diagonal };
             (saved(&self.viewport.camera), self.viewport.bookmarks.iter().map(saved).collect())
         });
-        let shaders = (self.open_shader_file::<LodShader>(), self.open_shader_file::<SurfaceShader>());
-        let files = [self.environment_file(), shaders.0, shaders.1];
-        let files = files.map(|file| file.and_then(Path::to_str).map(str::to_owned));
+        let files = KEPT.map(|(companion, _)| match self.companion(companion) {
+            Some(Source::File(path)) => path.to_str().map(str::to_owned),
+            _ => None,
+        });
         let placement = self.document.as_ref().map(|document| {
             let Import { up, unit, .. } = document.loaded.preparation.import;
             Placement { up, unit }

@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::saved_settings::{read_settings, written_settings};
 use crate::app::sections::{OpenSections, Section};
-use crate::commands::MOST_BOOKMARKS;
+use crate::commands::{CompanionFile, MOST_BOOKMARKS};
 use geometry::mesh::UpAxis;
 use inspect::render::Camera;
 use inspect::settings::{Choice, Settings};
@@ -25,6 +25,12 @@ const LARGEST_SIDE: f32 = 16384.0;
 const ZOOM_RANGE: RangeInclusive<f32> = 0.2..=5.0;
 /// The range of a mesh's size, relative to the size when its camera was saved, in which that camera is still used.
 const SAME_SIZE: RangeInclusive<f32> = 0.5..=2.0;
+/// What is open beside the mesh and is opened again in the next window, each with its name in the file.
+pub(super) const KEPT: [(CompanionFile, &str); 3] = [
+    (CompanionFile::Environment, "environment"),
+    (CompanionFile::LodShader, "lod_shader"),
+    (CompanionFile::SurfaceShader, "surface_shader"),
+];
 const THEMES: [(ThemePreference, &str); 3] =
     [(ThemePreference::System, "system"), (ThemePreference::Light, "light"), (ThemePreference::Dark, "dark")];
 
@@ -34,12 +40,8 @@ pub(super) struct SavedState {
     pub settings: Settings,
     pub frame: WindowGeometry,
     pub open: OpenSections,
-    /// The absolute path of the file of light that is open.
-    pub environment: Option<String>,
-    /// The absolute path of the LOD shader that is open.
-    pub lod_shader: Option<String>,
-    /// The same of the surface shader.
-    pub surface_shader: Option<String>,
+    /// The absolute paths of the files of [`KEPT`] that are open.
+    pub companions: [Option<String>; KEPT.len()],
     /// The file that was opened last comes first.
     pub files: Vec<SavedFile>,
 }
@@ -94,9 +96,7 @@ impl Default for SavedState {
             settings: Settings::opening(),
             frame: WindowGeometry::default(),
             open: OpenSections::default(),
-            environment: None,
-            lod_shader: None,
-            surface_shader: None,
+            companions: Default::default(),
             files: Vec::new(),
         }
     }
@@ -124,9 +124,7 @@ impl SavedState {
                 settings: read_settings(&all["settings"]),
                 frame: WindowGeometry::read(&all["window"]),
                 open: read_open(&all["sections"]),
-                environment: absolute(&all["environment"]),
-                lod_shader: absolute(&all["lod_shader"]),
-                surface_shader: absolute(&all["surface_shader"]),
+                companions: KEPT.map(|(_, name)| absolute(&all[name])),
                 files,
             }
         })
@@ -135,24 +133,14 @@ impl SavedState {
     /// Returns the JSON text, with a line end.
     pub(super) fn written(&self) -> String {
         let files: Vec<Value> = self.files.iter().map(SavedFile::written).collect();
-        let settings = written_settings(&self.settings);
-        format!(
-            "{:#}\n",
-            json!({
-                "settings": settings,
-                "window": self.frame.written(),
-                "sections": written_open(&self.open),
-                "environment": self.environment,
-                "lod_shader": self.lod_shader,
-                "surface_shader": self.surface_shader,
-                "files": files,
-            })
-        )
-    }
-
-    /// Whether no setting was changed and no file was opened yet.
-    pub(super) fn is_of_a_first_start(&self) -> bool {
-        self.settings == Settings::opening() && self.files.is_empty()
+        let mut written = json!({
+            "settings": written_settings(&self.settings),
+            "window": self.frame.written(),
+            "sections": written_open(&self.open),
+            "files": files,
+        });
+        KEPT.iter().zip(&self.companions).for_each(|((_, name), path)| written[*name] = json!(path));
+        format!("{written:#}\n")
     }
 
     /// Takes settings, without displacement, axis and unit, which depend on the mesh.

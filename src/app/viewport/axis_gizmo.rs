@@ -5,9 +5,10 @@ use glam::Vec3;
 
 use crate::app::App;
 use crate::app::widgets::rgb;
-use crate::commands::{Action, CameraAction, with_key};
+use crate::commands::{CameraAction, with_key};
 use inspect::render::Standpoint;
 use inspect::render::layout::AXIS_COLORS;
+use inspect::settings::Choice;
 
 /// Sizes in points: the space that the axes take, the distance of their ends from the middle, and the radii of positive and
 /// negative ends.
@@ -39,19 +40,6 @@ pub(super) fn axes_place(picture: Rect, split: Option<f32>) -> Option<Rect> {
     has_room.then_some(place)
 }
 
-/// What an end says and does: "Look from the front", and its command.
-fn command_of(standpoint: Standpoint) -> (&'static str, Action) {
-    let name = match standpoint {
-        Standpoint::Front => "Look from the front",
-        Standpoint::Back => "Look from the back",
-        Standpoint::Left => "Look from the left",
-        Standpoint::Right => "Look from the right",
-        Standpoint::Top => "Look from the top",
-        Standpoint::Bottom => "Look from the bottom",
-    };
-    (name, Action::Camera(CameraAction::LookFrom(standpoint)))
-}
-
 /// The ends, those behind first.
 fn ends(middle: Pos2, [right, up, back]: [Vec3; 3]) -> [End; 6] {
     let mut ends = Standpoint::ALL.map(|standpoint| {
@@ -79,10 +67,10 @@ impl App {
 /// Shows an end with its half of the axis. Returns whether it was clicked.
 fn end_button(ui: &Ui, middle: Pos2, end: &End) -> bool {
     let radius = RADII[usize::from(!end.is_positive)];
-    let (name, action) = command_of(end.standpoint);
-    let id = ui.scope_id().with(("axis", name));
+    let (name, action) = (format!("Look from the {}", end.standpoint.name()), CameraAction::LookFrom(end.standpoint));
+    let id = ui.scope_id().with(("axis", &name));
     let response = ui.interact(Rect::from_center_size(end.at, Vec2::splat(2.0 * radius)), id, Sense::click());
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, name));
+    response.widget_info(|| WidgetInfo::labeled(egui::Role::Button, true, &name));
     // What is behind is paler, so that one sees which way an axis points.
     let lit = 0.7 + 0.3 * end.depth;
     let far = Color32::from_gray(if ui.visuals().dark_mode { 50 } else { 190 });
@@ -101,7 +89,7 @@ fn end_button(ui: &Ui, middle: Pos2, end: &End) -> bool {
         painter.circle_stroke(end.at, radius + 1.5, Stroke::new(2.0, ui.visuals().strong_text_color()));
     }
     let response = response.on_hover_cursor(egui::CursorIcon::PointingHand);
-    response.on_hover_text(with_key(&format!("{name}."), &action)).clicked()
+    response.on_hover_text(with_key(&format!("{name}."), &action.into())).clicked()
 }
 
 #[cfg(test)]

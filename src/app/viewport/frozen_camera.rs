@@ -39,10 +39,8 @@ impl App {
 
     /// Freezes LOD and clipping as they are for the camera of the picture that is shown.
     fn freeze(&mut self) {
-        let Some((document, (camera, viewport))) = self.document.as_ref().zip(self.viewport.picture.shown_camera())
-        else {
-            return;
-        };
+        let Some((document, drawn)) = self.document.as_ref().zip(self.viewport.picture.drawn) else { return };
+        let (camera, viewport) = (drawn.camera, drawn.viewport);
         let view = camera.lod_view(viewport, &document.scene.bounds);
         self.viewport.frozen = Some(FrozenCamera { camera, viewport, view });
     }
@@ -76,11 +74,6 @@ impl App {
         let key = key_name(&Action::FreezeLodCamera);
         (culled.out_of_view + culled.facing_away > 0)
             .then(|| format!("Left out, since the frozen camera doesn't see them: {left_out} ({key} thaws LOD)"))
-    }
-
-    /// Moves the camera to where the frozen one is.
-    pub(in crate::app) fn look_through_frozen(&mut self) {
-        self.viewport.camera = self.viewport.frozen.map_or(self.viewport.camera, |frozen| frozen.camera);
     }
 
     /// What the lines of the frozen camera depend on; none if there is no such camera, or the picture is seen through it.

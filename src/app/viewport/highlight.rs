@@ -2,7 +2,6 @@
 
 use super::frozen_camera::FrozenCamera;
 use super::ruler::Ruler;
-use super::selection::Outlined;
 use crate::app::{App, Document};
 use geometry::mesh::{Bounds, Moment, Topology};
 use inspect::render::{LineSegment, axis_lines, crack_lines, t_junction_lines};
@@ -20,7 +19,9 @@ pub(crate) struct Highlight {
     cracks: bool,
     t_junctions: bool,
     selected_edge: Option<u32>,
-    outlined: Outlined,
+    selected_triangle: Option<u32>,
+    /// Number of the emitted triangle that was clicked on, in its patch.
+    hit: Option<u32>,
     worst: [u64; 2],
     ruler: Option<Ruler>,
     frozen: Option<(FrozenCamera, Bounds)>,
@@ -47,7 +48,8 @@ impl App {
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
             selected_edge: self.selected_edge(),
-            outlined: self.outlined(),
+            selected_triangle: self.selected_triangle(),
+            hit: self.hit().map(|hit| hit.number),
             worst: self.worst_marked(),
             ruler: self.viewport.ruler,
             frozen: self.frozen_shown(),

@@ -66,7 +66,7 @@ impl App {
         // A picture that the device refused may be half drawn.
         let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
         let generation = self.document.as_ref().map(|document| document.generation);
-        let is_another = generation.is_some_and(|generation| self.viewport.picture.shows_another(generation));
+        let is_another = self.viewport.picture.shows.zip(generation).is_some_and(|(shown, own)| shown != own);
         let is_whole = is_whole && !(is_another && self.viewport.picture.cancelled.is_some());
         let previewed = self.viewport.preview.shown(&self.viewport.picture).map(|(_, shape)| shape);
         let picture = match previewed {
@@ -82,8 +82,8 @@ impl App {
                     let veil = egui::Color32::from_rgba_unmultiplied(r, g, b, VEIL);
                     ui.painter().rect_filled(rect, 0.0, veil);
                 }
-                if let Some(outlines) = self.outlines_texture().filter(|_| previewed.is_none()) {
-                    self.paint_outlines(ui, rect, outlines, size[0]);
+                if let Some(outlines) = self.found_outlines().filter(|_| previewed.is_none()) {
+                    self.paint_outlines(ui, rect, outlines.texture.id(), size[0]);
                 }
                 self.over_picture(ui, rect);
             }
@@ -402,7 +402,9 @@ impl App {
             != self.viewport.picture.drawn.as_ref().map(|drawn| drawn.document);
         let is_cancelled = self.viewport.picture.cancelled.is_some();
         if self.document.is_some() && !is_cancelled && (is_old || self.left_takes_long()) {
-            note(ui, rect.center_top() + egui::vec2(0.0, 40.0), egui::Align2::CENTER_TOP, "Tessellating…");
+            let text = note_text(ui, "Tessellating…", egui::Color32::from_gray(235));
+            let position = rect.center_top() + egui::vec2(0.0, 40.0);
+            paint_note(ui, egui::Align2::CENTER_TOP.anchor_size(position, text.size()), text);
         }
         if let Some(under_way) = self.under_way() {
             let stop = format!("Stop ({})", key_name(&Action::Cancel));
@@ -493,16 +495,11 @@ fn half_note(ui: &egui::Ui, half: egui::Rect, align: egui::Align2, text: &str, n
     paint_note(ui, place, galley);
 }
 
-/// Shows a short text over the picture, on a dark background.
-fn note(ui: &egui::Ui, position: egui::Pos2, align: egui::Align2, text: &str) {
-    let galley = note_text(ui, text, egui::Color32::from_gray(235));
-    paint_note(ui, align.anchor_size(position, galley.size()), galley);
-}
-
 pub(in crate::app) fn note_text(ui: &egui::Ui, text: &str, color: egui::Color32) -> Arc<egui::Galley> {
     ui.painter().layout_no_wrap(text.to_owned(), egui::TextStyle::Body.resolve(ui.style()), color)
 }
 
+/// Shows a short text over the picture, on a dark background.
 pub(in crate::app) fn paint_note(ui: &egui::Ui, rect: egui::Rect, galley: Arc<egui::Galley>) {
     ui.painter().rect_filled(rect.expand2(egui::vec2(6.0, 3.0)), 4.0, egui::Color32::from_black_alpha(215));
     ui.painter().galley(rect.min, galley, egui::Color32::WHITE);

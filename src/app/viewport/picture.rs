@@ -68,13 +68,14 @@ impl Drawing {
 /// Pictures of output that fills the arena up to so many times are short.
 const SHORT: usize = 8;
 
+#[derive(Default)]
 pub(crate) struct Picture {
     pub target: Option<(Target, ShownPicture)>,
     /// The last picture, of another size. It is shown stretched until the first one of the new size is drawn.
     before: Option<ShownPicture>,
     pub drawn: Option<PictureRequest>,
     /// The document of the last picture that was drawn, in whatever size.
-    shows: Option<u64>,
+    pub shows: Option<u64>,
     /// The picture that the device is counting for. It is drawn before any newer one, so that a long drag shows pictures.
     counting: Option<PictureRequest>,
     /// The picture that is being drawn, step by step.
@@ -91,12 +92,14 @@ pub(crate) struct Picture {
     pub picture_ms: Option<f64>,
     /// When work on the next picture began, which includes its counts.
     begun: Option<Instant>,
-    whole_ms: Option<f64>,
+    /// How long the last picture took from the first pass to its completion, in ms.
+    pub whole_ms: Option<f64>,
     /// Set once the device has finished the last submission, to how many ms that took.
     pub in_flight: Option<Arc<OnceLock<f64>>>,
     /// Pictures of up to this many steps are finished even if a newer one is wanted.
     pub short: usize,
-    pictures: u64,
+    /// How many have been drawn.
+    pub pictures: u64,
 }
 
 impl Picture {
@@ -106,34 +109,7 @@ impl Picture {
             Timing::Submissions(_) => Timing::Off,
             timestamps => timestamps,
         };
-        Self {
-            target: None,
-            before: None,
-            drawn: None,
-            shows: None,
-            counting: None,
-            drawing: None,
-            cancelled: None,
-            outdated: false,
-            timing,
-            times: Vec::new(),
-            pass_times_hold: false,
-            picture_ms: None,
-            begun: None,
-            whole_ms: None,
-            in_flight: None,
-            short: SHORT * chunks_an_arena(&engine.gpu) as usize,
-            pictures: 0,
-        }
-    }
-
-    pub(crate) fn pictures(&self) -> u64 {
-        self.pictures
-    }
-
-    /// How long the last picture took from the first pass to its completion, in ms.
-    pub(crate) fn whole_ms(&self) -> Option<f64> {
-        self.whole_ms
+        Self { timing, short: SHORT * chunks_an_arena(&engine.gpu) as usize, ..Self::default() }
     }
 
     /// Stops work on the next picture, so that a preview can be drawn. What the device has begun is not shown.
@@ -152,11 +128,6 @@ impl Picture {
     /// Width and height of the viewport, in px.
     pub(crate) fn size(&self) -> Vec2 {
         self.target.as_ref().map_or(vec2(800.0, 600.0), |(target, _)| target.viewport())
-    }
-
-    /// The camera of the picture that is shown, and the picture's size in px.
-    pub(crate) fn shown_camera(&self) -> Option<(Camera, Vec2)> {
-        self.drawn.as_ref().map(|drawn| (drawn.camera, drawn.viewport))
     }
 
     /// A pixel of the last picture, counted from the left and the top, and the half that is there.
@@ -223,11 +194,6 @@ impl Picture {
     pub(crate) fn shown(&self) -> Option<&ShownPicture> {
         let drawn = self.target.as_ref().filter(|_| self.drawn.is_some());
         drawn.map(|(_, shown)| shown).or(self.before.as_ref())
-    }
-
-    /// Whether what is shown is another mesh than that of a document.
-    pub(crate) fn shows_another(&self, document: u64) -> bool {
-        self.shows.is_some_and(|shown| shown != document)
     }
 
     /// Draws what is wanted, if it isn't drawn yet and the device is free, in steps that keep the device busy for about so many ms

@@ -79,7 +79,7 @@ impl App {
         let at = (pointer - response.rect.min) * response.ctx.pixels_per_point();
         let (half, pixel) =
             self.viewport.picture.pixel(&document.scene, [at.x.max(0.0) as u32, at.y.max(0.0) as u32])?;
-        let picture = self.viewport.picture.pictures();
+        let picture = self.viewport.picture.pictures;
         Some(PointerValue { half, pixel, picture, since: Instant::now(), search: Search::Waiting })
     }
 

@@ -47,6 +47,7 @@ pub(crate) enum Shape {
     StandIn,
 }
 
+#[derive(Default)]
 pub(crate) struct Preview {
     /// Whether there are previews at all. Somebody who judges LOD in motion switches them off.
     pub is_on: bool,
@@ -61,25 +62,15 @@ pub(crate) struct Preview {
     /// The preview that was drawn last, until the full picture follows.
     drawn: Option<(PictureRequest, Shape)>,
     /// The vertices and triangles of the full picture, while previews use its tessellator.
-    totals: Option<(u64, u64)>,
-    drawings: u64,
+    pub totals: Option<(u64, u64)>,
+    /// How many have been drawn.
+    pub drawings: u64,
 }
 
 impl Preview {
     pub(crate) fn new(engine: &Engine) -> Self {
         let finest = if engine.gpu.is_software() { 2 } else { 1 };
-        Self {
-            is_on: true,
-            camera: None,
-            moved: None,
-            target: None,
-            coarseness: finest,
-            finest,
-            pace: PreviewPace::default(),
-            drawn: None,
-            totals: None,
-            drawings: 0,
-        }
+        Self { is_on: true, coarseness: finest, finest, ..Self::default() }
     }
 
     /// The same, switched on or off.
@@ -89,12 +80,7 @@ impl Preview {
 
     /// Whether a picture that takes as long as the last full one is replaced by a preview while the camera moves.
     pub(super) fn is_due(&self, full: &Picture) -> bool {
-        self.is_on && full.whole_ms().is_some_and(|ms| ms > LATE_MS)
-    }
-
-    /// How many previews have been drawn.
-    pub(crate) fn drawings(&self) -> u64 {
-        self.drawings
+        self.is_on && full.whole_ms.is_some_and(|ms| ms > LATE_MS)
     }
 
     /// Notes where the camera is. Returns how long it will count as moving, if it has moved a short while ago.
@@ -136,11 +122,6 @@ impl Preview {
     /// Shows the full picture from now on.
     pub(crate) fn end(&mut self) {
         (self.drawn, self.totals) = (None, None);
-    }
-
-    /// The vertices and triangles of the full picture, if the tessellator has others for previews.
-    pub(crate) fn kept_totals(&self) -> Option<(u64, u64)> {
-        self.totals
     }
 
     /// Forgets the preview of a mesh that is open no more.
@@ -190,17 +171,28 @@ impl Preview {
             return Ok(());
         }
         let Some((target, _)) = &self.target else { return Ok(()) };
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-        engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
-        recorder.submit();
-        let done = Arc::new(AtomicBool::new(false));
-        self.pace.submit(done.clone(), Instant::now());
-        engine.gpu.queue.on_submitted_work_done(move || done.store(true, Ordering::Release));
+        self.pace.submit(draw(engine, scene, target, wanted)?, Instant::now());
         self.drawn = Some((*wanted, shape));
         self.drawings += 1;
         Ok(())
     }
+}
+
+/// Draws what is wanted. What is returned is set once the device has finished it.
+pub(super) fn draw(
+    engine: &Engine,
+    scene: &mut Scene,
+    target: &Target,
+    wanted: &PictureRequest,
+) -> Result<Arc<AtomicBool>, GpuError> {
+    let mut timing = Timing::Off;
+    let mut recorder = Recorder::new(&engine.gpu, &mut timing);
+    engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
+    recorder.submit();
+    let done = Arc::new(AtomicBool::new(false));
+    let own = done.clone();
+    engine.gpu.queue.on_submitted_work_done(move || own.store(true, Ordering::Release));
+    Ok(done)
 }
 
 /// Lets the device count what each half emits. Returns true once that is known.

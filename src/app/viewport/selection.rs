@@ -27,14 +27,6 @@ pub(crate) struct Selection {
     picking: Option<(SplitSide, u64, Pixel, Picking)>,
 }
 
-/// What the lines over a selected patch depend on, besides the measurements.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Outlined {
-    triangle: Option<u32>,
-    /// Number of the emitted triangle in its patch.
-    hit: Option<u32>,
-}
-
 impl Selection {
     /// Keeps what is selected, and forgets everything about the tessellation.
     pub(crate) fn forget_tessellation(&mut self) {
@@ -173,10 +165,6 @@ impl App {
         let facing = patch_facing(topology, patch, outlines).normalize_or_zero().as_vec3();
         let spot = PatchSpot { facing, ..PatchSpot::new(corners, at) };
         self.show_place(SplitSide::Right, &Spot::Patch(spot), Some(patch));
-    }
-
-    pub(in crate::app) fn outlined(&self) -> Outlined {
-        Outlined { triangle: self.selected_triangle(), hit: self.hit().map(|hit| hit.number) }
     }
 
     /// See [`patch_edges`].

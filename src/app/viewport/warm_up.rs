@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::picture::PictureRequest;
-use super::preview::{Shape, count};
+use super::preview::{Shape, count, draw};
 use crate::app::App;
 use crate::app::jobs::background_job::BackgroundJob;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::scenes::arena_bytes;
-use gpu::{GpuError, Recorder, Timing};
+use gpu::GpuError;
 use inspect::engine::Engine;
 use inspect::render::{DraftPipelines, Scene, Target};
 use inspect::settings::Settings;
@@ -31,7 +31,8 @@ pub(crate) struct WarmUp {
     /// Since when the window has had nothing to do.
     idle: Option<Instant>,
     step: Option<Step>,
-    drawings: u64,
+    /// How many pictures have been drawn.
+    pub drawings: u64,
 }
 
 enum Step {
@@ -43,11 +44,6 @@ enum Step {
 }
 
 impl WarmUp {
-    /// How many pictures have been drawn.
-    pub(crate) fn drawings(&self) -> u64 {
-        self.drawings
-    }
-
     pub(crate) fn is_busy(&self) -> bool {
         self.step.is_some()
     }
@@ -84,7 +80,8 @@ impl WarmUp {
                     return Ok(Some(Step::Counting(scene, wanted)));
                 }
                 self.drawings += 1;
-                draw(engine, &mut scene, &wanted).map(|done| Some(Step::Drawing(done)))
+                let target = Target::draft(&engine.gpu, [SIDE; 2])?;
+                draw(engine, &mut scene, &target, &wanted).map(|done| Some(Step::Drawing(done)))
             }
             Step::Drawing(done) if done.load(Ordering::Acquire) => Ok(None),
             Step::Drawing(done) => {
@@ -93,24 +90,6 @@ impl WarmUp {
             }
         }
     }
-}
-
-/// Draws a draft of what is wanted. What is returned is set once the device has finished it.
-fn draw(engine: &Engine, scene: &mut Scene, wanted: &PictureRequest) -> Result<Arc<AtomicBool>, GpuError> {
-    let target = Target::draft(&engine.gpu, [SIDE; 2])?;
-    let mut timing = Timing::Off;
-    let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-    engine.renderer.draw(&mut recorder, scene, &target, &wanted.camera, &wanted.settings)?;
-    recorder.submit();
-    let done = Arc::new(AtomicBool::new(false));
-    let own = done.clone();
-    engine.gpu.queue.on_submitted_work_done(move || own.store(true, Ordering::Release));
-    Ok(done)
-}
-
-/// The same for a scene without a left half, whose pipelines are those of the right one.
-fn of_one_scene(settings: Settings) -> Settings {
-    Settings { split: None, ..settings }
 }
 
 impl App {
@@ -141,7 +120,8 @@ impl App {
             (Shape::StandIn, Some(stand_in)) => stand_in,
             _ => &mut document.scene,
         };
-        let settings = of_one_scene(wanted.settings);
+        // The scene has no left half, whose pipelines are those of the right one.
+        let settings = Settings { split: None, ..wanted.settings };
         let pipelines = self.engine.renderer.draft_pipelines(scene, &settings);
         let warm_up = &mut self.viewport.warm_up;
         if warm_up.done.0 != document.generation {

@@ -81,7 +81,7 @@ impl App {
         style(&creation.egui_ctx);
         let why = self.engine.gpu.lost().unwrap_or_default().to_owned();
         let gpu = Gpu::new(&state.adapter, state.device.clone(), state.queue.clone());
-        let (was_fatal, has_drawn) = (self.window.fatal_screen.take().is_some(), self.viewport.picture.pictures() > 0);
+        let (was_fatal, has_drawn) = (self.window.fatal_screen.take().is_some(), self.viewport.picture.pictures > 0);
         if !self.window.losses.replaces(Instant::now(), has_drawn) && !was_fatal {
             self.window.fatal_screen =
                 Some(FatalScreen::new(gpu, format!("The graphics device was lost again ({why}).")));

@@ -4,7 +4,7 @@ use clap::Args;
 use glam::{Vec2, Vec3};
 
 use super::values::{angle, field_of_view, position, size};
-use super::{CameraOption, SurfaceOptions, ViewOptions, defaults};
+use super::{CameraOption, SurfaceOptions, ViewOptions};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh};
 use inspect::render::Camera;
@@ -32,12 +32,6 @@ pub struct LodCameraOption {
     /// Turn the LOD camera about its direction of view, counterclockwise by so many degrees
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true, requires = "lod_camera")]
     pub lod_roll: f32,
-}
-
-impl Default for LodCameraOption {
-    fn default() -> Self {
-        defaults()
-    }
 }
 
 impl LodCameraOption {

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use glam::{DMat4, Vec2, Vec3};
 
 use super::values::{angle, field_of_view, position};
-use super::{CameraOption, SurfaceOptions, defaults, file_camera, named};
+use super::{CameraOption, SurfaceOptions, file_camera, named};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh, Moment};
 use inspect::render::Camera;
@@ -63,12 +63,6 @@ pub struct ViewOptions {
     /// Where the matrix has +y on the screen
     #[arg(long, value_parser = one_of(&UPWARDS), default_value = "up", requires = "view_projection")]
     pub clip_y: ClipY,
-}
-
-impl Default for ViewOptions {
-    fn default() -> Self {
-        defaults()
-    }
 }
 
 /// Parses the numbers of a matrix. They may be separated by commas, blanks and lines, and be in brackets, as programs print

@@ -19,9 +19,10 @@ use crate::mesh::HeightMap;
 
 choices! {
     /// Whether a surface is displaced by height images, and what its patches agree on where they meet.
-    #[derive(Hash)]
+    #[derive(Default, Hash)]
     #[repr(u32)]
     pub enum Displacement {
+        #[default]
         Off => "off", "Off", "The surface isn't displaced.";
         On => "on", "On",
             "Displaces without cracks. Each edge and each point takes its texture coordinates from one triangle \

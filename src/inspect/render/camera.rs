@@ -5,8 +5,8 @@ use glam::camera::rh::proj::directx as proj;
 use glam::{Mat4, Vec2, Vec3, vec3};
 
 use super::view_projection::ClipRows;
+use geometry::choice::choices;
 use geometry::mesh::Bounds;
-use geometry::names::every;
 use geometry::tessellate::LodView;
 
 /// The usual vertical field of view, in degrees.
@@ -56,20 +56,19 @@ impl Default for Camera {
     }
 }
 
-/// Directions of view along an axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Standpoint {
-    Front,
-    Back,
-    Left,
-    Right,
-    Top,
-    Bottom,
+choices! {
+    /// Directions of view along an axis.
+    pub enum Standpoint {
+        Front => "front", "Front", "Looks from the front.";
+        Back => "back", "Back", "Looks from the back.";
+        Left => "left", "Left", "Looks from the left.";
+        Right => "right", "Right", "Looks from the right.";
+        Top => "top", "Top", "Looks from the top.";
+        Bottom => "bottom", "Bottom", "Looks from the bottom.";
+    }
 }
 
 impl Standpoint {
-    pub const ALL: [Self; 6] = every![Standpoint: Front, Back, Left, Right, Top, Bottom];
-
     /// The unit vector from the target to the eye.
     pub fn direction(self) -> Vec3 {
         match self {

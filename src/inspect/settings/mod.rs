@@ -115,9 +115,10 @@ impl From<Tessellation> for Settings {
 }
 
 /// A half of a split picture. A picture that isn't split is all right half.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SplitSide {
     Left,
+    #[default]
     Right,
 }
 

@@ -11,11 +11,11 @@ choices! {
     /// The kinds of LOD that a chart tries, and the number that says how fine each is.
     #[derive(Hash)]
     pub enum LodKind {
-        Uniform => "uniform", "Uniform", "All edges have the same factor.";
-        Paper => "paper", "White paper",
+        Uniform => "uniform", "Uniform factor", "All edges have the same factor.";
+        Paper => "paper", "White paper's LOD",
             "The white paper's length of an edge on screen, divided by the length of a segment in px.";
-        Error => "error", "Screen error", "The error on screen, in px.";
-        ErrorRows => "error-rows", "Error under rows", "The error on screen, in px, with patches that are cut into rows.";
+        Error => "error", "LOD by error", "The error on screen, in px.";
+        ErrorRows => "error-rows", "LOD by error, rows", "The error on screen, in px, with patches that are cut into rows.";
     }
 }
 
