@@ -9,21 +9,17 @@
 // The tangent of half the usual field of view, which the background of an orthographic view has: all rays of that have one direction.
 const HALF_VIEW: f32 = 0.36397023;
 
-struct BackgroundPlace {
-    @builtin(position) position: vec4<f32>,
-    @location(0) at: vec2<f32>,
-}
-
 @vertex
-fn background_vertex(@builtin(vertex_index) index: u32) -> BackgroundPlace {
+fn background_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
     // One triangle that holds the picture. Depth is 0 at the far end.
-    let at = 4.0 * vec2<f32>(f32(index & 1u), f32(index >> 1u)) - 1.0;
-    return BackgroundPlace(vec4<f32>(at, 0.0, 1.0), at);
+    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u));
+    return vec4<f32>(4.0 * corner - 1.0, 0.0, 1.0);
 }
 
-// The direction that is seen at a place of the view: -1 to 1, to the right and up.
-fn seen_direction(at: vec2<f32>) -> vec3<f32> {
+// The direction that is seen at a place of the picture, in px.
+fn seen_direction(px: vec2<f32>) -> vec3<f32> {
     let viewport = background_frame.viewport;
+    let at = vec2<f32>(2.0, -2.0) * px / viewport + vec2<f32>(-1.0, 1.0);
     let rows = transpose(background_frame.clip_from_object);
     // All points on a line of sight have one x / w and one y / w: see toward_eye.
     let seen = cross(rows[1].xyz - at.y * rows[3].xyz, rows[0].xyz - at.x * rows[3].xyz);
@@ -35,8 +31,8 @@ fn seen_direction(at: vec2<f32>) -> vec3<f32> {
 }
 
 @fragment
-fn background_fragment(in: BackgroundPlace) -> @location(0) vec4<f32> {
-    let direction = surroundings.light_from_object * seen_direction(in.at);
+fn background_fragment(@builtin(position) px: vec4<f32>) -> @location(0) vec4<f32> {
+    let direction = surroundings.light_from_object * seen_direction(px.xy - vec2<f32>(background_frame.shift, 0.0));
     let longitude = atan2(direction.x, -direction.z);
     let latitude = acos(clamp(direction.y, -1.0, 1.0));
     let at = vec2<f32>(0.5 + longitude / (2.0 * PI), latitude / PI);

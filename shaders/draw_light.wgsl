@@ -7,6 +7,11 @@ struct Lights {
     to_eye: vec3<f32>,
 }
 
+// Where a fragment would be if all that is drawn weren't moved to the right by so many columns.
+fn unmoved(fragment: vec4<f32>, shift: f32) -> vec4<f32> {
+    return fragment - vec4<f32>(shift, 0.0, 0.0, 0.0);
+}
+
 // The unit direction towards the eye from what is seen at a place of the picture, in px. All points on that line of sight
 // have one x / w and one y / w, so it lies in two planes, whose normals come from rows of the matrix. This needs no
 // position from the vertex shader.

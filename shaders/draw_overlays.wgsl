@@ -137,7 +137,7 @@ fn normal_color(normal: vec3<f32>) -> vec3<f32> {
 // The colour of a surface that isn't lit, and 1 if there is one.
 fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
     if (frame.overlays & OVERLAY_ZEBRA) != 0u {
-        let px = in.clip.xy;
+        let px = unmoved(in.clip, frame.shift).xy;
         let place = zebra_place(normal, px);
         let right = zebra_place(normal + change.normal_right, px + vec2<f32>(1.0, 0.0));
         let below = zebra_place(normal + change.normal_below, px + vec2<f32>(0.0, 1.0));

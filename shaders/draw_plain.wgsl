@@ -25,7 +25,7 @@ fn plain_color(base: vec3<f32>, px: vec2<f32>, normal: vec3<f32>, front: bool) -
 
 @fragment
 fn plain_fragment(in: PlainVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return plain_color(material.base_color.rgb, in.clip.xy, in.normal, front);
+    return plain_color(material.base_color.rgb, unmoved(in.clip, plain_frame.shift).xy, in.normal, front);
 }
 
 struct TexturedVaryings {
@@ -43,7 +43,7 @@ fn textured_vertex(vertex: EmittedVertex) -> TexturedVaryings {
 @fragment
 fn textured_fragment(in: TexturedVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = material.base_color.rgb * textureSample(base_texture, base_sampler, in.uv).rgb;
-    return plain_color(base, in.clip.xy, in.normal, front);
+    return plain_color(base, unmoved(in.clip, plain_frame.shift).xy, in.normal, front);
 }
 
 // With a texture or without: little is drawn where normals are evaluated at pixels, and all that differs is a texel.
@@ -65,5 +65,5 @@ fn pixel_vertex(vertex: EmittedVertex) -> PixelVaryings {
 @fragment
 fn pixel_fragment(in: PixelVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
     let base = material.base_color.rgb * textureSample(base_texture, base_sampler, in.uv).rgb;
-    return plain_color(base, in.clip.xy, pixel_normal(in.patch_index, in.weights), front);
+    return plain_color(base, unmoved(in.clip, plain_frame.shift).xy, pixel_normal(in.patch_index, in.weights), front);
 }

@@ -59,7 +59,7 @@ fn bare_color(
     edge_heights: vec3<f32>,
 ) -> vec4<f32> {
     let normal = normalize(select(-own_normal, own_normal, front));
-    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, in.clip.xy);
+    let to_eye = toward_eye(frame.clip_from_object, frame.viewport, unmoved(in.clip, frame.shift).xy);
     // Samples and derivatives first: both need uniform control flow.
     let texel = textureSample(base_texture, base_sampler, in.uv);
     let change = changes(in);

@@ -32,6 +32,8 @@ struct Frame {
     left: f32,
     // Px of the full picture that one px stands for, along each axis: more than 1 in coarse previews.
     coarseness: f32,
+    // By how many columns all that is drawn is moved to the right.
+    shift: f32,
 }
 
 // Images of a material beside that of the base colour.

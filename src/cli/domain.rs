@@ -182,7 +182,7 @@ fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &[f32; 4]) -> Domai
 }
 
 fn comma_list(text: &str) -> Result<FactorList, String> {
-    numbers(text.split(',')).ok_or_else(|| "expected numbers separated by commas, such as 3,2.5,inf,4".into())
+    numbers(text.split(',')).ok_or_else(|| "expected numbers separated by commas, such as 3,2.5,inf".into())
 }
 
 fn numbers<'a>(texts: impl Iterator<Item = &'a str>) -> Option<FactorList> {

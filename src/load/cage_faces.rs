@@ -2,29 +2,32 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
 
 use super::import::Subdivision;
 use super::recent_corners::NumberedCorner;
 use geometry::casts::to_u32;
+use geometry::mesh::CornerDetail;
 use geometry::mesh::build_limits::{Budget, MAX_TRIANGLES, MemoryRefused};
+use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::polygon::{WorkBudget, triangulate};
-use geometry::mesh::subdivision::{Cage, CageError, Refinement, Scheme};
+use geometry::mesh::subdivision::{Cage, Refinement, Scheme, Size};
 
-/// Memory in bytes: for a corner of a cage, with its point; for a refined point, also while limits are computed; for a
-/// refined corner, which has a normal; and for its texture coordinates.
+/// Memory in bytes: for a corner of a cage, with its point; for a refined point; and for a refined corner, which has a normal, for its
+/// texture coordinates, and for its details.
 const PER_CORNER: u64 = 200;
 const PER_POINT: u64 = 12;
-const PER_POINT_MEANWHILE: u64 = 48;
 const PER_NORMAL: u64 = 12;
-const PER_UV: u64 = 32;
+const PER_UV: u64 = 64;
+const PER_DETAIL: u64 = 128;
 
 /// What a face has beside its corners.
 #[derive(Clone, Copy)]
 pub(super) struct OfFace {
     pub material: usize,
     pub part: Option<u32>,
+    /// Whether it is left out, and only shapes its neighbours.
+    pub is_hole: bool,
 }
 
 /// A cage whose points are the distinct positions of corners.
@@ -38,6 +41,7 @@ pub(super) struct CageFaces {
     faces: Vec<OfFace>,
     creases: Vec<([u32; 2], f32)>,
     sharp_points: Vec<(u32, f32)>,
+    holes: Vec<u32>,
     /// Whether refined corners get the normals of the limit surface.
     has_normals: bool,
     held: u64,
@@ -55,12 +59,14 @@ impl CageFaces {
             faces: Vec::new(),
             creases: Vec::new(),
             sharp_points: Vec::new(),
+            holes: Vec::new(),
             has_normals,
             held: 0,
         }
     }
 
-    /// Adds a face of three or more corners. Loop's scheme gets its triangles.
+    /// Adds a face of three or more corners. Loop's scheme gets its triangles. Returns how many faces have a point twice: these are left
+    /// out.
     ///
     /// # Errors
     /// [`MemoryRefused`].
@@ -68,38 +74,46 @@ impl CageFaces {
         &mut self,
         corners: &[NumberedCorner],
         face: OfFace,
-        work: &mut WorkBudget,
+        triangles: &[[usize; 3]],
         budget: &Budget,
-    ) -> Result<(), MemoryRefused> {
-        // A polygon of n corners has n - 2 triangles.
-        let stored = if self.subdivision.scheme == Scheme::Loop { 3 * (corners.len() - 2) } else { corners.len() };
-        let bytes = PER_CORNER * stored as u64;
+    ) -> Result<usize, MemoryRefused> {
+        let whole: Vec<usize> = (0..corners.len()).collect();
+        let is_whole = self.subdivision.scheme != Scheme::Loop;
+        let bytes = PER_CORNER * if is_whole { whole.len() } else { 3 * triangles.len() } as u64;
         budget.hold(bytes)?;
         self.held += bytes;
-        let (whole, mut triangles) = ((0..corners.len()).collect::<Vec<_>>(), Vec::new());
-        if self.subdivision.scheme == Scheme::Loop {
-            let outline: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
-            triangulate(&outline, work, &mut triangles);
-        }
-        let parts = triangles.iter().map(|triangle| &triangle[..]);
-        for part in parts.chain((self.subdivision.scheme != Scheme::Loop).then_some(&whole[..])) {
+        let parts: Vec<&[usize]> =
+            if is_whole { vec![&whole] } else { triangles.iter().map(|triangle| &triangle[..]).collect() };
+        let mut left_out = 0;
+        for part in parts {
+            let start = self.points.len();
             for &corner in part {
                 let point = self.point(corners[corner].corner.position);
                 self.points.push(point);
-                self.corners.push(corners[corner]);
             }
+            if has_equal(&self.points[start..]) {
+                self.points.truncate(start);
+                left_out += 1;
+                continue;
+            }
+            self.corners.extend(part.iter().map(|&corner| corners[corner]));
+            self.holes.extend(face.is_hole.then_some(to_u32(self.faces.len())));
             self.starts.push(to_u32(self.points.len()));
             self.faces.push(face);
         }
-        Ok(())
+        Ok(left_out)
     }
 
-    /// Makes the edge between two positions a crease, or the point sharp that is both.
+    /// Makes the edge between two positions a crease.
     pub(super) fn crease(&mut self, ends: [Vec3; 2], sharpness: f32) {
-        match ends.map(|end| self.point(end)) {
-            [a, b] if a == b => self.sharp_points.push((a, sharpness)),
-            ends => self.creases.push((ends, sharpness)),
-        }
+        let ends = ends.map(|end| self.point(end));
+        self.creases.extend((ends[0] != ends[1]).then_some((ends, sharpness)));
+    }
+
+    /// Makes a point sharp.
+    pub(super) fn sharpen(&mut self, position: Vec3, sharpness: f32) {
+        let point = self.point(position);
+        self.sharp_points.push((point, sharpness));
     }
 
     fn point(&mut self, position: Vec3) -> u32 {
@@ -110,86 +124,103 @@ impl CageFaces {
         })
     }
 
-    /// Refines the cage, and gives the corners of each refined face to `add`, with points and normals of the limit surface. A cage that
-    /// can't be refined stays as it is, and the reason is returned.
+    /// Refines the cage, and gives the corners of each refined face to `add`, with points and normals of the limit surface. `details` are
+    /// those that corners have by their numbers. A cage that can't be refined stays as it is, and the reason is returned.
     ///
     /// # Errors
     /// Those of `add`, and [`MemoryRefused`].
     pub(super) fn refine<E: From<MemoryRefused>>(
         self,
         budget: &Budget,
+        details: Option<&mut DetailTable>,
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
-    ) -> Result<Option<CageError>, E> {
+    ) -> Result<Option<String>, E> {
         let Subdivision { scheme, levels, boundary } = self.subdivision;
-        let (points, creases, sharp_points) = (self.positions.len(), &self.creases[..], &self.sharp_points[..]);
-        let own = Cage {
-            points,
+        let cage = Cage {
+            points: self.positions.len(),
             starts: &self.starts,
             corners: &self.points,
             scheme,
             boundary,
-            creases,
-            sharp_points,
-            holes: &[],
+            creases: &self.creases,
+            sharp_points: &self.sharp_points,
+            holes: &self.holes,
         };
-        let size = own.size_at_most(levels);
-        let has_uvs = self.corners.iter().any(|at| at.corner.uv != Vec2::ZERO);
-        let per_corner = PER_NORMAL + if has_uvs { PER_UV } else { 0 };
-        // All levels together have at most four thirds of the elements of the last one.
-        let counted = [(size.bytes(), 4, 3), (size.points, PER_POINT, 1), (size.corners, per_corner, 1)];
-        let memory = counted
-            .into_iter()
-            .fold(0_u64, |sum, (count, each, part)| sum.saturating_add(count.saturating_mul(each) / part));
-        let meanwhile = size.points.saturating_mul(PER_POINT_MEANWHILE);
-        budget.hold(memory)?;
-        budget.check(meanwhile)?;
-        let (refinement, why_not) = match Refinement::new(&own, levels, MAX_TRIANGLES) {
-            Ok(refinement) => (Some(refinement), None),
-            Err(error) => (None, Some(error)),
+        let memory = self.memory(cage.size_at_most(levels), details.is_some());
+        let most = if scheme == Scheme::Loop { MAX_TRIANGLES } else { MAX_TRIANGLES / 2 };
+        let refinement = match budget.hold(memory) {
+            Ok(()) => Refinement::new(&cage, levels, most).map_err(|error| (error.to_string(), memory)),
+            Err(refused) => Err((format!("refined, it {refused}"), 0)),
         };
-        let mut corners = Vec::new();
-        match refinement {
-            Some(refinement) => self.refined(&refinement, has_uvs, |face, own| {
-                corners.clear();
-                corners.extend(face);
-                add(&mut corners, own)
-            })?,
-            None => {
-                for (own, ends) in self.faces.iter().zip(self.starts.array_windows()) {
-                    let [start, end] = ends.map(|end| end as usize);
-                    corners.clear();
-                    corners.extend_from_slice(&self.corners[start..end]);
-                    add(&mut corners, *own)?;
-                }
+        let (why_not, held) = match refinement {
+            Ok(refinement) => {
+                self.refined(&refinement, details, budget, add)?;
+                (None, memory)
             }
-        }
-        budget.release(self.held.saturating_add(memory));
+            Err((why_not, held)) => {
+                for (own, ends) in self.faces.iter().zip(self.starts.array_windows()).filter(|(own, _)| !own.is_hole) {
+                    let [start, end] = ends.map(|end| end as usize);
+                    add(&mut self.corners[start..end].to_vec(), *own)?;
+                }
+                (Some(why_not), held)
+            }
+        };
+        budget.release(self.held.saturating_add(held));
         Ok(why_not)
     }
 
-    fn refined<E>(
+    /// How much memory refining takes at most, in bytes.
+    fn memory(&self, size: Size, has_details: bool) -> u64 {
+        let per_corner =
+            PER_NORMAL + if self.has_uvs() { PER_UV } else { 0 } + if has_details { PER_DETAIL } else { 0 };
+        // All levels together have at most four thirds of the elements of the last one.
+        let counted = [(size.bytes(), 4, 3), (size.points, PER_POINT, 1), (size.corners, per_corner, 1)];
+        counted
+            .into_iter()
+            .fold(0, |sum: u64, (count, each, part)| sum.saturating_add(count.saturating_mul(each) / part))
+    }
+
+    fn has_uvs(&self) -> bool {
+        self.corners.iter().any(|at| at.corner.uv != Vec2::ZERO)
+    }
+
+    fn refined<E: From<MemoryRefused>>(
         &self,
         refinement: &Refinement,
-        has_uvs: bool,
-        mut add: impl FnMut(&mut dyn Iterator<Item = NumberedCorner>, OfFace) -> Result<(), E>,
+        mut details: Option<&mut DetailTable>,
+        budget: &Budget,
+        mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
     ) -> Result<(), E> {
         let (places, normals) = self.limit(refinement);
-        let uvs: Vec<DVec2> = self.corners.iter().map(|at| at.corner.uv.as_dvec2()).filter(|_| has_uvs).collect();
-        let uvs = if has_uvs { refinement.refine_corners(&uvs) } else { uvs };
-        // Parts of a face of the cage follow one another, those nearest to its first corner first.
-        let mut nth = (u32::MAX, 0);
+        let at_corners = |has: bool, value: &dyn Fn(&NumberedCorner) -> DVec4| {
+            let values: Vec<DVec4> = self.corners.iter().filter(|_| has).map(value).collect();
+            if has { refinement.refine_corners(&values) } else { values }
+        };
+        let uvs = at_corners(self.has_uvs(), &|at| at.corner.uv.as_dvec2().extend(0.0).extend(0.0));
+        let detail =
+            |at: &NumberedCorner| details.as_ref().map_or_else(CornerDetail::default, |all| all.detail(at.number));
+        let colors = at_corners(details.is_some(), &|at| detail(at).color.as_dvec4());
+        let more_uvs = at_corners(details.is_some(), &|at| {
+            let [a, b] = detail(at).uvs.map(Vec2::as_dvec2);
+            DVec4::new(a.x, a.y, b.x, b.y)
+        });
+        let mut corners = Vec::new();
         for face in refinement.faces() {
-            nth = if nth.0 == face.cage_face { (nth.0, nth.1 + 1) } else { (face.cage_face, 0) };
-            let nearest = self.nearest_corner(face.cage_face as usize, nth.1);
-            let mut corners = face.corners.map(|k| NumberedCorner {
-                corner: InputCorner {
-                    position: places[refinement.corners()[k] as usize],
-                    normal: Some(normals[k]).filter(|_| self.has_normals),
-                    uv: uvs.get(k).map_or(Vec2::ZERO, |uv| uv.as_vec2()),
-                },
-                number: nearest.number,
-                vertex: None,
-            });
+            corners.clear();
+            for k in face.corners {
+                let number = match &mut details {
+                    Some(details) => {
+                        let [a, b] = [more_uvs[k].xy(), more_uvs[k].zw()].map(DVec2::as_vec2);
+                        let own = CornerDetail { uvs: [a, b], color: colors[k].as_vec4(), ..CornerDetail::default() };
+                        details.number(own, 0, budget)?
+                    }
+                    None => 0,
+                };
+                let position = places[refinement.corners()[k] as usize];
+                let normal = Some(normals[k]).filter(|_| self.has_normals);
+                let uv = uvs.get(k).map_or(Vec2::ZERO, |uv| uv.xy().as_vec2());
+                corners.push(NumberedCorner { corner: InputCorner { position, normal, uv }, number, vertex: None });
+            }
             add(&mut corners, self.faces[face.cage_face as usize])?;
         }
         Ok(())
@@ -202,12 +233,11 @@ impl CageFaces {
         let limit = refinement.limit(&refined);
         (limit.values().into_iter().map(DVec3::as_vec3).collect(), limit.normals())
     }
+}
 
-    /// The corner of a face that is nearest to its refined part number `nth`.
-    fn nearest_corner(&self, face: usize, nth: usize) -> &NumberedCorner {
-        let [start, end] = [self.starts[face], self.starts[face + 1]].map(|end| end as usize);
-        // Both schemes divide the parts of the first level into four.
-        let each = 1 << (2 * self.subdivision.levels.saturating_sub(1));
-        &self.corners[(start + nth / each).min(end - 1)]
-    }
+/// Whether any two of some points are the same.
+fn has_equal(points: &[u32]) -> bool {
+    let mut sorted = points.to_vec();
+    sorted.sort_unstable();
+    sorted.array_windows().any(|[a, b]| a == b)
 }

@@ -29,14 +29,6 @@ use geometry::progress::Progress;
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
 const MAX_MATERIALS: usize = 1 << 16;
 
-/// What a warning about a cage that isn't refined begins with.
-const CAGE_IS_SHOWN: &str = "A subdivision surface is shown as its control cage";
-
-/// Whether a warning is about a cage that isn't refined.
-pub fn is_of_cage(warning: &str) -> bool {
-    warning.starts_with(CAGE_IS_SHOWN)
-}
-
 /// The greatest number of corners of a face. A file with a larger face is refused.
 pub(super) const MAX_CORNERS: usize = 1 << 19;
 
@@ -82,13 +74,18 @@ pub(super) struct FaceBuilder<'a> {
     /// The triangles of the polygon that is being cut.
     cut: Vec<[usize; 3]>,
     /// The faces that are to be refined, if any are.
-    cage: Option<CageFaces>,
+    pub cage: Option<CageFaces>,
+    /// Whether all cages could be refined; none if there wasn't any.
+    pub is_refined: Option<bool>,
+    /// Whether the next face of a cage is a hole.
+    pub is_hole: bool,
 }
 
 counts! {
     struct Counts {
         bad_uvs => "uvs that aren't finite, replaced by (0, 0)";
         too_small => "faces of fewer than 3 corners, left out";
+        degenerate => "faces of a subdivision surface's cage that have a point twice, left out";
         repeated => "corners of polygons at the position of the corner before, left out";
         maybe_overlapping =>
             "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap";
@@ -102,6 +99,8 @@ pub(super) struct Finished {
     pub numbers: Vec<u32>,
     pub notes: Notes,
     pub parts: Vec<Part>,
+    /// Whether all of it is refined.
+    pub is_refined: bool,
 }
 
 impl<'a> FaceBuilder<'a> {
@@ -126,6 +125,8 @@ impl<'a> FaceBuilder<'a> {
             misnumbered: (0, None),
             cut: Vec::new(),
             cage: None,
+            is_refined: None,
+            is_hole: false,
         }
         .subdivided()
     }
@@ -141,23 +142,27 @@ impl<'a> FaceBuilder<'a> {
         self.cage = subdivision.map(|own| CageFaces::new(own, has_normals));
     }
 
-    /// Makes the edge between two positions a crease of the cage that is collected, or the point sharp that is both.
-    pub(super) fn crease(&mut self, ends: [Vec3; 2], sharpness: f32) {
-        self.cage.iter_mut().for_each(|cage| cage.crease(ends, sharpness));
-    }
-
-    /// Adds the refined faces of the cage that was collected.
+    /// Adds the refined faces of the cage that was collected. `details` are those of corners, if the reader has them.
     ///
     /// # Errors
     /// [`ReadError::TooMany`] and [`ReadError::TooLarge`].
-    pub(super) fn end_cage(&mut self) -> Result<(), ReadError> {
+    pub(super) fn end_cage(&mut self, details: Option<&mut DetailTable>) -> Result<(), ReadError> {
         let Some(cage) = self.cage.take() else { return Ok(()) };
-        let why_not = cage.refine(self.memory, |corners, OfFace { material, part }| {
-            self.builder.enter_part(part);
-            self.store(material, corners, false)
-        })?;
-        self.notes.extend(why_not.map(|error| format!("{CAGE_IS_SHOWN}: {error}.")));
+        let mut own = self.colors.take();
+        let why_not =
+            cage.refine(self.memory, details.or(own.as_mut()), |corners, OfFace { material, part, .. }| {
+                self.builder.enter_part(part);
+                self.store(material, corners, false)
+            })?;
+        self.colors = own;
+        self.is_refined = self.is_refined.map(|all| all && why_not.is_none()).or(Some(why_not.is_none()));
+        self.notes.extend(why_not.map(|why| format!("A subdivision surface is shown as its control cage: {why}.")));
         Ok(())
+    }
+
+    /// The warning about faces that lack normals, as [`Import::lacking_normals`] has it. A refined surface has its own.
+    pub(super) fn lacking_normals(&self, count: usize, what: &str) -> (usize, String) {
+        self.import.lacking_normals(if self.cage.is_some() { 0 } else { count }, what)
     }
 
     /// Says which part the next faces belong to, by its name.
@@ -264,12 +269,18 @@ impl<'a> FaceBuilder<'a> {
             self.found.too_small += 1;
             return Ok(());
         }
-        if self.parts.leave_out(corners.len() - 2) {
+        let is_left_out = self.parts.leave_out(corners.len() - 2);
+        if let Some(cage) = &mut self.cage {
+            self.cut.clear();
+            let outline: Vec<Vec3> = corners.iter().map(|at| at.corner.position).collect();
+            let cut = triangulate(&outline, &mut self.work, &mut self.cut);
+            self.found.maybe_overlapping += usize::from(cut == CutQuality::MayOverlap);
+            let face = OfFace { material, part: self.parts.current(), is_hole: is_left_out || self.is_hole };
+            self.found.degenerate += cage.add(corners, face, &self.cut, self.memory)?;
             return Ok(());
         }
-        if let Some(cage) = &mut self.cage {
-            let face = OfFace { material, part: self.parts.current() };
-            return Ok(cage.add(corners, face, &mut self.work, self.memory)?);
+        if is_left_out {
+            return Ok(());
         }
         // Repairs are counted again wherever their vertices are used.
         self.store(material, corners, bad_uvs == self.found.bad_uvs)
@@ -382,14 +393,16 @@ impl<'a> FaceBuilder<'a> {
     /// # Errors
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
     pub(super) fn finish(mut self, name: &str, holds: String, progress: &Progress) -> Result<LoadedMesh, ReadError> {
+        self.end_cage(None)?;
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
         let are_colored = self.are_colored;
-        let Finished { mut mesh, numbers, mut notes, parts } = self.finish_numbered(name, holds, progress)?;
+        let Finished { mut mesh, numbers, mut notes, parts, is_refined } =
+            self.finish_numbered(name, holds, progress)?;
         let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
         if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
             tangents::with_details(&mut mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
-        Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, ..LoadedMesh::default() })
+        Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, is_refined, ..LoadedMesh::default() })
     }
 
     /// Builds the mesh as [`finish`](Self::finish) does, with what the reader adds to it.
@@ -402,7 +415,7 @@ impl<'a> FaceBuilder<'a> {
         holds: String,
         progress: &Progress,
     ) -> Result<Finished, ReadError> {
-        self.end_cage()?;
+        self.end_cage(None)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
         let holds = named.unwrap_or(holds);
@@ -424,7 +437,7 @@ impl<'a> FaceBuilder<'a> {
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
-        Ok(Finished { mesh, numbers, notes: self.notes, parts })
+        Ok(Finished { mesh, numbers, notes: self.notes, parts, is_refined: self.is_refined == Some(true) })
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.

@@ -82,10 +82,18 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(scene);
     progress.set(0.8);
     let finished = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
-    let Finished { mut mesh, numbers, mut notes, parts } = finished;
+    let Finished { mut mesh, numbers, mut notes, parts, is_refined } = finished;
     RigBuilder::complete(&mut mesh, numbers, details, binder, &mut notes, &budget, progress)?;
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, files, file_bytes, ..LoadedMesh::default() })
+    Ok(LoadedMesh {
+        mesh,
+        warnings: notes.into_warnings(),
+        parts,
+        files,
+        file_bytes,
+        is_refined,
+        ..LoadedMesh::default()
+    })
 }
 
 #[cfg(test)]

@@ -178,7 +178,17 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let scenes::Scenes { names, shown } = parsed.scenes;
     let (files, file_bytes) = (files.named(), budget.files());
     let parts = parsed.parts.list;
-    Ok(LoadedMesh { mesh, warnings, variants: parsed.variants, scenes: names, scene: shown, parts, files, file_bytes })
+    Ok(LoadedMesh {
+        mesh,
+        warnings,
+        variants: parsed.variants,
+        scenes: names,
+        scene: shown,
+        parts,
+        files,
+        file_bytes,
+        is_refined: false,
+    })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

@@ -182,9 +182,9 @@ impl Import {
     }
 
     /// The warning about `count` parts of a file that lack normals, with what these are and what becomes of them. Where all normals are
-    /// made, or are those of a subdivision surface, none is missed.
+    /// made, none is missed.
     pub(super) fn lacking_normals(&self, count: usize, what: &str) -> (usize, String) {
-        let count = if self.makes_normals() || self.subdivision().is_some() { 0 } else { count };
+        let count = if self.makes_normals() { 0 } else { count };
         let shown = match self.crease_angle {
             0.0 => "flat".to_owned(),
             angle => format!("smoothed below {angle} degrees"),

@@ -58,7 +58,6 @@ pub use mesh_file::{LoadError, load};
 pub use read_error::{FilePosition, ReadError};
 pub use uri::percent_decoded;
 
-pub use face_builder::is_of_cage;
 pub use format::Format;
 pub use heights::HeightSource;
 pub use import::is_of_lacking_normals;

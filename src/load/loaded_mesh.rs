@@ -20,6 +20,8 @@ pub struct LoadedMesh {
     pub scene: Option<usize>,
     /// The parts of the file that have triangles, also those that were left out. Only some formats have any.
     pub parts: Vec<Part>,
+    /// Whether all of it is a refined subdivision surface.
+    pub is_refined: bool,
     /// The files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     /// The size of all files together in bytes, the mesh's own included; 0 for a mesh that was made in code.

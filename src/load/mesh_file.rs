@@ -109,6 +109,10 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
     load_selected(path, Selection::default(), limits, progress)
 }
 
+/// The warning about what was to be refined and isn't.
+const NOT_REFINED: &str = "Not all of it is refined as a subdivision surface: only polygons of FBX files without clips, and of OBJ, \
+                           PLY, OFF, STL and 3MF files, can be.";
+
 /// Loads a mesh as [`load`] does, with the materials of a variant, or another scene than the default one.
 ///
 /// # Errors
@@ -134,6 +138,9 @@ pub fn load_selected(
     };
     let mut mesh = read(format, if is_utf16 { in_utf8(bytes) } else { bytes }, path, selected, limits, progress)?;
     mesh.warnings.splice(0..0, warning);
+    if selected.import.subdivision().is_some() && !mesh.is_refined {
+        mesh.warnings.push(NOT_REFINED.to_owned());
+    }
     before.check(path)?;
     check_selected(path, selected, &mesh)?;
     progress.set(1.0);

@@ -94,7 +94,7 @@ fn gather<'a>(
     let Reader { mut faces, mut materials, found, .. } = reader;
     materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
     faces.notes.extend(materials.warnings());
-    let lacking = faces.import.lacking_normals(found.without_normals, "faces without normals, or with some missing");
+    let lacking = faces.lacking_normals(found.without_normals, "faces without normals, or with some missing");
     faces.notes.extend(counted([lacking]));
     let smoothed = "faces without normals, or with some missing, which got those of their smoothing groups";
     faces.notes.extend(counted([(found.smoothed, smoothed)]));

@@ -65,7 +65,7 @@ fn gather<'a>(
     let Reader { mut faces, found, .. } = reader;
     faces.notes.extend(cut_short);
     let without_normals = if vertices.normals.is_empty() { vertices.positions.len() } else { 0 };
-    faces.notes.extend(counted([faces.import.lacking_normals(without_normals, "vertices without normals")]));
+    faces.notes.extend(counted([faces.lacking_normals(without_normals, "vertices without normals")]));
     faces.notes.extend(found.sentences());
     files.budget.release(vertices.bytes());
     Ok((faces, format!("it holds {} vertices and {} faces", header.vertices, header.faces)))

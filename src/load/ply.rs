@@ -493,7 +493,7 @@ impl<'a> Reader<'a, '_> {
         let without_normals = if read.normals.is_empty() { read.positions.len() } else { 0 };
         let mut faces = self.faces;
         faces.notes.extend(self.cut_short);
-        let (without_normals, made) = faces.import.lacking_normals(without_normals, "vertices without normals");
+        let (without_normals, made) = faces.lacking_normals(without_normals, "vertices without normals");
         faces.notes.extend(counted([
             (header.other_lines, "lines of the header that aren't part of the format, left out"),
             (without_normals, made.as_str()),

@@ -174,7 +174,10 @@ fn halves_side_by_side_show_the_middle_of_their_view_and_a_difference_what_diffe
     let draw = |options: &[&str]| {
         let path = folder.path("picture.png");
         let camera = ["--camera", "20,15,6"];
-        let usual = ["render", "shape:icosahedron", "--partitioning", "integer", "--size", "160x120", "-o", &path];
+        // Stripes that are reflected depend on the direction to the eye at each pixel.
+        let usual =
+            ["render", "shape:icosahedron", "--partitioning", "integer", "--overlay", "zebra", "--size", "160x120"];
+        let usual = [&usual[..], &["-o", &*path]].concat();
         output(&[&usual[..], &camera, options].concat());
         image::open(&path).expect("a picture").to_rgba8()
     };

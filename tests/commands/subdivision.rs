@@ -81,3 +81,42 @@ fn how_far_a_tessellated_cage_is_from_its_limit_surface_is_measured() {
     let refused = failure(&[&["render", &*file, "-o", "a.png", "--subdivide", "none"][..], &reference].concat(), 1);
     assert!(refused.contains("can't be a reference surface") && refused.contains("3 faces meet"), "{refused}");
 }
+
+#[test]
+fn what_is_hidden_or_flawed_leaves_the_rest_as_it_is() {
+    let folder = Folder::new();
+    let file = folder.path("cube.obj");
+    let [lid, rest] = [&QUADS[..10], &QUADS[10..]];
+    let text = format!("{CUBE}o box\n{rest}f 1 1 2\no lid\n{lid}");
+    std::fs::write(&file, text).expect("a writable folder");
+    let options = ["--subdivide", "catmull-clark", "--levels", "2"];
+    let all = positions(&folder, &file, &options);
+    let some = positions(&folder, &file, &[&options[..], &["--hide-part", "lid"]].concat());
+    assert!(some.len() < all.len() && some.len() > all.len() / 2, "{} of {}", some.len(), all.len());
+    assert!(some.iter().all(|point| all.contains(point)), "the lid still shapes the faces beside it");
+    let picture = folder.path("cube.png");
+    let (_, errors) = both(&[&["render", &file, "-o", &picture, "--size", "16x16"][..], &options].concat());
+    assert!(errors.contains("have a point twice, left out: 1"), "{errors}");
+    let (_, errors) = both(&[&["render", "assets/vase.glb", "-o", &picture, "--size", "16x16"][..], &options].concat());
+    assert!(errors.contains("Not all of it is refined as a subdivision surface"), "{errors}");
+}
+
+#[test]
+fn colours_and_texture_coordinates_are_refined_with_their_faces() {
+    let folder = Folder::new();
+    let file = folder.path("square.obj");
+    // Red grows along x, and so does u.
+    let square = "v 0 0 0 0 1 1\nv 1 0 0 1 1 1\nv 1 1 0 1 1 1\nv 0 1 0 0 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    std::fs::write(&file, square).expect("a writable folder");
+    let options = ["--subdivide", "catmull-clark", "--levels", "3", "--surface", "flat", "--factor", "1"];
+    let picture = folder.path("square.png");
+    let usual = ["--camera", "0,0", "--orthographic", "--size", "64x64", "-o", &picture];
+    output(&[&["render", &*file][..], &options, &usual].concat());
+    let reds: Vec<u8> = {
+        let picture = image::open(&picture).expect("a picture").to_rgba8();
+        (16..48).map(|x| picture.get_pixel(x, 32).0[0]).collect()
+    };
+    // One value for each small face would be a staircase of eight steps.
+    let distinct = reds.iter().collect::<std::collections::BTreeSet<_>>().len();
+    assert!(distinct > 16 && reds.is_sorted(), "{reds:?}");
+}

@@ -48,6 +48,8 @@ impl App {
         };
         let worst = |finding| worst_moment(&found, finding).map(|worst| (finding, worst));
         ui.horizontal(|ui| {
+            // The strip gets at least as much as a button.
+            let widest = ui.available_width() / 4.0;
             let mut time = None;
             for (finding, MomentFound { time: at, counts }) in ClipFinding::ALL.into_iter().filter_map(worst) {
                 let count = counts[finding as usize];
@@ -59,7 +61,12 @@ impl App {
                         (shown, name)
                     }
                 };
-                let button = ui.add_enabled(count > 0, egui::Button::new(shown));
+                let button = egui::Button::new(shown).truncate();
+                let own = |ui: &mut egui::Ui| {
+                    ui.set_max_width(widest);
+                    ui.add_enabled(count > 0, button)
+                };
+                let button = ui.scope(own).inner;
                 button.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, count > 0, &name));
                 let button = button.on_hover_text(format!("{name}. {}", finding.text()));
                 if button.on_disabled_hover_text("There are none in this clip.").clicked() {

@@ -198,7 +198,7 @@ fn formula_text(formula: EdgeFormula) -> (String, String) {
             let quotient = factor(f64::from((px / segment).max(1.0)), 3);
             let sign = if px < segment { "->" } else { "=" };
             let hover = format!(
-                "The control polygon of the edge's curve is {length} px long on screen, and a segment is {each} px. A factor is at least 1."
+                "The control polygon of the edge's curve is {length} px long on screen, and a segment is {each} px. A factor is at least 1, and the tessellator's at most 64."
             );
             (format!("{length} px / {each} px {sign} {quotient}"), hover)
         }

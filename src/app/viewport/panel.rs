@@ -353,7 +353,9 @@ impl App {
             let unit = if spacing == 1.0 { "unit" } else { "units" };
             format!("Grid: {spacing} {unit}")
         });
-        let is_difference = self.settings.split.is_some() && self.settings.split_view == SplitView::Difference;
+        let has_left = self.document.as_ref().is_some_and(|document| document.scene.half(SplitSide::Left).is_some());
+        let is_difference =
+            has_left && self.settings.split.is_some() && self.settings.split_view == SplitView::Difference;
         let difference = is_difference.then(|| "Difference: black where both halves are equal".to_owned());
         let distance = self.viewport.ruler.map(|ruler| ruler.text());
         let bookmarked = self.viewport.bookmarks.iter().position(|bookmark| *bookmark == self.viewport.camera);

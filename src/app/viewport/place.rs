@@ -89,6 +89,9 @@ impl App {
 
 /// The camera with what is in the middle of its view in the middle of a half of the split.
 fn beside(mut camera: Camera, settings: &Settings, half: SplitSide, size: Vec2) -> Camera {
+    if settings.split.is_none() {
+        return camera;
+    }
     let place = half_places(size.to_array().map(|side| side as u32), settings)[half as usize];
     camera.pan(place.middle(), size);
     camera

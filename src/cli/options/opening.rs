@@ -71,6 +71,7 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
     use geometry::mesh::UpAxis;
+    use load::import::Subdivide;
     use load::{FileUnit, LengthUnit, NormalSource};
 
     fn options(arguments: &[&str]) -> OpeningOptions {
@@ -85,7 +86,8 @@ mod tests {
             up: Some(UpAxis::X),
             unit: Some(FileUnit::Named(LengthUnit::Inch)),
             show_hidden: true,
-            ..Import::default()
+            subdivide: Subdivide::Loop,
+            levels: Some(3.0),
         };
         assert!(options(&["a.obj"]).is_empty());
         assert_eq!(options(&["a.obj"]).import(usual), usual);

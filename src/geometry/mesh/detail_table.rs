@@ -40,6 +40,11 @@ impl DetailTable {
         Ok(id)
     }
 
+    /// Returns the details of a number; those of a corner that has none if there is no such number.
+    pub fn detail(&self, number: u32) -> CornerDetail {
+        self.details.get(number as usize).copied().unwrap_or_default()
+    }
+
     fn grow(&mut self, budget: &Budget) -> Result<(), MemoryRefused> {
         let (count, capacity) = (self.details.len(), self.details.capacity());
         let more = (count / 2).max(64);

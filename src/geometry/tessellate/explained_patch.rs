@@ -204,6 +204,9 @@ pub fn explain_patch(
     }
 }
 
+/// The length of a segment, in px, in which lengths are measured: those below it count as that.
+const FINE: f32 = 1.0 / 1024.0;
+
 /// Returns what the factor of a patch's side is computed from.
 fn edge_formula(nets: &ControlNets, inputs: &Inputs, patch: u32, side: usize) -> EdgeFormula {
     let Inputs { tessellation: Tessellation { lod, factor, pixels, near, far, .. }, ref view } = *inputs;
@@ -211,7 +214,7 @@ fn edge_formula(nets: &ControlNets, inputs: &Inputs, patch: u32, side: usize) ->
     let curves = nets.curves.factor_curves[at]..nets.curves.factor_curves[at + 1];
     let nets = curves.map(|curve| nets.curve_points(curve));
     let longest = |px: fn(&LodView, f32, [Vec3; 4]) -> f32| EdgeFormula::Length {
-        px: nets.clone().map(|net| px(view, 1.0, net)).fold(1.0, f32::max),
+        px: nets.clone().map(|net| px(view, FINE, net) * FINE).fold(0.0, f32::max),
         segment: pixels,
     };
     match lod {

@@ -106,7 +106,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         only: &preparation.parts.only,
         import: preparation.import,
     };
-    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes } =
+    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: _ } =
         source.load_selected(selected, &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);

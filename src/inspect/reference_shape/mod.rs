@@ -24,8 +24,9 @@ pub use spread::radical_inverse;
 use geometry::mesh::{Mesh, Shape};
 use geometry::progress::Progress;
 use load::files::Limits;
+use load::import::Subdivide;
 use load::selection::Selection;
-use load::{Import, LoadError, Source, is_of_cage};
+use load::{Import, LoadError, Source};
 
 /// How often the cage of a reference surface is refined. Its points are then those of the limit surface.
 const LEVELS: f32 = 4.0;
@@ -75,11 +76,12 @@ impl ReferenceShape {
             return Ok(Some(exact));
         }
         let refined = Import { subdivide: import.subdivide, levels: Some(LEVELS), ..import.placement() };
-        let import = if shape.is_some() { Import::default() } else { refined };
-        let selected = Selection { import, ..Selection::default() };
+        let selected =
+            Selection { import: if shape.is_some() { Import::default() } else { refined }, ..Selection::default() };
         let loaded = source.load_selected(selected, limits, progress)?;
-        if let Some(reason) = loaded.warnings.iter().find(|warning| is_of_cage(warning)) {
-            return Err(LoadError::Unrefined { file: source.to_string(), reason: reason.clone() });
+        if matches!(import.subdivide, Subdivide::CatmullClark | Subdivide::Loop) && !loaded.is_refined {
+            let reason = loaded.warnings.join(" ");
+            return Err(LoadError::Unrefined { file: source.to_string(), reason });
         }
         Ok(Self::from_mesh(&loaded.mesh))
     }

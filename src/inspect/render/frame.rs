@@ -44,7 +44,8 @@ pub(super) fn frame(
         scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
         left: place.area[0] as f32,
         coarseness: target.coarseness as f32,
-        _pad: [0.0; 2],
+        shift: place.shift as f32,
+        _pad: 0.0,
     };
     uniform_buffer(gpu, "frame", bytemuck::bytes_of(&frame))
 }

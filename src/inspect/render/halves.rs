@@ -62,8 +62,8 @@ pub fn half_places(size: [u32; 2], settings: &Settings) -> [HalfPlace; 2] {
     }
 }
 
-/// The columns of an outlines' picture that is so many px wide which are shown, the column that the first is shown in, and how many
-/// are shown. None where a picture doesn't show what they are of, the right half.
+/// Which columns of a picture of outlines are laid over a picture of this width: the first one, the column of the picture where it
+/// comes to lie, and how many. None if the picture doesn't show the right half, whose outlines they are.
 pub fn outlines_columns(width: u32, settings: &Settings) -> Option<[u32; 3]> {
     match settings.split.map(|_| settings.split_view) {
         None | Some(SplitView::Divider) => Some([0, 0, width]),
@@ -76,10 +76,14 @@ pub fn outlines_columns(width: u32, settings: &Settings) -> Option<[u32; 3]> {
     }
 }
 
-/// Width and height in px of the part of a view that each half shows at least, if it is moved to the middle of the half.
+/// Width and height in px of the part of a view that both halves show, if it is moved to their middles. A half that is hidden, or nearly,
+/// doesn't count.
 pub fn framed_size(size: Vec2, settings: &Settings) -> Vec2 {
-    let is_beside = settings.split.is_some() && settings.split_view == SplitView::Beside;
-    if is_beside { size * vec2(0.5, 1.0) } else { size }
+    let narrower = settings.split.map(|split| split.min(1.0 - split)).filter(|part| *part > 0.05);
+    match narrower.filter(|_| settings.split_view == SplitView::Beside) {
+        Some(part) => size * vec2(part, 1.0),
+        None => size,
+    }
 }
 
 /// The half of a picture of `size` px in which a pixel lies, and the same pixel where all of the picture shows that half.

@@ -39,7 +39,9 @@ pub struct Frame {
     pub left: f32,
     /// Px of the full picture that one px stands for, along each axis: more than 1 in coarse previews.
     pub coarseness: f32,
-    pub _pad: [f32; 2],
+    /// By how many columns all that is drawn is moved to the right.
+    pub shift: f32,
+    pub _pad: f32,
 }
 
 /// A material's constants.

@@ -16,7 +16,7 @@ const SAMPLE: usize = 300;
 /// The same where the nearest place of the surface itself is sought, which takes longer.
 const SURFACE_SAMPLE: usize = 100;
 /// The most vertices of ours that theirs are looked for among, which takes about 200 bytes each.
-const MOST_POSITIONS: usize = 1 << 22;
+const MOST_POSITIONS: usize = 1 << 20;
 /// A vertex is near if it is no farther from the surface than this part of the mesh's diagonal.
 const NEAR: f64 = 0.01;
 /// As they are, coordinates are kept if this share of their vertices is near.

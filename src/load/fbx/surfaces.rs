@@ -142,7 +142,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         if subdivision.is_some() {
             reader.creases()?;
         }
-        reader.faces.end_cage()
+        reader.faces.is_hole = false;
+        reader.faces.end_cage(reader.details)
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
@@ -176,14 +177,19 @@ impl MeshReader<'_, '_, '_> {
     /// How the mesh is refined. One that a clip may move isn't: its joints and blend shapes move the points of the cage.
     fn subdivision(&mut self) -> Option<Subdivision> {
         let (import, mesh) = (self.faces.import, self.mesh);
-        let is_marked = mesh.subdivision_display_mode != SubdivisionDisplayMode::Disabled;
+        let mode = mesh.subdivision_display_mode;
+        let is_smooth = matches!(mode, SubdivisionDisplayMode::HullAndSmooth | SubdivisionDisplayMode::Smooth);
+        let is_marked = is_smooth && mesh.subdivision_preview_levels > 0;
         let is_wanted = match import.subdivide {
             Subdivide::Off => false,
             Subdivide::File => is_marked,
             Subdivide::CatmullClark | Subdivide::Loop => true,
         };
         if !is_wanted || self.binder.is_some() {
-            self.found.cages += usize::from(is_wanted || is_marked);
+            if is_wanted || is_marked {
+                self.found.cages += 1;
+                self.faces.is_refined = Some(false);
+            }
             return None;
         }
         let boundary = match mesh.subdivision_boundary {
@@ -215,14 +221,20 @@ impl MeshReader<'_, '_, '_> {
                 let posed = self.vertices.posed(corner as usize, vertex, &self.influences, &self.deltas);
                 *position = posed.corner.position;
             }
-            self.faces.crease(positions, sharpness);
+            if let Some(cage) = &mut self.faces.cage {
+                match ends {
+                    [a, b] if a == b => cage.sharpen(positions[0], sharpness),
+                    _ => cage.crease(positions, sharpness),
+                }
+            }
         }
         Ok(())
     }
 
     fn face(&mut self, i: usize, face: Face, corners: &mut Vec<NumberedCorner>) -> Result<(), ReadError> {
-        if self.mesh.face_hole.get(i) == Some(&true) {
-            self.found.holes += 1;
+        self.faces.is_hole = self.mesh.face_hole.get(i) == Some(&true);
+        self.found.holes += usize::from(self.faces.is_hole);
+        if self.faces.is_hole && self.faces.cage.is_none() {
             return Ok(());
         }
         if face.num_indices as usize > MAX_CORNERS {

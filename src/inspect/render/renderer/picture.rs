@@ -118,7 +118,8 @@ impl Renderer {
         let of_half = settings.half(step.half()).unwrap_or(*settings);
         let mut surfaces = self.surfaces(drawn, &picture.materials[step.half() as usize], target, camera, &of_half)?;
         if let Step::Surface(_, chunk) = step {
-            surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
+            let place = picture.places[step.half() as usize];
+            surfaces.sifted = self.sift(recorder, drawn, target, camera, &place, chunk, &surfaces)?;
         }
         let beside = self.beside(scene, picture, index)?;
         self.record_step(recorder, scene, picture, index, &surfaces, &beside);
@@ -140,16 +141,19 @@ impl Renderer {
             at.and_then(|at| steps.get(at)).is_none_or(|step| matches!(step, Step::Keep | Step::Difference))
         };
         let (step, is_first, is_last) = (steps[index], ends(index.checked_sub(1)), ends(Some(index + 1)));
-        let half = step.half();
-        let (Some(drawn), Some(frame)) = (scene.half(half), &frames[half as usize]) else { return };
-        let (group, place) = (self.scene_group(drawn, frame), &places[half as usize]);
+        let shown = SplitSide::BOTH.map(|half| {
+            let (own, frame) = scene.half(half).zip(frames[half as usize].as_ref())?;
+            Some((own, self.scene_group(own, frame), &places[half as usize]))
+        });
+        let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
         let color = target.color(linear_color(picture.settings.background_color()), is_first, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
-            pass.set_bind_group(0, &group, &[]);
-            if let Some((pipeline, group)) = picture.background.as_ref().filter(|_| is_first) {
+            pass.set_bind_group(0, group, &[]);
+            if let Some((pipeline, light)) = picture.background.as_ref().filter(|_| is_first) {
                 pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, group, &[]);
-                draw_in(pass, places, 3);
+                pass.set_bind_group(1, light, &[]);
+                draw_in(pass, &shown, |pass, _| pass.draw(0..3, 0..1));
+                pass.set_bind_group(0, group, &[]);
             }
             match step {
                 Step::Surface(_, chunk) => {
@@ -165,12 +169,10 @@ impl Renderer {
             if let Some(ground) = &beside.ground {
                 // Both halves have the same ground.
                 pass.set_pipeline(ground);
-                draw_in(pass, places, 6);
+                draw_in(pass, &shown, |pass, _| pass.draw(0..6, 0..1));
             }
             if let Some(lines) = &beside.lines {
-                for half in SplitSide::BOTH {
-                    scene.half(half).into_iter().for_each(|own| draw_lines(pass, lines, own, &places[half as usize]));
-                }
+                draw_in(pass, &shown, |pass, own| draw_lines(pass, lines, own));
             }
         });
     }
@@ -208,17 +210,21 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
     before_layers.unwrap_or(steps.len() - 1)
 }
 
-/// Draws a number of corners in both halves.
-fn draw_in(pass: &mut wgpu::RenderPass, places: &[HalfPlace; 2], corners: u32) {
-    for place in places {
+/// What draws over a half: its scene, bind group and place; none if it isn't shown.
+type ShownHalf<'a> = Option<(&'a Scene, wgpu::BindGroup, &'a HalfPlace)>;
+
+/// Draws in both halves.
+fn draw_in(pass: &mut wgpu::RenderPass, halves: &[ShownHalf; 2], draw: impl Fn(&mut wgpu::RenderPass, &Scene)) {
+    for (own, group, place) in halves.iter().flatten() {
         if place.confine(pass) {
-            pass.draw(0..corners, 0..1);
+            pass.set_bind_group(0, group, &[]);
+            draw(pass, own);
         }
     }
 }
 
-fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2], scene: &Scene, place: &HalfPlace) {
-    if let Some((buffer, count)) = scene.lines.as_ref().filter(|_| place.confine(pass)) {
+fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2], scene: &Scene) {
+    if let Some((buffer, count)) = &scene.lines {
         pass.set_vertex_buffer(0, buffer.slice(..));
         for pipeline in pipelines {
             pass.set_pipeline(pipeline);

@@ -307,3 +307,13 @@ fn what_is_marked_as_a_subdivision_surface_is_refined_with_its_creases() {
     // Shared corners of smooth points have one normal, and those of creases one for each side.
     assert!(sharp.corners.len() > smooth.corners.len());
 }
+
+#[test]
+fn a_cage_that_the_file_shows_as_such_stays() {
+    for (mode, levels, triangles) in [(1, 2, 20), (2, 2, 36 * 4 * 2), (3, 1, 36 * 2), (3, 0, 20)] {
+        let marked = prism(vec![one("Smoothness", mode), one("PreviewDivisionLevels", levels)]);
+        let objects = vec![marked, model(20, "prism", "Mesh", &[])];
+        let mesh = loaded(&document(true, 1.0, objects, &[Link(20, 0, ""), Link(10, 20, "")]));
+        assert_eq!((mesh.triangles.len(), mesh.is_refined), (triangles, triangles > 20), "{mode} {levels}");
+    }
+}
