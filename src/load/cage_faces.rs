@@ -31,6 +31,7 @@ pub(super) struct OfFace {
 }
 
 /// A cage whose points are the distinct positions of corners.
+#[derive(Default)]
 pub(super) struct CageFaces {
     subdivision: Subdivision,
     numbers: HashMap<[u32; 3], u32>,
@@ -49,20 +50,7 @@ pub(super) struct CageFaces {
 
 impl CageFaces {
     pub(super) fn new(subdivision: Subdivision, has_normals: bool) -> Self {
-        Self {
-            subdivision,
-            numbers: HashMap::new(),
-            positions: Vec::new(),
-            starts: vec![0],
-            points: Vec::new(),
-            corners: Vec::new(),
-            faces: Vec::new(),
-            creases: Vec::new(),
-            sharp_points: Vec::new(),
-            holes: Vec::new(),
-            has_normals,
-            held: 0,
-        }
+        Self { subdivision, has_normals, starts: vec![0], ..Self::default() }
     }
 
     /// Adds a face of three or more corners. Loop's scheme gets its triangles. Returns how many faces have a point twice: these are left

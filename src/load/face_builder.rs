@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3, Vec4};
 
 use super::cage_faces::{CageFaces, OfFace};
-use super::import::{Import, Subdivision};
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
@@ -124,22 +124,10 @@ impl<'a> FaceBuilder<'a> {
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
-            cage: None,
+            cage: import.subdivision().map(|own| CageFaces::new(own, !import.makes_normals())),
             is_refined: None,
             is_hole: false,
         }
-        .subdivided()
-    }
-
-    fn subdivided(mut self) -> Self {
-        self.begin_cage(self.import.subdivision());
-        self
-    }
-
-    /// Collects the next faces as a cage to refine, or none.
-    pub(super) fn begin_cage(&mut self, subdivision: Option<Subdivision>) {
-        let has_normals = !self.import.makes_normals();
-        self.cage = subdivision.map(|own| CageFaces::new(own, has_normals));
     }
 
     /// Adds the refined faces of the cage that was collected. `details` are those of corners, if the reader has them.

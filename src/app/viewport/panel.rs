@@ -16,7 +16,7 @@ use crate::commands::{Action, CameraAction, key_name, with_key};
 use geometry::view::ScreenView;
 use gpu::GpuError;
 use inspect::engine::SilhouetteView;
-use inspect::render::{Ground, Scene, framed_size, half_at, outlines_columns};
+use inspect::render::{Ground, Scene, framed_size, half_at};
 use inspect::settings::{Settings, SplitSide, SplitView};
 use load::Source;
 
@@ -82,8 +82,10 @@ impl App {
                     let veil = egui::Color32::from_rgba_unmultiplied(r, g, b, VEIL);
                     ui.painter().rect_filled(rect, 0.0, veil);
                 }
-                if let Some(outlines) = self.found_outlines().filter(|_| previewed.is_none()) {
-                    self.paint_outlines(ui, rect, outlines.texture.id(), size[0]);
+                let has_outlines = previewed.is_none() && !self.settings.moves_halves();
+                if let Some(outlines) = self.found_outlines().filter(|_| has_outlines) {
+                    let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
+                    ui.painter().image(outlines.texture.id(), rect, whole, egui::Color32::WHITE);
                 }
                 self.over_picture(ui, rect);
             }
@@ -93,16 +95,6 @@ impl App {
             }
         }
         self.viewport_notes(ui, rect);
-    }
-
-    /// Paints the outlines over the picture, which is so many px wide, where it shows what they are of.
-    fn paint_outlines(&self, ui: &egui::Ui, rect: egui::Rect, outlines: egui::TextureId, px: u32) {
-        let Some(columns) = outlines_columns(px, &self.settings) else { return };
-        let [from, to, width] = columns.map(|column| column as f32 / px as f32);
-        let across = |start: f32| rect.left() + rect.width() * start..=rect.left() + rect.width() * (start + width);
-        let place = egui::Rect::from_x_y_ranges(across(to), rect.y_range());
-        let seen = egui::Rect::from_x_y_ranges(from..=from + width, 0.0..=1.0);
-        ui.painter().image(outlines, place, seen, egui::Color32::WHITE);
     }
 
     /// What lies over a picture, and explains it.

@@ -31,16 +31,6 @@ impl IsolineFactors {
         })
     }
 
-    /// Returns the number of domain points.
-    pub fn point_count(&self) -> u32 {
-        segments(self.density) * (segments(self.detail) + 1)
-    }
-
-    /// Returns the number of lines between two points.
-    pub fn line_count(&self) -> u32 {
-        segments(self.density) * segments(self.detail)
-    }
-
     /// Returns (U, V) of all domain points, in 16.16 fixed point, isoline by isoline. There is no isoline at V == 1, so that
     /// patches side by side don't draw it twice.
     pub fn points(&self) -> Vec<[u32; 2]> {

@@ -57,33 +57,12 @@ impl QuadFactors {
         edges_are_one && self.inside.iter().all(|word| word & FACTOR_VALUE == FIXED_ONE)
     }
 
-    /// Returns the number of points on the patch's outline.
-    pub fn outer_count(&self) -> u32 {
-        self.outside.map(segments).iter().sum()
-    }
-
-    /// Returns the number of points inside the outline.
-    fn inner_count(&self) -> u32 {
-        let [u, v] = self.inside.map(segments);
-        if self.is_minimal() { 0 } else { (u - 1) * (v - 1) }
-    }
-
-    /// Returns the number of domain points.
-    pub fn point_count(&self) -> u32 {
-        self.outer_count() + self.inner_count()
-    }
-
-    /// Returns the number of triangles, by Euler's formula.
-    pub fn triangle_count(&self) -> u32 {
-        self.outer_count() + 2 * self.inner_count() - 2
-    }
-
     /// Returns (U, V) of all domain points, in 16.16 fixed point and in the tessellator's order.
     pub fn points(&self) -> Vec<[u32; 2]> {
         if self.is_minimal() {
             return vec![[0, 0], [FIXED_ONE, 0], [FIXED_ONE, FIXED_ONE], [0, FIXED_ONE]];
         }
-        let mut points = Vec::with_capacity(self.point_count() as usize);
+        let mut points = Vec::new();
         for (side, word) in self.outside.into_iter().enumerate() {
             let along: Vec<_> = domain_row(word).locations().collect();
             push_side(&mut points, side, &along, if side < 2 { 0 } else { FIXED_ONE });
@@ -111,7 +90,7 @@ impl QuadFactors {
         if self.is_minimal() {
             return vec![[0, 1, 3], [1, 2, 3]];
         }
-        let mut triangles = Vec::with_capacity(self.triangle_count() as usize);
+        let mut triangles = Vec::new();
         let rows = self.inside.map(domain_row);
         let [u, v] = self.inside.map(segments);
         let mut around = Ring { start: 0, sides: self.outside.map(segments) };

@@ -62,20 +62,6 @@ pub fn half_places(size: [u32; 2], settings: &Settings) -> [HalfPlace; 2] {
     }
 }
 
-/// Which columns of a picture of outlines are laid over a picture of this width: the first one, the column of the picture where it
-/// comes to lie, and how many. None if the picture doesn't show the right half, whose outlines they are.
-pub fn outlines_columns(width: u32, settings: &Settings) -> Option<[u32; 3]> {
-    match settings.split.map(|_| settings.split_view) {
-        None | Some(SplitView::Divider) => Some([0, 0, width]),
-        Some(SplitView::Difference) => None,
-        Some(SplitView::Beside) => {
-            let [_, right] = half_places([width, 1], settings);
-            let [x, _, width, _] = right.area;
-            Some([x.saturating_add_signed(-right.shift), x, width])
-        }
-    }
-}
-
 /// Width and height in px of the part of a view that both halves show, if it is moved to their middles. A half that is hidden, or nearly,
 /// doesn't count.
 pub fn framed_size(size: Vec2, settings: &Settings) -> Vec2 {

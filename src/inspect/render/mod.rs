@@ -60,7 +60,7 @@ mod window;
 pub use camera::{Camera, Standpoint};
 pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use ground::{Ground, axis_lines};
-pub use halves::{HalfPlace, framed_size, half_at, half_places, outlines_columns};
+pub use halves::{HalfPlace, framed_size, half_at, half_places};
 pub(crate) use leaks::LeakCounter;
 pub use leaks::{Leak, LeakCount, Leaks, leaks_in};
 pub(crate) use legend::{COLUMNS, Shown, tick_text};

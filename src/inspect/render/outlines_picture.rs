@@ -3,7 +3,6 @@
 use glam::{Vec2, vec2};
 use image::{Pixel, Rgba, RgbaImage, imageops};
 
-use super::halves::outlines_columns;
 use super::layout::OUTLINE_COLOR;
 use crate::measure::{OutlineDistance, OutlineOf, Silhouette};
 use crate::settings::Settings;
@@ -35,11 +34,11 @@ pub fn outlines_picture(silhouette: &Silhouette) -> RgbaImage {
     picture
 }
 
-/// Lays outlines over a picture of the same size, where it shows what they are of.
+/// Lays outlines over a picture of the same size, if that shows the view from where they are seen.
 pub fn lay_over(picture: &mut RgbaImage, outlines: &RgbaImage, settings: &Settings) {
-    let Some([from, to, width]) = outlines_columns(picture.width(), settings) else { return };
-    let outlines = imageops::crop_imm(outlines, from, 0, width, outlines.height());
-    imageops::overlay(picture, &*outlines, to.into(), 0);
+    if !settings.moves_halves() {
+        imageops::overlay(picture, outlines, 0, 0);
+    }
 }
 
 fn blend(pixel: &mut Rgba<u8>, [r, g, b]: [u8; 3], share: f32) {

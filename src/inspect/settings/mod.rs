@@ -262,6 +262,11 @@ impl Settings {
         }
     }
 
+    /// Whether the halves are shown elsewhere than where the view has them, or not at all.
+    pub fn moves_halves(&self) -> bool {
+        self.split.is_some() && self.split_view != SplitView::Divider
+    }
+
     /// Whether the left half of a split view is another tessellation than the mesh as it is.
     pub fn has_left_tessellation(&self) -> bool {
         self.left != Tessellation::untessellated()

@@ -8,6 +8,7 @@ use super::materials::{self, Materials, Resolved};
 use super::nodes::Placed;
 use super::skin::Skin;
 use super::vertices::Vertices;
+use crate::cage_faces::CageFaces;
 use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner};
 use crate::import::{Subdivide, Subdivision};
 use crate::memory_budget::{Budget, edge_bytes};
@@ -131,7 +132,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         };
         let subdivision = reader.subdivision();
         self.without_normals += usize::from(is_without_normals && subdivision.is_none());
-        reader.faces.begin_cage(subdivision);
+        let has_normals = !reader.faces.import.makes_normals();
+        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, has_normals));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {

@@ -29,30 +29,27 @@ pub use limit::Limit;
 pub use size::Size;
 
 use crate::casts::to_u32;
-use crate::choice::choices;
 use level::Level;
 use values::Values;
 
-choices! {
-    /// How faces are divided, and what is averaged.
-    #[derive(Default, Hash)]
-    pub enum Scheme {
-        #[default]
-        CatmullClark => "catmull-clark", "Catmull-Clark",
-            "Divides polygons into quadrilaterals. Regular parts become bicubic B-splines.";
-        Loop => "loop", "Loop", "Divides triangles into four. Regular parts become quartic box splines.";
-    }
+/// How faces are divided, and what is averaged.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scheme {
+    /// Divides polygons into quadrilaterals. Regular parts become bicubic B-splines.
+    #[default]
+    CatmullClark,
+    /// Divides triangles into four. Regular parts become quartic box splines.
+    Loop,
 }
 
-choices! {
-    /// What becomes of the boundary of an open cage.
-    #[derive(Default, Hash)]
-    pub enum Boundary {
-        Edges => "edges", "edges", "Boundaries become smooth curves, also where a point has only one face.";
-        #[default]
-        EdgesAndCorners => "edges-and-corners", "edges and corners",
-            "Boundaries become curves with corners at points of only one face.";
-    }
+/// What becomes of the boundary of an open cage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Boundary {
+    /// Smooth curves, also where a point has only one face.
+    Edges,
+    /// Curves with corners at points of only one face.
+    #[default]
+    EdgesAndCorners,
 }
 
 /// What can be refined: values that can be added and scaled, such as `f64` and `DVec3`. The default value must be zero.

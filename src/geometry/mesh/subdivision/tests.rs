@@ -129,7 +129,7 @@ fn varied() -> Vec<Shape> {
         let mut sharpness = || random.f32() * 4.0;
         shape.creases = shape.edges().into_iter().step_by(2 + k / 6).map(|edge| (edge, sharpness())).collect();
         shape.sharp_points = (0..to_u32(shape.positions.len())).step_by(5).map(|point| (point, sharpness())).collect();
-        shape.boundary = Boundary::ALL[k % 2];
+        shape.boundary = [Boundary::Edges, Boundary::EdgesAndCorners][k % 2];
         shapes.push(shape);
     }
     shapes
@@ -286,7 +286,7 @@ fn assert_same_limit(shape: &Shape, points: usize) {
 #[test]
 fn limits_are_the_same_from_every_level() {
     let mut random = fastrand::Rng::with_seed(1);
-    for scheme in Scheme::ALL {
+    for scheme in [Scheme::CatmullClark, Scheme::Loop] {
         for edges in 3..=20 {
             let shape = poles(edges, scheme).shaken(&mut random);
             assert_same_limit(&shape, 2);
@@ -451,8 +451,8 @@ fn a_face_of_ten_thousand_corners_is_refined() {
 
 #[test]
 fn many_faces_around_a_point_take_no_longer_than_elsewhere() {
-    for scheme in Scheme::ALL {
-        for boundary in Boundary::ALL {
+    for scheme in [Scheme::CatmullClark, Scheme::Loop] {
+        for boundary in [Boundary::Edges, Boundary::EdgesAndCorners] {
             let open = Shape { boundary, ..fan(50_000, scheme) };
             let tip = Shape { sharp_points: vec![(0, 10.0)], ..poles(50_000, scheme) };
             for shape in [open, tip] {
@@ -479,7 +479,7 @@ fn points_of_several_fans_and_turned_faces_stay_where_they_are() {
 #[test]
 fn points_without_faces_and_cages_without_any_are_kept() {
     let lone = Shape { positions: vec![DVec3::X, DVec3::Y], starts: vec![0], ..Shape::default() };
-    for scheme in Scheme::ALL {
+    for scheme in [Scheme::CatmullClark, Scheme::Loop] {
         let (refinement, refined) = Shape { scheme, ..lone.clone() }.refined(3);
         assert_eq!((refined, refinement.faces().count()), (vec![DVec3::X, DVec3::Y], 0));
     }

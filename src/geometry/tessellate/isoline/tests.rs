@@ -56,7 +56,11 @@ proptest! {
     ) {
         let Some(own) = IsolineFactors::new(p, density, detail) else { return Ok(()) };
         let (points, lines) = (own.points(), own.lines());
-        prop_assert_eq!((points.len(), lines.len()), (own.point_count() as usize, own.line_count() as usize));
+        prop_assert_eq!((points.len(), lines.len()), {
+            // In closed form.
+            let [isolines, along] = [own.density, own.detail].map(|word| segments(word) as usize);
+            (isolines * (along + 1), isolines * along)
+        });
         let isolines: Vec<_> = points.chunks(segments(own.detail) as usize + 1).collect();
         for (k, isoline) in (0..).zip(&isolines) {
             let v = isoline[0][1];

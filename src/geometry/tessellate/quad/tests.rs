@@ -10,6 +10,30 @@ use crate::tessellate::{domain_plan, domain_point, process};
 const ONE: u32 = FIXED_ONE;
 const HALF: u32 = FIXED_HALF;
 
+/// How many points and triangles there are, in closed form.
+impl QuadFactors {
+    /// Returns the number of points on the patch's outline.
+    fn outer_count(&self) -> u32 {
+        self.outside.map(segments).iter().sum()
+    }
+
+    /// Returns the number of points inside the outline.
+    fn inner_count(&self) -> u32 {
+        let [u, v] = self.inside.map(segments);
+        if self.is_minimal() { 0 } else { (u - 1) * (v - 1) }
+    }
+
+    /// Returns the number of domain points.
+    fn point_count(&self) -> u32 {
+        self.outer_count() + self.inner_count()
+    }
+
+    /// Returns the number of triangles, by Euler's formula.
+    fn triangle_count(&self) -> u32 {
+        self.outer_count() + 2 * self.inner_count() - 2
+    }
+}
+
 fn quad(p: Partitioning, edges: [f32; 4], inside: [f32; 2]) -> QuadFactors {
     QuadFactors::new(p, edges, inside).expect("a patch that is drawn")
 }
