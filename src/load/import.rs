@@ -1,5 +1,6 @@
 //! How the geometry of a file is taken: whose normals, which axis points up, and how long its unit is.
 
+use geometry::casts::to_byte;
 use geometry::choice::choices;
 use geometry::mesh::normals::CREASE_ANGLE;
 use geometry::mesh::orientation::reorient;
@@ -152,8 +153,8 @@ impl Import {
 
     /// How often cages are refined of which the file says so many times.
     pub(super) fn levels_or(&self, of_file: u32) -> u8 {
-        let levels = self.levels.map_or(of_file, |levels| levels.round() as u32);
-        levels.min(MOST_LEVELS.into()) as u8
+        let of_file = u8::try_from(of_file).unwrap_or(MOST_LEVELS);
+        self.levels.map_or(of_file, |levels| to_byte(levels.round())).min(MOST_LEVELS)
     }
 
     /// Whether all normals are made.

@@ -18,7 +18,7 @@ use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
 use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::uri::Files;
-use geometry::casts::{to_u32, to_usize};
+use geometry::casts::{to_f32, to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
 use geometry::mesh::subdivision::Boundary;
@@ -205,11 +205,11 @@ impl MeshReader<'_, '_, '_> {
     /// Tells which edges are creases, and which points are sharp. FBX files have a sharpness of 10 as 1.
     fn creases(&mut self) -> Result<(), ReadError> {
         let sharp = self.mesh.edges.iter().zip(self.mesh.edge_crease.iter()).filter(|(_, crease)| **crease > 0.0);
-        let mut sharp: Vec<_> = sharp.map(|(edge, crease)| ([edge.a, edge.b], (10.0 * crease) as f32)).collect();
+        let mut sharp: Vec<_> = sharp.map(|(edge, crease)| ([edge.a, edge.b], to_f32(10.0 * crease))).collect();
         let points = &self.mesh.vertex_crease;
         for (corner, index) in (0..).zip(points.indices.iter()) {
             let crease = points.values.get(*index as usize).copied().unwrap_or_default();
-            sharp.extend((crease > 0.0).then_some(([corner; 2], (10.0 * crease) as f32)));
+            sharp.extend((crease > 0.0).then_some(([corner; 2], to_f32(10.0 * crease))));
         }
         for (ends, sharpness) in sharp {
             let mut positions = [Vec3::ZERO; 2];

@@ -117,9 +117,11 @@ impl Renderer {
         }
         let of_half = settings.half(step.half()).unwrap_or(*settings);
         let mut surfaces = self.surfaces(drawn, &picture.materials[step.half() as usize], target, camera, &of_half)?;
-        if let Step::Surface(_, chunk) = step {
-            let place = picture.places[step.half() as usize];
-            surfaces.sifted = self.sift(recorder, drawn, target, camera, &place, chunk, &surfaces)?;
+        // Coverage is that of the view before it is moved.
+        if let Step::Surface(half, chunk) = step
+            && picture.places[half as usize].shift == 0
+        {
+            surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
         }
         let beside = self.beside(scene, picture, index)?;
         self.record_step(recorder, scene, picture, index, &surfaces, &beside);

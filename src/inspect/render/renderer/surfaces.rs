@@ -69,17 +69,12 @@ impl Renderer {
         scene: &mut Scene,
         target: &Target,
         camera: &Camera,
-        place: &HalfPlace,
         chunk: usize,
         surfaces: &Surfaces,
     ) -> Result<bool, GpuError> {
         let (gpu, chunk) = (&self.gpu, scene.tessellator.chunk(chunk));
         let (_, triangles) = scene.tessellator.totals();
-        // Coverage is that of the view before it is moved.
-        if place.shift != 0
-            || surfaces.pulled
-            || (triangles as f32) < self.sift_from * target.viewport().element_product()
-        {
+        if surfaces.pulled || (triangles as f32) < self.sift_from * target.viewport().element_product() {
             return Ok(false);
         }
         if !scene.coverage.as_ref().is_some_and(|coverage| coverage.has_room(&chunk)) {
