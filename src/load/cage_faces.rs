@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
 
-use super::import::Subdivision;
+use super::import::{Import, Subdivision};
 use super::recent_corners::NumberedCorner;
 use geometry::casts::to_u32;
 use geometry::mesh::CornerDetail;
@@ -49,8 +49,8 @@ pub(super) struct CageFaces {
 }
 
 impl CageFaces {
-    pub(super) fn new(subdivision: Subdivision, has_normals: bool) -> Self {
-        Self { subdivision, has_normals, starts: vec![0], ..Self::default() }
+    pub(super) fn new(subdivision: Subdivision, import: &Import) -> Self {
+        Self { subdivision, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
     }
 
     /// Adds a face of three or more corners. Loop's scheme gets its triangles. Returns how many faces have a point twice: these are left

@@ -53,14 +53,11 @@ impl App {
             let mut time = None;
             for (finding, MomentFound { time: at, counts }) in ClipFinding::ALL.into_iter().filter_map(worst) {
                 let count = counts[finding as usize];
-                let (shown, name) = match count {
-                    0 => (format!("No {}", finding.label()), format!("No {}", finding.label())),
-                    count => {
-                        let shown = format!("Most {}: {}", finding.label(), grouped(count));
-                        let name = format!("{shown} at {at:.3} s");
-                        (shown, name)
-                    }
+                let shown = match count {
+                    0 => format!("No {}", finding.label()),
+                    count => format!("Most {}: {}", finding.label(), grouped(count)),
                 };
+                let name = if count == 0 { shown.clone() } else { format!("{shown} at {at:.3} s") };
                 let button = egui::Button::new(shown).truncate();
                 let own = |ui: &mut egui::Ui| {
                     ui.set_max_width(widest);

@@ -30,7 +30,7 @@ impl App {
         let Some((_, topology)) = &document.posed() else { return };
         let [_, right] = half_places(viewport.to_array().map(|side| side as u32), &self.settings);
         let at = |position| {
-            let px = project(clip_from_object, viewport, position)? + right.moved();
+            let px = project(clip_from_object, viewport, position)? + glam::vec2(right.shift as f32, 0.0);
             Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
         };
         let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };

@@ -236,9 +236,12 @@ impl Outlines {
         let patch = patch as usize;
         &self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
     }
+}
 
+#[cfg(test)]
+impl Outlines {
     /// A patch's outline, for tests that change it.
-    pub fn outline_mut(&mut self, patch: u32) -> &mut [OutlinePoint] {
+    pub(super) fn outline_mut(&mut self, patch: u32) -> &mut [OutlinePoint] {
         let patch = patch as usize;
         &mut self.points[self.starts[patch] as usize..self.starts[patch + 1] as usize]
     }

@@ -12,7 +12,7 @@ pub struct HalfPlace {
     size: [u32; 2],
     pub(super) area: Area,
     /// By how many columns all that the half shows is moved to the right.
-    pub(super) shift: i32,
+    pub shift: i32,
 }
 
 impl HalfPlace {
@@ -44,21 +44,6 @@ impl HalfPlace {
     pub fn middle(&self) -> Vec2 {
         let [x, _, width, _] = self.area;
         vec2(x as f32 + 0.5 * width as f32 - self.shift as f32 - 0.5 * self.size[0] as f32, 0.0)
-    }
-
-    /// By how many px all that it shows is moved on screen.
-    pub fn moved(&self) -> Vec2 {
-        vec2(self.shift as f32, 0.0)
-    }
-}
-
-/// The left and the right half of a picture of `size` px.
-pub fn half_places(size: [u32; 2], settings: &Settings) -> [HalfPlace; 2] {
-    let width = size[0];
-    let at = settings.split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
-    match (settings.split, settings.split_view) {
-        (Some(_), SplitView::Difference) => [HalfPlace::new(size, [0, width], false); 2],
-        (_, view) => [[0, at], [at, width]].map(|columns| HalfPlace::new(size, columns, view == SplitView::Beside)),
     }
 }
 

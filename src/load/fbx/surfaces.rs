@@ -132,8 +132,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         };
         let subdivision = reader.subdivision();
         self.without_normals += usize::from(is_without_normals && subdivision.is_none());
-        let has_normals = !reader.faces.import.makes_normals();
-        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, has_normals));
+        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {

@@ -30,7 +30,7 @@ pub struct Cage<'a> {
     pub creases: &'a [([u32; 2], f32)],
     /// Points with their sharpness, which is counted as that of edges.
     pub sharp_points: &'a [(u32, f32)],
-    /// Faces that are refined for the sake of their neighbours but aren't part of the surface.
+    /// Faces that are refined for the sake of their neighbours but aren't part of the surface. Others than there are don't count.
     pub holes: &'a [u32],
 }
 
@@ -50,8 +50,6 @@ pub enum CageError {
     RepeatedPoint { face: u32, point: u32 },
     #[error("{user} {index} has point {point}, but there are only {points} points")]
     NoSuchPoint { user: &'static str, index: usize, point: u32, points: usize },
-    #[error("hole {index} is face {face}, but there are only {faces} faces")]
-    NoSuchFace { index: usize, face: u32, faces: usize },
     #[error("{user} {index} has the sharpness {sharpness}: give one from 0 to {INFINITELY_SHARP}")]
     Sharpness { user: &'static str, index: usize, sharpness: f32 },
     #[error("{faces} faces meet at the edge from point {} to {}, but at most two can: separate them", points[0], points[1])]
@@ -75,16 +73,12 @@ impl Cage<'_> {
     }
 
     /// Returns which faces are holes, or nothing if none is.
-    ///
-    /// # Errors
-    /// [`CageError::NoSuchFace`].
-    pub(super) fn is_hole(&self) -> Result<Vec<bool>, CageError> {
-        let faces = self.starts.len().saturating_sub(1);
-        let mut is_hole = vec![false; if self.holes.is_empty() { 0 } else { faces }];
-        for (index, &face) in self.holes.iter().enumerate() {
-            *is_hole.get_mut(face as usize).ok_or(CageError::NoSuchFace { index, face, faces })? = true;
+    pub(super) fn is_hole(&self) -> Vec<bool> {
+        let mut is_hole = vec![false; if self.holes.is_empty() { 0 } else { self.starts.len().saturating_sub(1) }];
+        for &face in self.holes {
+            is_hole.get_mut(face as usize).into_iter().for_each(|own| *own = true);
         }
-        Ok(is_hole)
+        is_hole
     }
 
     /// Checks the lists against each other.

@@ -22,25 +22,15 @@ impl<'a, T: Linear> Limit<'a, T> {
     pub fn values(&self) -> Vec<T> {
         self.0.limit()
     }
-
-    /// Returns two tangents at a corner of a refined face, of any lengths. Those of positions have a cross product that
-    /// points outward. All faces at a smooth point share them, as do faces between the same two sharp edges at a point.
-    ///
-    /// A corner has no tangent plane where several faces lie between two sharp edges; there, tangents are those of a crease.
-    /// Around a sharp point without sharp edges, where several fans of faces meet, and where two faces close around a point,
-    /// they are those of the corner's own face.
-    ///
-    /// Takes time linear in the number of faces around the point.
-    ///
-    /// # Panics
-    /// If there is no such corner.
-    pub fn tangents(&self, corner: usize) -> [T; 2] {
-        self.0.tangents(to_u32(corner))
-    }
 }
 
 impl Limit<'_, DVec3> {
-    /// Returns the unit normal at each corner of all refined faces; zero where it has no direction.
+    /// Returns the unit normal at each corner of all refined faces, which points outward; zero where it has no direction. All faces at a
+    /// smooth point share it, as do faces between the same two sharp edges at a point.
+    ///
+    /// A corner has no tangent plane where several faces lie between two sharp edges; there, normals are those of a crease. Around a sharp
+    /// point without sharp edges, where several fans of faces meet, and where two faces close around a point, they are those of the
+    /// corner's own face.
     pub fn normals(&self) -> Vec<Vec3> {
         let Self(values) = self;
         let level = values.level;
@@ -61,5 +51,14 @@ impl Limit<'_, DVec3> {
             values.sides(&sector).for_each(|side| normals[side as usize] = normal);
         }
         normals
+    }
+}
+
+/// What tests compare normals with.
+#[cfg(test)]
+impl<T: Linear> Limit<'_, T> {
+    /// Returns two tangents at a corner of a refined face, of any lengths.
+    pub(super) fn tangents(&self, corner: usize) -> [T; 2] {
+        self.0.tangents(to_u32(corner))
     }
 }

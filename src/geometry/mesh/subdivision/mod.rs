@@ -90,7 +90,7 @@ impl Refinement {
             _ => Ok(()),
         };
         limited(cage.size(cage.corners.len().div_ceil(2)))?;
-        let is_hole = cage.is_hole()?;
+        let is_hole = cage.is_hole();
         let mut list = vec![cage.level()?];
         limited(cage.size(list[0].edge_sides.len()))?;
         for _ in 0..levels {

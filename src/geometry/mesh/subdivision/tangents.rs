@@ -30,15 +30,6 @@ impl<T: Linear> Values<'_, T> {
         self.smooth_tangents(&self.sector(self.level.first_side(point)?))
     }
 
-    /// Two tangents of the limit surface at the point where a side starts, in the side's face.
-    pub(super) fn tangents(&self, side: u32) -> [T; 2] {
-        let sector = self.sector(side);
-        self.smooth_tangents(&sector).unwrap_or_else(|| match sector.faces {
-            2.. if !sector.is_whole => self.sector_tangents(&sector),
-            _ => self.flat_tangents(side),
-        })
-    }
-
     fn smooth_tangents(&self, sector: &Sector) -> Option<[T; 2]> {
         let point = self.level.origins[sector.first as usize];
         let is_smooth = self.level.point_sharpness(point) == 0.0 && self.level.first_side(point).is_some();
@@ -151,5 +142,18 @@ fn sharp_weights(scheme: Scheme, faces: f64) -> [f64; 2] {
             [3.0 * point + 4.0 * edge + sines, 0.5 * point + 2.0 * edge]
         }
         Scheme::Loop => [-sines / (1.0 + 2.0 * cos), -sines * cos / (1.0 + 2.0 * cos)],
+    }
+}
+
+/// What tests compare normals with.
+#[cfg(test)]
+impl<T: Linear> Values<'_, T> {
+    /// Two tangents of the limit surface at the point where a side starts, in the side's face.
+    pub(super) fn tangents(&self, side: u32) -> [T; 2] {
+        let sector = self.sector(side);
+        self.smooth_tangents(&sector).unwrap_or_else(|| match sector.faces {
+            2.. if !sector.is_whole => self.sector_tangents(&sector),
+            _ => self.flat_tangents(side),
+        })
     }
 }
