@@ -48,7 +48,6 @@ impl App {
         };
         let worst = |finding| worst_moment(&found, finding).map(|worst| (finding, worst));
         ui.horizontal(|ui| {
-            // The strip gets at least as much as a button.
             let widest = ui.available_width() / 4.0;
             let mut time = None;
             for (finding, MomentFound { time: at, counts }) in ClipFinding::ALL.into_iter().filter_map(worst) {

@@ -25,8 +25,7 @@ impl HalfPlace {
     /// The place of a part of the half: `covered` are px of the picture that all of the view would fill.
     pub(super) fn part(&self, covered: Area) -> Self {
         let [x, y, width, height] = self.area;
-        let seen = intersection(covered, [x.saturating_add_signed(-self.shift), y, width, height]);
-        let [x, y, width, height] = seen;
+        let [x, y, width, height] = intersection(covered, [x.saturating_add_signed(-self.shift), y, width, height]);
         Self { area: [x.saturating_add_signed(self.shift), y, width, height], ..*self }
     }
 
@@ -44,6 +43,16 @@ impl HalfPlace {
     pub fn middle(&self) -> Vec2 {
         let [x, _, width, _] = self.area;
         vec2(x as f32 + 0.5 * width as f32 - self.shift as f32 - 0.5 * self.size[0] as f32, 0.0)
+    }
+}
+
+/// The left and the right half of a picture of `size` px.
+pub fn half_places(size: [u32; 2], settings: &Settings) -> [HalfPlace; 2] {
+    let width = size[0];
+    let at = settings.split.map_or(0, |split| (split.clamp(0.0, 1.0) * width as f32).round() as u32);
+    match (settings.split, settings.split_view) {
+        (Some(_), SplitView::Difference) => [HalfPlace::new(size, [0, width], false); 2],
+        (_, view) => [[0, at], [at, width]].map(|columns| HalfPlace::new(size, columns, view == SplitView::Beside)),
     }
 }
 
