@@ -175,20 +175,9 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     notes.append(of_cameras);
     let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
-    let scenes::Scenes { names, shown } = parsed.scenes;
-    let (files, file_bytes) = (files.named(), budget.files());
-    let parts = parsed.parts.list;
-    Ok(LoadedMesh {
-        mesh,
-        warnings,
-        variants: parsed.variants,
-        scenes: names,
-        scene: shown,
-        parts,
-        files,
-        file_bytes,
-        is_refined: false,
-    })
+    let scenes::Scenes { names: scenes, shown: scene } = parsed.scenes;
+    let (files, file_bytes, variants, parts) = (files.named(), budget.files(), parsed.variants, parsed.parts.list);
+    Ok(LoadedMesh { mesh, warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: false })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

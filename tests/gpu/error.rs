@@ -6,7 +6,7 @@ use geometry::mesh::{HeightMap, Heights, Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
-    hull_factors, last_factor, minimum_triangles, tessellate,
+    hull_factors, minimum_triangles, tessellate,
 };
 use glam::Vec2;
 use gpu::{ComputePipelines, Timing, take_times};
@@ -26,10 +26,7 @@ const VIEWPORT: Vec2 = glam::vec2(320.0, 240.0);
 
 /// Whether anything requests more segments than there are, so that no promise is made.
 fn is_capped(written: &[HullFactors], partitioning: Partitioning) -> bool {
-    let is_capped = |own: &HullFactors| {
-        own.inside_is_capped(partitioning) || own.edges.iter().any(|&factor| factor > last_factor(partitioning))
-    };
-    written.iter().any(is_capped)
+    written.iter().any(|factors| factors.is_capped(partitioning))
 }
 
 fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {

@@ -54,6 +54,11 @@ impl HullFactors {
         self.inside % ROW_BASE_STEP as f32 > last_factor(partitioning)
     }
 
+    /// Returns whether any factor requests more segments than a partitioning has.
+    pub fn is_capped(self, partitioning: Partitioning) -> bool {
+        self.inside_is_capped(partitioning) || self.edges.iter().any(|&factor| factor > last_factor(partitioning))
+    }
+
     /// Returns whether the tessellator culls the patch: the factor of an edge isn't greater than zero.
     pub fn culls(self) -> bool {
         patch_is_culled(self.process(Partitioning::Integer))

@@ -16,7 +16,7 @@ use std::sync::{Arc, Mutex};
 
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::hull_factors::HullFactors;
-use geometry::tessellate::{Inputs, Lod, Partitioning, Tessellation, last_factor};
+use geometry::tessellate::{Inputs, Lod, Partitioning, Tessellation};
 use glam::{Vec2, Vec3};
 use gpu::recorder::Timing;
 use inspect::engine::Engine;
@@ -164,9 +164,7 @@ impl Device {
         self.engine.count(scene, &inputs, &mut Timing::Off).expect("room for factors");
         let (_, triangles) = scene.tessellator.totals();
         let written = scene.tessellator.hull_factors().expect("factors");
-        let partitioning = inputs.tessellation.partitioning;
-        let is_beyond = |factor: &f32| *factor > last_factor(partitioning);
-        let capped = |own: &HullFactors| own.inside_is_capped(partitioning) || own.edges.iter().any(is_beyond);
+        let capped = |factors: &HullFactors| factors.is_capped(inputs.tessellation.partitioning);
         let error_px = (!written.iter().any(capped)).then(|| {
             let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
             let measured = self.engine.measure_all(scene, &wanted).expect("room for what is emitted");
