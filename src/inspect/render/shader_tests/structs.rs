@@ -110,6 +110,7 @@ fn shared_structs_have_the_same_layout() {
         scale,
         left,
         coarseness,
+        shift,
     });
     same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
     same!(PunctualLight { origin, intensity, inverse_range, direction, cone_scale, cone_offset });
