@@ -133,8 +133,8 @@ impl<'a> FaceBuilder<'a> {
     /// Adds the refined faces of the cage that was collected. `details` are those of corners, if the reader has them.
     ///
     /// # Errors
-    /// [`ReadError::TooMany`] and [`ReadError::TooLarge`].
-    pub(super) fn end_cage(&mut self, details: Option<&mut DetailTable>) -> Result<(), ReadError> {
+    /// [`ReadError::TooMany`], [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
+    pub(super) fn end_cage(&mut self, details: Option<&mut DetailTable>, progress: &Progress) -> Result<(), ReadError> {
         let Some(cage) = self.cage.take() else { return Ok(()) };
         let mut own = self.colors.take();
         let why_not =
@@ -381,7 +381,7 @@ impl<'a> FaceBuilder<'a> {
     /// # Errors
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
     pub(super) fn finish(mut self, name: &str, holds: String, progress: &Progress) -> Result<LoadedMesh, ReadError> {
-        self.end_cage(None)?;
+        self.end_cage(None, progress)?;
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
         let are_colored = self.are_colored;
         let Finished { mut mesh, numbers, mut notes, parts, is_refined } =
@@ -403,7 +403,7 @@ impl<'a> FaceBuilder<'a> {
         holds: String,
         progress: &Progress,
     ) -> Result<Finished, ReadError> {
-        self.end_cage(None)?;
+        self.end_cage(None, progress)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
         let holds = named.unwrap_or(holds);

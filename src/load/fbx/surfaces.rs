@@ -144,7 +144,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             reader.creases()?;
         }
         reader.faces.is_hole = false;
-        reader.faces.end_cage(reader.details)
+        reader.faces.end_cage(reader.details, progress)
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
