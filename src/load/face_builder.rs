@@ -139,6 +139,7 @@ impl<'a> FaceBuilder<'a> {
         let mut own = self.colors.take();
         let why_not =
             cage.refine(self.memory, details.or(own.as_mut()), |corners, OfFace { material, part, .. }| {
+                progress.check()?;
                 self.builder.enter_part(part);
                 self.store(material, corners, false)
             })?;
