@@ -13,10 +13,11 @@ use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::subdivision::{Cage, Refinement, Scheme, Size};
 
-/// Memory in bytes: for a corner of a cage, with its point; for a refined point; and for a refined corner, which has a normal, for its
-/// texture coordinates, and for its details.
+/// Memory in bytes: of a corner of a cage with its point; of a refined point, and beside it while limits are computed; of a refined
+/// corner with its normal, its texture coordinates, and its details.
 const PER_CORNER: u64 = 200;
 const PER_POINT: u64 = 12;
+const PER_POINT_MEANWHILE: u64 = 48;
 const PER_NORMAL: u64 = 12;
 const PER_UV: u64 = 64;
 const PER_DETAIL: u64 = 128;
@@ -134,9 +135,11 @@ impl CageFaces {
             sharp_points: &self.sharp_points,
             holes: &self.holes,
         };
-        let memory = self.memory(cage.size_at_most(levels), details.is_some());
+        let size = cage.size_at_most(levels);
+        let memory = self.memory(size, details.is_some());
         let most = if scheme == Scheme::Loop { MAX_TRIANGLES } else { MAX_TRIANGLES / 2 };
-        let refinement = match budget.hold(memory) {
+        let meanwhile = memory.saturating_add(size.points.saturating_mul(PER_POINT_MEANWHILE));
+        let refinement = match budget.check(meanwhile).and_then(|()| budget.hold(memory)) {
             Ok(()) => Refinement::new(&cage, levels, most).map_err(|error| (error.to_string(), memory)),
             Err(refused) => Err((format!("refined, it {refused}"), 0)),
         };

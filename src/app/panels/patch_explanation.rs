@@ -198,7 +198,7 @@ fn formula_text(formula: EdgeFormula) -> (String, String) {
             let quotient = factor(f64::from((px / segment).max(1.0)), 3);
             let sign = if px < segment { "->" } else { "=" };
             let hover = format!(
-                "The control polygon of the edge's curve is {length} px long on screen, and a segment is {each} px. A factor is at least 1, and the tessellator's at most 64."
+                "The edge's control polygon is {length} px long on screen, and a segment {each} px. A factor is 1 to 64."
             );
             (format!("{length} px / {each} px {sign} {quotient}"), hover)
         }
@@ -207,7 +207,7 @@ fn formula_text(formula: EdgeFormula) -> (String, String) {
             let [near, far] = radii.map(|own| factor(own.into(), 2));
             let mean = factor(f64::from(factors[0] + factors[1]) / 2.0, 3);
             let hover = format!(
-                "The ends are {near} and {far} bounding radii from the eye, where the factor is {a} and {b}. The edge gets the mean."
+                "The ends are {near} and {far} bounding radii from the eye: factors {a} and {b}. The edge gets the mean."
             );
             (format!("({a} + {b}) / 2 = {mean}"), hover)
         }

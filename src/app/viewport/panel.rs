@@ -17,7 +17,7 @@ use geometry::view::ScreenView;
 use gpu::GpuError;
 use inspect::engine::SilhouetteView;
 use inspect::render::{Ground, Scene, framed_size, half_at};
-use inspect::settings::{Settings, SplitSide, SplitView};
+use inspect::settings::{Settings, SplitSide};
 use load::Source;
 
 /// Degrees that the camera turns for a point of dragging.
@@ -275,7 +275,7 @@ impl App {
     fn divider(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         let titles = SplitSide::BOTH.map(|half| self.half_title(half));
         let Some(split) = self.settings.split else { return };
-        let is_whole = self.settings.split_view == SplitView::Difference;
+        let is_whole = self.settings.shows_difference();
         let at = rect.left() + rect.width() * if is_whole { 0.5 } else { split };
         if !is_whole {
             self.divider_handle(ui, rect, at);
@@ -346,9 +346,8 @@ impl App {
             format!("Grid: {spacing} {unit}")
         });
         let has_left = self.document.as_ref().is_some_and(|document| document.scene.half(SplitSide::Left).is_some());
-        let is_difference =
-            has_left && self.settings.split.is_some() && self.settings.split_view == SplitView::Difference;
-        let difference = is_difference.then(|| "Difference: black where both halves are equal".to_owned());
+        let difference = (has_left && self.settings.shows_difference())
+            .then(|| "Difference: black where both halves are equal".to_owned());
         let distance = self.viewport.ruler.map(|ruler| ruler.text());
         let bookmarked = self.viewport.bookmarks.iter().position(|bookmark| *bookmark == self.viewport.camera);
         let bookmark = bookmarked.map(|index| format!("Bookmark {}", index + 1));

@@ -11,7 +11,7 @@ use geometry::tessellate::{factor_side, segments};
 use geometry::view::{ScreenView, project};
 use inspect::render::half_places;
 use inspect::render::layout::FACTOR_COLORS;
-use inspect::settings::{SplitSide, SplitView};
+use inspect::settings::SplitSide;
 
 /// The smallest extent of a patch on screen, in points, that is labelled.
 const LEAST_EXTENT: f32 = 60.0;
@@ -22,10 +22,8 @@ const MARGIN: Vec2 = Vec2::new(6.0, 3.0);
 impl App {
     /// Labels the selected patch in a picture shown in `rect`, if it is large enough there.
     pub(in crate::app) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
-        let has_lines = self.settings.split_view != SplitView::Difference || self.settings.split.is_none();
-        let (Some(patch), Some(document)) = (self.selected_patch().filter(|_| has_lines), &self.document) else {
-            return;
-        };
+        let selected = self.selected_patch().filter(|_| !self.settings.shows_difference());
+        let (Some(patch), Some(document)) = (selected, &self.document) else { return };
         let Some(ScreenView { clip_from_object, viewport }) = self.shown_view() else { return };
         let Some((_, topology)) = &document.posed() else { return };
         let [_, right] = half_places(viewport.to_array().map(|side| side as u32), &self.settings);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::Scene;
 use super::layers::LayerPass;
 use super::needs::has_layers;
-use crate::settings::{Settings, SplitSide, SplitView};
+use crate::settings::{Settings, SplitSide};
 
 /// What one render pass of a picture draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,8 +61,7 @@ impl Step {
 
 /// All steps of a picture, in order.
 pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
-    let has_both = settings.split.is_some() && scene.half(SplitSide::Left).is_some();
-    if has_both && settings.split_view == SplitView::Difference {
+    if settings.shows_difference() && scene.half(SplitSide::Left).is_some() {
         let [left, right] = SplitSide::BOTH.map(|half| steps_of(scene, settings, &[half]));
         return [left, vec![Step::Keep], right, vec![Step::Difference]].concat();
     }

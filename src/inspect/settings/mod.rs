@@ -262,6 +262,11 @@ impl Settings {
         }
     }
 
+    /// Whether the picture is the difference between both halves.
+    pub fn shows_difference(&self) -> bool {
+        self.split.is_some() && self.split_view == SplitView::Difference
+    }
+
     /// Whether the halves are shown elsewhere than where the view has them, or not at all.
     pub fn moves_halves(&self) -> bool {
         self.split.is_some() && self.split_view != SplitView::Divider

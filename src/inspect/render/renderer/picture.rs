@@ -103,7 +103,7 @@ impl Renderer {
             Step::Layer(_) if picture.layer_areas.iter().all(|place| is_empty(place.area)) => return Ok(()),
             Step::Keep => return target.keep(recorder, &self.gpu, 0),
             Step::Difference => return self.difference.draw(recorder, &self.gpu, target),
-            _ => {}
+            Step::Over | Step::Surface(..) | Step::Layer(_) | Step::Normals(..) => {}
         }
         let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
         if let Some(chunk) = step.chunk() {
