@@ -4,7 +4,8 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Parser;
-use geometry::tessellate::{Displacement, Tessellation};
+use geometry::mesh::PartStyle;
+use geometry::tessellate::{Displacement, Surface, Tessellation};
 use glam::{Vec2, Vec3};
 use inspect::engine::Preparation;
 use inspect::render::Camera;
@@ -92,7 +93,14 @@ fn options_with_other_values_are_written() {
         heights,
         variant: Some("-matte".to_owned()),
         scene: Some("Night sky".to_owned()),
-        parts: ShownParts { hidden: vec!["-left door".to_owned(), "b, c".to_owned()], only: vec!["d".to_owned()] },
+        parts: ShownParts {
+            hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
+            only: vec!["d".to_owned()],
+            styles: vec![
+                ("-a:b".to_owned(), PartStyle { surface: Some(Surface::PhongAen), detail: 0.25 }),
+                ("d".to_owned(), PartStyle { surface: None, detail: 2.0 }),
+            ],
+        },
         import: Import::default(),
         limits,
     };

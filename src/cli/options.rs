@@ -12,8 +12,8 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec2;
 
 use super::{AnimationOption, CliError, note, refuse};
-use geometry::mesh::FileCamera;
 use geometry::mesh::crease_band::WIDEST;
+use geometry::mesh::{FileCamera, PartStyle};
 use geometry::progress::Progress;
 use geometry::tessellate::{Displacement, LodView, Surface, Tessellation, tolerance_within_budget};
 use gpu::Timing;
@@ -259,11 +259,16 @@ pub struct PartOptions {
     /// Show only the part of the file that has this name, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
+    /// Give the part of this name a surface of its own, or LOD that is 1/64 to 16 times as fine: several times as a whole, and for
+    /// each part once, as `NAME:surface=flat` or `NAME:surface=phong-aen,detail=2`. Where parts with different surfaces meet, the edge
+    /// has the one that comes first among those of `--surface`, and the finest detail
+    #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
+    part: Vec<(String, PartStyle)>,
 }
 
 impl PartOptions {
     pub fn shown(&self) -> ShownParts {
-        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() }
+        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone(), styles: self.part.clone() }
     }
 }
 

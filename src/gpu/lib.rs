@@ -48,7 +48,7 @@ pub use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;
 pub use lazy::Lazy;
 pub(crate) use mesh_buffers::MeshBuffers;
-pub use mesh_buffers::{SEARCH_COUNTERS, TEXTURED};
+pub use mesh_buffers::{CURVE_SURFACE_STEP, DETAIL_STEP, SEARCH_COUNTERS, TEXTURED};
 pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
 pub use readback::{Readback, read_buffer, read_buffers, read_texture};
 pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, take_times};

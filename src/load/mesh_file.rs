@@ -142,16 +142,16 @@ pub fn load_selected(
         mesh.warnings.push(NOT_REFINED.to_owned());
     }
     before.check(path)?;
-    check_selected(path, selected, &mesh)?;
+    check_selected(path, selected, &mut mesh)?;
     progress.set(1.0);
     Ok(mesh)
 }
 
-/// Checks that a mesh has the variant, the scene and the parts that were named.
+/// Checks that a mesh has the variant, the scene and the parts that were named, and gives its parts their styles.
 ///
 /// # Errors
 /// [`LoadError::Absent`].
-pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMesh) -> Result<(), LoadError> {
+pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &mut LoadedMesh) -> Result<(), LoadError> {
     let absent = |what, name: &str, known, none| {
         Err(LoadError::Absent { path: path.to_owned(), what, name: name.to_owned(), known, none })
     };
@@ -159,9 +159,16 @@ pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMe
         return absent("scene", scene, loaded.scenes.clone(), "it has no scenes, so omit --scene");
     }
     let is_unknown = |name: &&String| loaded.parts.iter().all(|part| part.name != **name);
-    if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown) {
+    let styled = selected.styles.iter().map(|(name, _)| name);
+    if let Some(part) = selected.hidden.iter().chain(selected.only).chain(styled).find(is_unknown) {
         let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
-        return absent("part", part, known, "it has no named parts, so omit --hide-part and --show-part");
+        return absent("part", part, known, "it has no named parts, so omit --hide-part, --show-part and --part");
+    }
+    if !selected.styles.is_empty() {
+        let style = |part: &super::parts::Part| {
+            selected.styles.iter().rev().find(|(name, _)| *name == part.name).map(|(_, style)| *style)
+        };
+        loaded.mesh.part_styles = loaded.parts.iter().map(|part| style(part).unwrap_or_default()).collect();
     }
     match selected.variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
         None => Ok(()),

@@ -157,12 +157,12 @@ mod tests {
         let mut shown = ShownParts::alone("a");
         assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [false, true, true]);
         shown.set("b", true);
-        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![a.clone(), b.clone()] });
+        assert_eq!(shown, ShownParts { only: vec![a.clone(), b.clone()], ..ShownParts::default() });
         shown.set("a", false);
         assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true, false, true]);
         shown.set("b", false);
         assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true; 3]);
         shown.set("b", true);
-        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![b] });
+        assert_eq!(shown, ShownParts { only: vec![b], ..ShownParts::default() });
     }
 }

@@ -1,6 +1,7 @@
 //! What of a file is read, and how.
 
 use super::import::Import;
+use geometry::mesh::PartStyle;
 use geometry::names::shown;
 
 /// Which of a file's alternatives is read, and how its geometry is taken.
@@ -14,23 +15,46 @@ pub struct Selection<'a> {
     pub hidden: &'a [String],
     /// The names of parts that alone are read; all parts if there are none.
     pub only: &'a [String],
+    /// What parts have in place of what the tessellation says for all, by their names.
+    pub styles: &'a [(String, PartStyle)],
     /// How the geometry is taken.
     pub import: Import,
 }
 
-/// Which parts of a file are read.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// Which parts of a file are read, and how they differ.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShownParts {
     /// The names of parts that are left out.
     pub hidden: Vec<String>,
     /// The names of parts that alone are read; all parts if there are none.
     pub only: Vec<String>,
+    /// What parts have in place of what the tessellation says for all, by their names.
+    pub styles: Vec<(String, PartStyle)>,
 }
 
 impl ShownParts {
     /// The part of this name alone.
     pub fn alone(name: &str) -> Self {
-        Self { hidden: Vec::new(), only: vec![name.to_owned()] }
+        Self { only: vec![name.to_owned()], ..Self::default() }
+    }
+
+    /// These parts, as they differ here.
+    #[must_use]
+    pub fn styled_as(self, other: &Self) -> Self {
+        Self { styles: other.styles.clone(), ..self }
+    }
+
+    /// What a part has in place of what the tessellation says for all.
+    pub fn style(&self, name: &str) -> PartStyle {
+        self.styles.iter().rev().find(|(other, _)| other == name).map(|(_, style)| *style).unwrap_or_default()
+    }
+
+    /// Gives a part a style of its own.
+    pub fn set_style(&mut self, name: &str, style: PartStyle) {
+        self.styles.retain(|(other, _)| other != name);
+        if style != PartStyle::default() {
+            self.styles.push((name.to_owned(), style));
+        }
     }
 
     /// Shows a part, or leaves it out.

@@ -103,9 +103,11 @@ impl App {
         match action {
             PartAction::Hide(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, false),
             PartAction::Show(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, true),
-            PartAction::Solo(part) => self.parts = Arc::new(ShownParts::alone(&parts[part].name)),
+            PartAction::Solo(part) => {
+                self.parts = Arc::new(ShownParts::alone(&parts[part].name).styled_as(&self.parts));
+            }
             PartAction::Frame(part) => self.frame_part(part as u32),
-            PartAction::ShowAll => self.parts = Arc::default(),
+            PartAction::ShowAll => self.parts = Arc::new(ShownParts::default().styled_as(&self.parts)),
         }
     }
 

@@ -10,7 +10,11 @@ use load::{Import, ShownParts};
 
 /// How the window takes the mesh that it opens first. What isn't given is as the window was left, or as it was chosen for the file.
 #[derive(Clone, Debug, Default, Args)]
-#[command(mut_arg("hide_part", |arg| arg.requires("file")), mut_arg("show_part", |arg| arg.requires("file")))]
+#[command(
+    mut_arg("hide_part", |arg| arg.requires("file")),
+    mut_arg("show_part", |arg| arg.requires("file")),
+    mut_arg("part", |arg| arg.requires("file"))
+)]
 pub struct OpeningOptions {
     #[command(flatten)]
     import: Declared<GivenImport>,

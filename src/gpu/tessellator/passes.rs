@@ -91,7 +91,7 @@ impl Tessellator {
             record(recorder, "deform", &rig.steps(&self.inputs_of_passes())?);
             self.is_deformed = true;
         }
-        let shape = (self.params.surface, self.params.alpha);
+        let shape = (self.params.chosen_surface, self.params.alpha);
         if self.nets_done != Some(shape) {
             record(recorder, "nets", &self.nets()?);
             record(recorder, "directions", &self.directions()?);

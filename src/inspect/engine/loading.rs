@@ -104,6 +104,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         scene: preparation.scene.as_deref(),
         hidden: &preparation.parts.hidden,
         only: &preparation.parts.only,
+        styles: &preparation.parts.styles,
         import: preparation.import,
     };
     let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: _ } =

@@ -7,7 +7,6 @@ use glam::Vec3;
 use super::Engine;
 use crate::measure::{EmittedChunk, PointsAgreement, RequestedFactors, Visitor};
 use crate::render::Scene;
-use geometry::mesh::Curves;
 use geometry::progress::Progress;
 use geometry::tessellate::{HullFactors, Inputs, PatchFactors, Tessellated, Tessellation, Vertex};
 use gpu::layout::Chunk;
@@ -151,7 +150,7 @@ impl Engine {
         let bytes = u64::from(buffers.curve_count) * size_of::<CurveNet>() as u64;
         let nets: Vec<CurveNet> = cast(&read_buffer(&self.gpu, &buffers.curve_nets, 0, bytes)?);
         let nets: Vec<_> = nets.iter().map(|net| [net.ab, net.ba].map(Vec3::from)).collect();
-        let curves = Curves::build(tessellator.mesh(), topology, buffers.sharing);
+        let curves = buffers.grouping.curves(tessellator.mesh(), topology);
         Ok(Some(PointsAgreement::new(topology, &curves, &nets)))
     }
 
