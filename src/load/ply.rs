@@ -29,30 +29,21 @@ use textures::Textures;
 use upcoming::Upcoming;
 use values::Values;
 
-/// The properties of a vertex that are read, and the attribute that each sets. Texture coordinates have three names.
-const ATTRIBUTES: [(&[u8], usize); 19] = [
-    (b"x", 0),
-    (b"y", 1),
-    (b"z", 2),
-    (b"nx", 3),
-    (b"ny", 4),
-    (b"nz", 5),
-    (b"u", 6),
-    (b"v", 7),
-    (b"s", 6),
-    (b"t", 7),
-    (b"texture_u", 6),
-    (b"texture_v", 7),
-    (b"red", 8),
-    (b"green", 9),
-    (b"blue", 10),
-    (b"alpha", 11),
-    (b"diffuse_red", 8),
-    (b"diffuse_green", 9),
-    (b"diffuse_blue", 10),
+/// The names that the property of each attribute of a vertex may have.
+const ATTRIBUTES: [&[&[u8]]; 12] = [
+    &[b"x"],
+    &[b"y"],
+    &[b"z"],
+    &[b"nx"],
+    &[b"ny"],
+    &[b"nz"],
+    &[b"u", b"s", b"texture_u"],
+    &[b"v", b"t", b"texture_v"],
+    &[b"red", b"diffuse_red"],
+    &[b"green", b"diffuse_green"],
+    &[b"blue", b"diffuse_blue"],
+    &[b"alpha"],
 ];
-/// How many attributes there are.
-const SLOTS: usize = 12;
 /// The first attribute of colours.
 const RED: usize = 8;
 
@@ -207,7 +198,7 @@ impl<'a> Reader<'a, '_> {
         let row = values.row(element, &slots);
         for i in 0..element.count {
             self.at(values, i)?;
-            let mut found = [0.0; SLOTS];
+            let mut found = [0.0; ATTRIBUTES.len()];
             // Alpha, where there is none.
             found[11] = 1.0 / scale;
             match &row {
@@ -538,8 +529,8 @@ fn color_scale(element: &Element, slots: &[Option<usize>]) -> f32 {
 
 /// Returns which attribute a property of a vertex sets, if any.
 fn slot(property: &Property) -> Option<usize> {
-    let known = ATTRIBUTES.iter().find(|(name, _)| *name == property.name);
-    known.filter(|_| matches!(property.kind, PropertyKind::One(_))).map(|(_, slot)| *slot)
+    let known = ATTRIBUTES.iter().position(|names| names.contains(&property.name));
+    known.filter(|_| matches!(property.kind, PropertyKind::One(_)))
 }
 
 #[cfg(test)]
