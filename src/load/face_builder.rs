@@ -12,9 +12,8 @@ use super::notes::{Notes, counted, counts};
 use super::parts::{Part, Parts};
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
-use super::recent_corners::{RecentCorners, VertexNumbers};
+use super::recent_corners::RecentCorners;
 use super::tangents;
-use super::triangle_block::{self, TriangleBlock};
 use super::uri::Files;
 use super::warnings::repair_warnings;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
@@ -59,7 +58,6 @@ pub(super) struct FaceBuilder<'a> {
     pub parts: Parts,
     pub builder: MeshBuilder,
     recent: RecentCorners,
-    block: TriangleBlock,
     /// The colours of corners, if the file has any, or if corners may need tangents.
     colors: Option<DetailTable>,
     are_colored: bool,
@@ -114,7 +112,6 @@ impl<'a> FaceBuilder<'a> {
             parts: Parts::new(&file.selected),
             builder: MeshBuilder::with_crease_angle(import.crease_angle),
             recent: RecentCorners::default(),
-            block: TriangleBlock::default(),
             colors: None,
             are_colored: false,
             materials: 0,
@@ -283,65 +280,6 @@ impl<'a> FaceBuilder<'a> {
         Ok(())
     }
 
-    /// Adds triangles of vertices that have numbers in the file, without a list of the corners of each. `corner_of` returns a
-    /// vertex's corner, and its [colour](Self::number). Returns how many were added: the next one has a corner that needs a repair, or
-    /// its part is hidden, and [`add`](Self::add) must add it.
-    ///
-    /// # Errors
-    /// As [`add`](Self::add).
-    pub(super) fn add_triangles(
-        &mut self,
-        material: usize,
-        triangles: &[[VertexNumbers; 3]],
-        corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
-    ) -> Result<usize, ReadError> {
-        let mut added = 0;
-        if !self.parts.is_hidden() && self.cage.is_none() {
-            for some in triangles.chunks(triangle_block::BLOCK) {
-                let mut block = std::mem::take(&mut self.block);
-                let count = self.add_block(&mut block, material, some, &corner_of)?;
-                self.block = block;
-                added += count;
-                if count < some.len() {
-                    break;
-                }
-            }
-        }
-        Ok(added)
-    }
-
-    /// Adds some triangles as [`add_triangles`](Self::add_triangles) does.
-    fn add_block(
-        &mut self,
-        block: &mut TriangleBlock,
-        material: usize,
-        triangles: &[[VertexNumbers; 3]],
-        corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
-    ) -> Result<usize, ReadError> {
-        block.clear();
-        let mut recent = std::mem::take(&mut self.recent);
-        let is_sound = |(corner, _): &(InputCorner, Vec4)| is_near(corner) && corner.uv.is_finite();
-        let mut count = 0;
-        for &triangle in triangles {
-            let is_added = block.push(triangle, &mut recent, |vertex| {
-                let Some((corner, color)) = corner_of(vertex).filter(is_sound) else { return Ok(None) };
-                let normal = corner.normal.filter(|_| !self.import.makes_normals());
-                Ok::<_, ReadError>(Some((InputCorner { normal, ..corner }, self.number(color)?)))
-            })?;
-            if !is_added {
-                break;
-            }
-            count += 1;
-        }
-        self.builder.make_room(block.corners.len(), self.memory)?;
-        block.store(&mut recent, |corners, stored| self.builder.corners(corners, stored));
-        self.recent = recent;
-        self.parts.leave_out(count);
-        self.make_room(material, count)?;
-        block.triangles().for_each(|corners| self.builder.stored_triangle(material, corners));
-        Ok(count)
-    }
-
     /// Counts triangles, and makes room for them.
     fn make_room(&mut self, material: usize, triangles: usize) -> Result<(), ReadError> {
         self.triangles += triangles;
@@ -409,7 +347,7 @@ impl<'a> FaceBuilder<'a> {
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
         let holds = named.unwrap_or(holds);
         // No more corners are stored.
-        (self.recent, self.block) = Default::default();
+        self.recent = RecentCorners::default();
         if self.builder.is_empty() {
             let small = match self.found.too_small {
                 0 => String::new(),

@@ -7,7 +7,6 @@
 
 mod header;
 mod textures;
-mod upcoming;
 mod values;
 
 use glam::{Vec2, Vec3, Vec4};
@@ -17,7 +16,6 @@ use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::counted;
 use super::read_error::{FilePosition, ReadError};
-use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
 use super::uri::Files;
 use geometry::casts::{to_byte, to_f32};
@@ -26,7 +24,6 @@ use geometry::mesh::mesh_builder::InputCorner;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};
 use textures::Textures;
-use upcoming::Upcoming;
 use values::Values;
 
 /// The names that the property of each attribute of a vertex may have.
@@ -260,21 +257,9 @@ impl<'a> Reader<'a, '_> {
         let of_face = self.begin_faces(element, list, vertices)?;
         let faces = usize::try_from(values.most(element)).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
-        let is_plain = element.name == b"face" && of_face.image.is_none() && of_face.color.is_none();
-        let row = values.face_row(element, list).filter(|_| is_plain);
-        let (mut upcoming, mut i) = (row.map(Upcoming::new), 0);
-        while i < element.count {
-            if let Some(upcoming) = &mut upcoming {
-                let added = self.triangles(upcoming.triangles(values, element.count - i), vertices)?;
-                i += added as u64;
-                if upcoming.take(values, added) {
-                    self.progress(values)?;
-                    continue;
-                }
-            }
+        for i in 0..element.count {
             self.at(values, i)?;
             self.read_list(element, i, of_face, values, vertices)?;
-            i += 1;
         }
         Ok(())
     }
@@ -393,13 +378,6 @@ impl<'a> Reader<'a, '_> {
         self.faces.add(self.material, &mut self.corners, place)
     }
 
-    /// Adds triangles of these vertices. Returns how many were added; the general way must add the next one.
-    fn triangles(&mut self, triangles: &[[VertexNumbers; 3]], vertices: &Vertices) -> Result<usize, ReadError> {
-        let corner =
-            |[vertex, ..]: VertexNumbers| vertices.corner(vertex.into()).map(|(_, corner, color)| (corner, color));
-        self.faces.add_triangles(self.material, triangles, corner)
-    }
-
     /// Reads the corners of a face. Returns whether the file has all of its vertices.
     fn face(
         &mut self,
@@ -464,12 +442,11 @@ impl<'a> Reader<'a, '_> {
 
     /// Sets the progress, once every 4,096 elements.
     fn at(&self, values: &Values, i: u64) -> Result<(), ReadError> {
-        if i.is_multiple_of(4096) { self.progress(values) } else { Ok(()) }
-    }
-
-    fn progress(&self, values: &Values) -> Result<(), ReadError> {
-        self.files.progress.set(0.5 * values.fraction());
-        Ok(self.files.progress.check()?)
+        if i.is_multiple_of(4096) {
+            self.files.progress.set(0.5 * values.fraction());
+            self.files.progress.check()?;
+        }
+        Ok(())
     }
 
     fn finish(self, header: &Header, values: &Values, problems: Vec<String>) -> (FaceBuilder<'a>, String) {

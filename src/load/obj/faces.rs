@@ -10,7 +10,7 @@ use crate::recent_corners::VertexNumbers;
 use crate::text_lines::{parsed, shown, words};
 
 /// The number of what a corner doesn't have.
-pub(super) const NONE: u32 = u32::MAX;
+const NONE: u32 = u32::MAX;
 
 /// The faces of a piece of the file, and its other statements that change what follows.
 #[derive(Default)]

@@ -1,6 +1,6 @@
 //! Reads the values after the header of a PLY file, in text and in binary.
 
-use super::header::{Element, Encoding, Header, Property, PropertyKind, Scalar};
+use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
 use crate::read_error::{FilePosition, ReadError};
 use crate::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
 use geometry::casts::{to_f32, to_usize};
@@ -31,13 +31,6 @@ pub(super) struct Row {
     size: usize,
     /// The values that are read: where each begins in bytes, its type, and its place among the values.
     values: Vec<(usize, Scalar, usize)>,
-}
-
-/// How faces lie in a binary file: the sizes of what is before and after their list, in bytes, and the type of its length.
-pub(super) struct FaceRow {
-    before: usize,
-    count: Scalar,
-    after: usize,
 }
 
 impl<'a> Values<'a> {
@@ -232,47 +225,6 @@ impl<'a> Values<'a> {
         }
         self.bytes = rest;
         Ok(())
-    }
-
-    /// Returns how faces lie in a binary file whose only list is that of vertices, property number `list`. The numbers of
-    /// vertices must have 32 bits, as nearly all have.
-    pub(super) fn face_row(&self, element: &Element, list: usize) -> Option<FaceRow> {
-        let size = |properties: &[Property]| -> Option<usize> {
-            let of = |property: &Property| match property.kind {
-                PropertyKind::One(scalar) => Some(scalar.size()),
-                PropertyKind::List { .. } => None,
-            };
-            properties.iter().map(of).sum()
-        };
-        let PropertyKind::List { count, item: Scalar::I32 | Scalar::U32 } = element.properties[list].kind else {
-            return None;
-        };
-        let is_binary = self.encoding != Encoding::Text;
-        let [before, after] = [size(&element.properties[..list])?, size(&element.properties[list + 1..])?];
-        is_binary.then_some(FaceRow { before, count, after })
-    }
-
-    /// Returns the vertices of the next faces, up to the first that isn't a whole triangle.
-    pub(super) fn triangles(&self, row: &FaceRow) -> impl Iterator<Item = [u32; 3]> + use<'a> {
-        let &FaceRow { before, count, after } = row;
-        let (encoding, mut rest) = (self.encoding, self.bytes);
-        let of = if encoding == Encoding::BigEndian { u32::from_be_bytes } else { u32::from_le_bytes };
-        std::iter::from_fn(move || {
-            let list = rest.get(before..)?;
-            if decoded(list, count, encoding)? != 3.0 {
-                return None;
-            }
-            let (numbers, others) = list.get(count.size()..)?.split_first_chunk::<12>()?;
-            rest = others.get(after..)?;
-            let numbers: [[u8; 4]; 3] = [0, 4, 8].map(|at| [0, 1, 2, 3].map(|i| numbers[at + i]));
-            Some(numbers.map(of))
-        })
-    }
-
-    /// Goes on after so many faces, which are whole triangles.
-    pub(super) fn skip_triangles(&mut self, row: &FaceRow, faces: usize) {
-        let size = row.before + row.count.size() + 12 + row.after;
-        self.bytes = self.bytes.get(faces * size..).unwrap_or_default();
     }
 
     /// Reads the number of values of a list, and checks that the rest of the file or line has as many.
