@@ -192,16 +192,12 @@ impl<'a> Reader<'a, '_> {
             uvs: Vec::with_capacity(room(has_uvs)),
             colors: Vec::with_capacity(room(has_colors)),
         };
-        let row = values.row(element, &slots);
         for i in 0..element.count {
             self.at(values, i)?;
             let mut found = [0.0; ATTRIBUTES.len()];
             // Alpha, where there is none.
             found[11] = 1.0 / scale;
-            match &row {
-                Some(row) => values.read_row(row, &mut found)?,
-                None => read_values(element, i, values, &slots, &mut found)?,
-            }
+            read_values(element, i, values, &slots, &mut found)?;
             let [x, y, z, nx, ny, nz, u, v, color @ ..] = found;
             vertices.positions.push(Vec3::new(x, y, z));
             if has_normals {

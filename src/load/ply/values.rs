@@ -3,7 +3,7 @@
 use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
 use crate::read_error::{FilePosition, ReadError};
 use crate::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
-use geometry::casts::{to_f32, to_usize};
+use geometry::casts::to_usize;
 
 /// The position of the next value.
 #[derive(Clone)]
@@ -23,14 +23,6 @@ pub(super) struct Values<'a> {
     pub ends: bool,
     /// Lines of a text file with more numbers than their element has.
     pub long_lines: usize,
-}
-
-/// How elements without lists lie in a binary file.
-pub(super) struct Row {
-    /// The size of one, in bytes.
-    size: usize,
-    /// The values that are read: where each begins in bytes, its type, and its place among the values.
-    values: Vec<(usize, Scalar, usize)>,
 }
 
 impl<'a> Values<'a> {
@@ -184,47 +176,6 @@ impl<'a> Values<'a> {
                 }
             },
         }
-    }
-
-    /// Returns how elements without lists lie in a binary file, if they do: the places that `slots` says for the values of their
-    /// properties.
-    pub(super) fn row(&self, element: &Element, slots: &[Option<usize>]) -> Option<Row> {
-        let (size, is_fixed) = element.least();
-        if !is_fixed || self.encoding == Encoding::Text {
-            return None;
-        }
-        let mut row = Row { size: usize::try_from(size).ok()?, values: Vec::new() };
-        let mut at = 0;
-        for (property, slot) in element.properties.iter().zip(slots) {
-            let PropertyKind::One(scalar) = property.kind else { return None };
-            row.values.extend(slot.map(|slot| (at, scalar, slot)));
-            at += scalar.size();
-        }
-        Some(row)
-    }
-
-    /// Reads the values of a row into their places.
-    ///
-    /// # Errors
-    /// [`ReadError::Broken`] at the end of the file.
-    pub(super) fn read_row(&mut self, row: &Row, places: &mut [f32]) -> Result<(), ReadError> {
-        let Some((own, rest)) = self.bytes.split_at_checked(row.size) else {
-            let (size, left) = (row.size, self.bytes.len());
-            self.ends = true;
-            return Err(self.place().error(format!("an element takes {size} bytes, but {left} are left")));
-        };
-        for &(at, scalar, place) in &row.values {
-            let bytes = &own[at..];
-            places[place] = match (scalar, self.encoding) {
-                // What nearly all files have.
-                (Scalar::F32, Encoding::LittleEndian) => {
-                    bytes.first_chunk().map_or(0.0, |own| f32::from_le_bytes(*own))
-                }
-                (_, encoding) => to_f32(decoded(bytes, scalar, encoding).unwrap_or_default()),
-            };
-        }
-        self.bytes = rest;
-        Ok(())
     }
 
     /// Reads the number of values of a list, and checks that the rest of the file or line has as many.
