@@ -9,7 +9,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
 use super::notes::{Notes, counted, counts};
-use super::parts::{Part, Parts};
+use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
 use super::recent_corners::RecentCorners;
@@ -22,7 +22,7 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, Mesh, Slot};
+use geometry::mesh::{CornerDetail, Material, Slot};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -88,17 +88,6 @@ counts! {
         maybe_overlapping =>
             "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap";
     }
-}
-
-/// A mesh, and what belongs to it.
-pub(super) struct Finished {
-    pub mesh: Mesh,
-    /// Each corner's number.
-    pub numbers: Vec<u32>,
-    pub notes: Notes,
-    pub parts: Vec<Part>,
-    /// Whether all of it is refined.
-    pub is_refined: bool,
 }
 
 impl<'a> FaceBuilder<'a> {
@@ -321,18 +310,17 @@ impl<'a> FaceBuilder<'a> {
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
     pub(super) fn finish(mut self, name: &str, holds: String, progress: &Progress) -> Result<LoadedMesh, ReadError> {
         self.end_cage(None, progress)?;
-        let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
-        let are_colored = self.are_colored;
-        let Finished { mut mesh, numbers, mut notes, parts, is_refined } =
-            self.finish_numbered(name, holds, progress)?;
+        let (memory, colors, are_colored) = (self.memory, self.colors.take(), self.are_colored);
+        let (mut loaded, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
         let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
-        if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
-            tangents::with_details(&mut mesh, colors, &numbers, &mut notes, memory, progress)?;
+        if let Some(colors) = colors.filter(|_| are_colored || loaded.mesh.materials.iter().any(has_normals)) {
+            tangents::with_details(&mut loaded.mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
-        Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, is_refined, ..LoadedMesh::default() })
+        Ok(LoadedMesh { warnings: notes.into_warnings(), ..loaded })
     }
 
-    /// Builds the mesh as [`finish`](Self::finish) does, with what the reader adds to it.
+    /// Builds the mesh as [`finish`](Self::finish) does, without warnings and details. Returns the numbers of its corners too, and what is
+    /// to be said of it.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
@@ -341,7 +329,7 @@ impl<'a> FaceBuilder<'a> {
         name: &str,
         holds: String,
         progress: &Progress,
-    ) -> Result<Finished, ReadError> {
+    ) -> Result<(LoadedMesh, Vec<u32>, Notes), ReadError> {
         self.end_cage(None, progress)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
@@ -364,7 +352,8 @@ impl<'a> FaceBuilder<'a> {
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
-        Ok(Finished { mesh, numbers, notes: self.notes, parts, is_refined: self.is_refined == Some(true) })
+        let (file_bytes, is_refined) = (self.memory.files(), self.is_refined == Some(true));
+        Ok((LoadedMesh { mesh, parts, file_bytes, is_refined, ..LoadedMesh::default() }, numbers, self.notes))
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.
