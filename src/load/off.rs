@@ -12,7 +12,7 @@ use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::{counted, counts};
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
+use super::text_lines::{Line, Lines, first_word, parsed, shown, words};
 use super::uri::Files;
 use geometry::casts::to_byte;
 use geometry::mesh::Material;
@@ -225,7 +225,7 @@ impl Vertices {
     fn add(&mut self, kind: VertexKind, row: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
         let (mut numbers, mut count) = ([f32::NAN; MAX_NUMBERS], 0_usize);
         for (slot, word) in numbers.iter_mut().zip(words(row)) {
-            *slot = number(word).unwrap_or(f32::NAN);
+            *slot = parsed(word).unwrap_or(f32::NAN);
             count += 1;
         }
         let [x, y, z, w, ..] = numbers;
@@ -383,7 +383,7 @@ impl Reader<'_, '_> {
         let is_whole = words.iter().all(|word| word.iter().all(u8::is_ascii_digit));
         let mut color = [f32::NAN; 4];
         for (slot, word) in color.iter_mut().zip(&words) {
-            *slot = number(word).unwrap_or(f32::NAN);
+            *slot = parsed(word).unwrap_or(f32::NAN);
         }
         if !matches!(words.len(), 3 | 4) || color[..words.len()].iter().any(|channel| channel.is_nan()) {
             self.found.bad_colors += 1;

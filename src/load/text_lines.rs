@@ -98,11 +98,6 @@ pub(super) fn parsed<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Parses a number, or returns why the word isn't one.
-pub(super) fn number(word: &[u8]) -> Result<f32, String> {
-    parsed(word).ok_or_else(|| format!("{} isn't a number", shown(word)))
-}
-
 /// Parses the first N words as numbers, and ignores further words. What isn't there is NaN.
 pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
     let mut words = words(text);

@@ -5,7 +5,6 @@
 
 mod bits;
 mod etc1s;
-mod huffman;
 mod prefix_code;
 mod uastc;
 

@@ -2,7 +2,7 @@
 
 use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
 use crate::read_error::{FilePosition, ReadError};
-use crate::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
+use crate::text_lines::{Line, Lines, first_word, parsed, shown, words};
 use geometry::casts::to_usize;
 
 /// The position of the next value.
@@ -215,7 +215,7 @@ impl<'a> Values<'a> {
         }
         self.left = rest;
         // Parsed as f64, so that indices are exact.
-        parsed(word).ok_or_else(|| self.place().error(number(word).err().unwrap_or_default()))
+        parsed(word).ok_or_else(|| self.place().error(format!("{} isn't a number", shown(word))))
     }
 
     /// Returns how many bytes follow the last element.

@@ -4,8 +4,7 @@
 //! Source: KTX 2.0 specification, appendices "BasisLZ" and "ETC1S".
 
 use super::bits::Bits;
-use super::huffman::read_code;
-use super::prefix_code::PrefixCode;
+use super::prefix_code::{PrefixCode, read_code};
 
 /// What is added to the base colour for each of the four shades, by intensity.
 const SHADES: [[i32; 4]; 8] = [
