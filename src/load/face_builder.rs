@@ -261,21 +261,17 @@ impl<'a> FaceBuilder<'a> {
         self.store(material, corners, bad_uvs == self.found.bad_uvs)
     }
 
-    /// Stores a face as triangles.
+    /// Stores a face as triangles, if there is room for them.
     fn store(&mut self, material: usize, corners: &[NumberedCorner], is_remembered: bool) -> Result<(), ReadError> {
-        self.make_room(material, corners.len() - 2)?;
-        self.builder.make_room(corners.len(), self.memory)?;
-        self.cut(material, corners, is_remembered);
-        Ok(())
-    }
-
-    /// Counts triangles, and makes room for them.
-    fn make_room(&mut self, material: usize, triangles: usize) -> Result<(), ReadError> {
+        let triangles = corners.len() - 2;
         self.triangles += triangles;
         if self.triangles as u64 > MAX_TRIANGLES {
             return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
         }
-        Ok(self.builder.make_room_for_triangles(material, triangles, self.memory)?)
+        self.builder.make_room_for_triangles(material, triangles, self.memory)?;
+        self.builder.make_room(corners.len(), self.memory)?;
+        self.cut(material, corners, is_remembered);
+        Ok(())
     }
 
     /// Cuts a face into triangles. Corners are remembered for faces with the same vertices, unless they were repaired.

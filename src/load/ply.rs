@@ -197,7 +197,14 @@ impl<'a> Reader<'a, '_> {
             let mut found = [0.0; ATTRIBUTES.len()];
             // Alpha, where there is none.
             found[11] = 1.0 / scale;
-            read_values(element, i, values, &slots, &mut found)?;
+            values.begin(element, i)?;
+            for (property, slot) in element.properties.iter().zip(&slots) {
+                match (property.kind, slot) {
+                    (PropertyKind::One(scalar), Some(slot)) => found[*slot] = to_f32(values.next(scalar)?),
+                    (kind, _) => values.skip_one(kind)?,
+                }
+            }
+            values.end();
             let [x, y, z, nx, ny, nz, u, v, color @ ..] = found;
             vertices.positions.push(Vec3::new(x, y, z));
             if has_normals {
@@ -469,25 +476,6 @@ impl<'a> Reader<'a, '_> {
         self.files.budget.release(read.bytes());
         (faces, holds)
     }
-}
-
-/// Reads the values of an element of number `i`, one after another, into the places that `slots` says.
-fn read_values(
-    element: &Element,
-    i: u64,
-    values: &mut Values,
-    slots: &[Option<usize>],
-    found: &mut [f32],
-) -> Result<(), ReadError> {
-    values.begin(element, i)?;
-    for (property, slot) in element.properties.iter().zip(slots) {
-        match (property.kind, slot) {
-            (PropertyKind::One(scalar), Some(slot)) => found[*slot] = to_f32(values.next(scalar)?),
-            (kind, _) => values.skip_one(kind)?,
-        }
-    }
-    values.end();
-    Ok(())
 }
 
 /// Returns what colours are multiplied by to lie from 0 to 1. Whole numbers go up to the largest of their type.
