@@ -42,7 +42,6 @@ mod tangents;
 mod text_lines;
 mod texture_room;
 mod threemf;
-mod triangle_block;
 mod unread_formats;
 mod uri;
 mod warnings;

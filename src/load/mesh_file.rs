@@ -124,11 +124,7 @@ pub fn load_selected(
     progress: &Progress,
 ) -> Result<LoadedMesh, LoadError> {
     progress.set(0.0);
-    // Reading a folder, a device or a pipe would fail later, or never end.
     let file = std::fs::metadata(path).map_err(|source| FileError::Io { path: path.to_owned(), source })?;
-    if !file.is_file() {
-        return Err(LoadError::NotAFile { path: path.to_owned() });
-    }
     let before = Stamp::new(&file);
     let mut judged = None;
     let judge = |start: &[u8]| Judged::new(path, start, file.len()).map(|found| judged = Some(found));

@@ -89,11 +89,6 @@ impl Parts {
         part.is_hidden
     }
 
-    /// Whether the next faces are left out.
-    pub(super) fn is_hidden(&self) -> bool {
-        self.current.is_some_and(|number| self.found[number].is_hidden)
-    }
-
     /// Returns the parts that have triangles, how often one was entered that is one too many, and the places in the list of
     /// the parts that were [current](Self::current).
     pub(super) fn into_list(mut self) -> (Vec<Part>, usize, Vec<u32>) {
@@ -152,7 +147,7 @@ mod tests {
             let selected = Selection { hidden: &shown.hidden, only: &shown.only, ..Selection::default() };
             let mut parts = Parts::new(&selected);
             parts.enter(name.as_bytes(), &Budget::unlimited()).expect("memory is unlimited");
-            parts.is_hidden()
+            parts.leave_out(0)
         };
         let mut shown = ShownParts::alone("a");
         assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [false, true, true]);
