@@ -42,6 +42,16 @@ fn parts_are_listed_and_left_out() {
     sentence(&["info", &parts, "--hide-part", "left door", "--hide-part=-right"], &["parts are hidden"]);
     let plain = folder.write("plain.off", "OFF\n3 1 0\n0 0 0\n2 0 0\n2 3 0\n3 0 1 2\n");
     sentence(&["info", &plain, "--hide-part", "left door"], &["no named parts"]);
+    // A surface and a detail of its own.
+    let styled =
+        stats(&[&parts, "--part", "-right:surface=flat,detail=0.5", "--factor", "4", "--partitioning", "integer"]);
+    let usual = stats(&[&parts, "--factor", "4", "--partitioning", "integer"]);
+    assert!(number(&styled, "/triangles_out") < number(&usual, "/triangles_out"), "{styled}");
+    sentence(&["info", &parts, "--part", "bonnet:detail=2"], &["bonnet", "left door", "-right"]);
+    sentence(&["info", &plain, "--part", "a:surface=flat"], &["no named parts", "--part"]);
+    for text in ["-right", "-right:", "-right:surface=round", "-right:detail=0", "-right:detail=nan", "-right:size=2"] {
+        failure(&["info", &parts, "--part", text], 2);
+    }
     // Named nodes of glTF files are parts.
     sentence(&["info", vase(), "--hide-part", "left door"], &["no part left door", "vase"]);
 }
