@@ -6,7 +6,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use geometry::names::shown;
-use geometry::numbers::{grouped, short};
+use geometry::numbers::{counted, grouped, short};
 use lab::compare::{Comparison, Farthest, Finding, OurTessellation, SideDifference, Tolerances, plural, point};
 
 /// How many sides are printed, and how many JSON has.
@@ -35,11 +35,11 @@ impl Report<'_> {
         let _ = writeln!(
             text,
             "\n{} and {} on {} of {} patches; ours are {}.",
-            plural(found.triangles, "triangle", "triangles"),
+            counted(found.triangles, "triangle"),
             plural(found.vertices, "vertex", "vertices"),
             grouped(found.patches),
             grouped(self.ours.topology.patches.len() as u64),
-            plural(self.ours.tessellated.triangles.len() as u64, "triangle", "triangles")
+            counted(self.ours.tessellated.triangles.len() as u64, "triangle")
         );
         let _ = writeln!(text, "Largest distance of a vertex from the surface: {}.", self.distance(found.from_surface));
         if let Some(farthest) = found.farthest {
@@ -76,7 +76,7 @@ impl Report<'_> {
                 text,
                 "triangle {triangle}, corners {k} to {}, {from} to {to}: {} (factor {}), ours {} (factor {})",
                 (k + 1) % 3,
-                plural(theirs.segments, "segment", "segments"),
+                counted(theirs.segments, "segment"),
                 short(theirs.factor),
                 ours.segments,
                 short(ours.factor)

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use geometry::numbers::grouped;
+use geometry::numbers::{counted, grouped};
 use inspect::gates::{GateKind, Judgement, Place};
 use inspect::settings::Choice;
 use inspect::shot::Numbers;
@@ -149,8 +149,7 @@ impl Report {
     /// How many assets passed, failed and couldn't be checked, on one line.
     pub fn summary(&self) -> String {
         let number = |count: usize| grouped(count as u64);
-        let all =
-            if self.assets.len() == 1 { "1 asset".to_owned() } else { format!("{} assets", number(self.assets.len())) };
+        let all = counted(self.assets.len() as u64, "asset");
         let [passed, failed, broken] =
             [Status::Passed, Status::Failed, Status::Broken].map(|status| self.count(status));
         let mut text =

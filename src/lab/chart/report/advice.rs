@@ -5,7 +5,7 @@ use super::lods::{Range, Saving, saving};
 use super::{Part, fronts, limits};
 use crate::chart::words::plain;
 use crate::chart::{Cost, LodKind};
-use geometry::numbers::short;
+use geometry::numbers::{counted, short};
 use load::markdown;
 
 /// The most methods that are named in a list. Others are counted.
@@ -73,7 +73,7 @@ fn named(parts: &[Part], answers: &[Answer], reached: usize) -> String {
     let winners = winners(answers);
     let mut words: Vec<String> = Vec::new();
     for (index, (method, count)) in winners.iter().take(NAMED).enumerate() {
-        let of = if index == 0 { format!(" of {}", fronts::meshes(reached)) } else { String::new() };
+        let of = if index == 0 { format!(" of {}", counted(reached as u64, "mesh")) } else { String::new() };
         words.push(format!("{} (on {count}{of})", fronts::name(parts, *method)));
     }
     if winners.len() > NAMED {
