@@ -1,16 +1,16 @@
 //! The options of a camera: ours, one of the file, or the matrix of an engine's frame.
 
-use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::{DMat4, Vec2, Vec3};
 
 use super::values::{angle, field_of_view, position};
-use super::{CameraOption, SurfaceOptions, file_camera, named};
+use super::{CameraOption, SurfaceOptions, choice, file_camera};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh, Moment};
 use inspect::render::Camera;
 use inspect::render::camera::FIELD_OF_VIEW;
 use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
+use inspect::settings::Choice;
 
 /// A mesh, a moment of one of its clips, and its bounds.
 pub(crate) type MeshAt<'a> = (&'a Mesh, Option<Moment>, &'a Bounds);
@@ -58,10 +58,10 @@ pub struct ViewOptions {
     #[arg(long, value_enum, default_value_t = MatrixOrder::ColumnMajor, requires = "view_projection")]
     pub matrix_order: MatrixOrder,
     /// The depth that the matrix gives the near plane and what is far away
-    #[arg(long, value_parser = one_of(&DEPTHS), default_value = "zero-to-one", requires = "view_projection")]
+    #[arg(long, value_parser = choice::<DepthRange>(), default_value = DepthRange::ZeroToOne.name(), requires = "view_projection")]
     pub depth: DepthRange,
     /// Where the matrix has +y on the screen
-    #[arg(long, value_parser = one_of(&UPWARDS), default_value = "up", requires = "view_projection")]
+    #[arg(long, value_parser = choice::<ClipY>(), default_value = ClipY::Up.name(), requires = "view_projection")]
     pub clip_y: ClipY,
 }
 
@@ -86,23 +86,6 @@ pub enum MatrixOrder {
     /// Column after column: OpenGL, glTF, glm, three.js, Bevy and Godot; also row after row of a matrix for row vectors, v * M
     /// (DirectXMath, Unreal Engine)
     ColumnMajor,
-}
-
-/// Depth after the division by w.
-const DEPTHS: [(&str, &str, DepthRange); 3] = [
-    ("zero-to-one", "0 on the near plane, 1 far away (Direct3D, Vulkan, Metal, WebGPU)", DepthRange::ZeroToOne),
-    ("reversed", "1 on the near plane, 0 far away (the same with depth reversed)", DepthRange::Reversed),
-    ("minus-one-to-one", "-1 on the near plane, 1 far away (OpenGL)", DepthRange::MinusOneToOne),
-];
-
-/// Where +y of clip space is on the screen.
-const UPWARDS: [(&str, &str, ClipY); 2] =
-    [("up", "Direct3D, Metal, WebGPU, OpenGL", ClipY::Up), ("down", "Vulkan", ClipY::Down)];
-
-/// Reads one of these, each of which has a name and a text.
-fn one_of<T: Copy + Send + Sync + 'static>(all: &'static [(&str, &str, T)]) -> impl TypedValueParser<Value = T> {
-    let names = all.iter().map(|(name, text, _)| PossibleValue::new(*name).help(*text));
-    named(names, |name| all.iter().find(|own| own.0 == name).map(|own| own.2))
 }
 
 impl ViewOptions {
