@@ -222,31 +222,17 @@ pub struct Command {
 
 impl Command {
     /// A command that is always possible, without keys, and in no menu.
-    fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>) -> Self {
-        Self {
-            action: action.into(),
-            name: name.into(),
-            text: Cow::Borrowed(""),
-            keys: Vec::new(),
-            place: None,
-            needs: &[],
-        }
-    }
-
-    fn text(self, text: impl Into<Cow<'static, str>>) -> Self {
-        Self { text: text.into(), ..self }
+    fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>, text: impl Into<Cow<'static, str>>) -> Self {
+        let (action, name, text) = (action.into(), name.into(), text.into());
+        Self { action, name, text, keys: Vec::new(), place: None, needs: &[] }
     }
 
     fn keys(self, keys: impl Into<Vec<KeyboardShortcut>>) -> Self {
         Self { keys: keys.into(), ..self }
     }
 
-    fn menu(self, menu: Menu, group: u8) -> Self {
-        Self { place: Some(Place::Menu(menu, group)), ..self }
-    }
-
-    fn submenu(self, submenu: Submenu) -> Self {
-        Self { place: Some(Place::Submenu(submenu)), ..self }
+    fn at(self, place: Place) -> Self {
+        Self { place: Some(place), ..self }
     }
 
     fn needs(self, needs: &'static [Need]) -> Self {
