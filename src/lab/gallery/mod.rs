@@ -25,7 +25,7 @@ use inspect::plot::{ChartError, contact_sheet};
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Settings};
 use load::{LoadError, Source};
-use tile::{TileContext, draw_tile};
+use tile::draw_tile;
 
 /// Why there is no gallery.
 #[derive(Debug, Error)]
@@ -100,9 +100,8 @@ impl<'a> Gallery<'a> {
                 current = Some((tile.crease_band, loaded, scene));
             }
             let Some((_, loaded, scene)) = &mut current else { continue };
-            let settings = self.settings(tile);
-            let context = TileContext { engine, target: &target, camera: &camera, overlays: exhibit.overlays };
-            let (picture, results) = draw_tile(&context, settings, loaded, scene)?;
+            let drawn_as = (self.settings(tile), exhibit.overlays);
+            let (picture, results) = draw_tile(engine, &target, &camera, drawn_as, loaded, scene)?;
             parts.push((tile.name.clone(), picture));
             all.push(results);
         }
