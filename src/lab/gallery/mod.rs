@@ -16,6 +16,7 @@ pub use exhibits::{Exhibit, exhibits};
 pub use page::{PAGE, page};
 pub(crate) use tile::TileResults;
 
+use geometry::mesh::Heights;
 use geometry::progress::Progress;
 use geometry::tessellate::{Surface, Tessellation, displacement_reach};
 use gpu::{GpuError, Timing};
@@ -180,7 +181,7 @@ impl<'a> Gallery<'a> {
         let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement.is_on());
         if displaced && loaded.mesh.heights.is_none() {
             let mut mesh = (*loaded.mesh).clone();
-            mesh.heights = Some(Arc::new(exhibits::waves(&mesh)));
+            mesh.heights = Some(Arc::new(Heights::waves(&mesh, 128, [3.0, 2.0])));
             loaded.mesh = Arc::new(mesh);
         }
         Ok(loaded)
