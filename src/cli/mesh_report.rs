@@ -4,8 +4,7 @@ use std::fmt;
 
 use serde::Serialize;
 
-use super::camera_report::CameraInfo;
-use super::light_report::LightInfo;
+use super::camera_and_light_report::{CameraInfo, LightInfo};
 use super::material_report::MaterialInfo;
 use geometry::mesh::crease_band::CreaseBand;
 use geometry::mesh::rig::{AnimatedCounts, Clip, Rig};

@@ -3,7 +3,7 @@
 mod adapters;
 mod adjacency;
 mod animation;
-mod camera_report;
+mod camera_and_light_report;
 mod chart;
 mod check;
 pub mod compare;
@@ -16,7 +16,6 @@ mod gallery;
 mod gate_options;
 mod info;
 mod interrupt;
-mod light_report;
 mod lod_shader_option;
 mod material_report;
 mod mesh_report;
