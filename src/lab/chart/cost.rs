@@ -1,6 +1,6 @@
 //! The two costs of a setting: time, or triangles.
 
-use super::{Probe, Row};
+use super::Probe;
 
 /// A cost of a setting: time in ms, or triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -11,11 +11,7 @@ pub enum Cost {
 }
 
 impl Cost {
-    pub fn of(self, row: &Row) -> f64 {
-        self.of_probe(&row.probe)
-    }
-
-    pub fn of_probe(self, probe: &Probe) -> f64 {
+    pub fn of(self, probe: &Probe) -> f64 {
         match self {
             Self::Ms => probe.time.total(),
             Self::Triangles => probe.triangles as f64,

@@ -152,13 +152,8 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// The largest error of a row that was found: a part of the reference surface's diagonal, or px without a reference surface.
-    pub fn error(&self, row: &Row) -> Option<f64> {
-        self.error_of(&row.probe)
-    }
-
-    /// The largest error of any settings: see [`Self::error`].
-    pub fn error_of(&self, probe: &Probe) -> Option<f64> {
+    /// The largest error of settings that was found: a part of the reference surface's diagonal, or px without a reference surface.
+    pub fn error(&self, probe: &Probe) -> Option<f64> {
         let error = match self.reference_shape {
             Some(_) => probe.errors.map(|errors| errors.largest.at_least),
             None => probe.max_error_px,

@@ -67,7 +67,7 @@ impl Subject {
     /// The rows whose errors are known, grouped so that those of a group can be compared.
     pub fn races(&self) -> Vec<Race<'_>> {
         let mut races: Vec<Race> = Vec::new();
-        for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(row)?))) {
+        for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(&row.probe)?))) {
             let surface = self.reference_shape.is_none().then_some(row.setting.method.surface);
             match races.iter_mut().find(|race| race.surface == surface) {
                 Some(race) => race.entries.push((row, error)),
@@ -113,7 +113,7 @@ impl<'a> Race<'a> {
     /// The cheapest row that `of` accepts, with an error of at most `error`.
     pub fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
         let reached = self.entries.iter().filter(|(row, own)| *own <= error && of(row)).map(|(row, _)| *row);
-        reached.min_by(|a, b| cost.of(a).total_cmp(&cost.of(b)))
+        reached.min_by(|a, b| cost.of(&a.probe).total_cmp(&cost.of(&b.probe)))
     }
 
     /// The fastest row with an error of at most `error`; `None` if there is none.

@@ -32,7 +32,7 @@ pub(super) fn standings(parts: &[Part]) -> Vec<Standing> {
             }
         }
         for (index, cost) in COSTS.into_iter().enumerate() {
-            let front = race.front(|row| cost.of(row));
+            let front = race.front(|row| cost.of(&row.probe));
             let rows: Vec<&Row> = front.into_iter().map(|(row, _)| row).filter(|row| !part.is_plain(row)).collect();
             for standing in &mut all {
                 let count = rows.iter().filter(|row| row.setting.method == standing.method).count();

@@ -32,7 +32,9 @@ pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Savin
                 let is_end = |row: &Row| part.is_plain(row) || is_coarsest(part, row);
                 match (cheapest(LodKind::Error), cheapest(other)) {
                     (Some(own), Some(row)) if is_end(own) || is_end(row) => {}
-                    (Some(own), Some(row)) if cost.of(own) > 0.0 => ratios.push(cost.of(row) / cost.of(own)),
+                    (Some(own), Some(row)) if cost.of(&own.probe) > 0.0 => {
+                        ratios.push(cost.of(&row.probe) / cost.of(&own.probe))
+                    }
                     (Some(_), None) => alone[0] += 1,
                     (None, Some(_)) => alone[1] += 1,
                     _ => {}
