@@ -11,16 +11,15 @@ pub mod compare;
 mod copied_command_tests;
 mod domain;
 mod factors;
-mod factors_option;
 mod gallery;
 mod gate_options;
 mod info;
 mod interrupt;
-mod lod_shader_option;
 mod material_report;
 mod mesh_report;
 mod options;
 mod output_guard;
+mod own_factors_and_surface;
 #[cfg(test)]
 mod page_tests;
 mod posed;
@@ -30,7 +29,6 @@ mod render;
 mod shaders;
 mod shot_options;
 mod stability;
-mod surface_shader_option;
 mod tessellate;
 mod turntable;
 mod view_files;
@@ -45,14 +43,12 @@ use thiserror::Error;
 
 pub(crate) use adapters::AdapterOption;
 pub(crate) use animation::AnimationOption;
-pub(crate) use factors_option::FactorsOption;
-pub(crate) use lod_shader_option::LodShaderOption;
 use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
+pub(crate) use own_factors_and_surface::{FactorsOption, LodShaderOption, SurfaceShaderOption};
 pub(crate) use reference_shape::ReferenceSurfaceOption;
 pub use render::{preview, run_with as render_with};
-pub(crate) use surface_shader_option::SurfaceShaderOption;
 pub use tessellate::run_with as tessellate_with;
 
 use geometry::names::{on_one_line, shown};
