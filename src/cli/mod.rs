@@ -23,7 +23,6 @@ mod own_factors_and_surface;
 #[cfg(test)]
 mod page_tests;
 mod posed;
-mod reference;
 mod reference_shape;
 mod render;
 mod shaders;
