@@ -16,7 +16,6 @@ mod gate_options;
 mod info;
 mod interrupt;
 mod material_report;
-mod mesh_report;
 mod options;
 mod output_guard;
 mod own_factors_and_surface;
