@@ -3,7 +3,6 @@
 
 mod axis;
 mod bench;
-mod cost;
 mod labels;
 mod legend;
 mod method_style;
@@ -17,13 +16,12 @@ mod words;
 
 pub use axis::{Axis, Tick};
 pub use bench::{Bench, Effort, whole};
-pub use cost::Cost;
 pub use legend::method_styles;
 pub use method_style::{Fill, MethodStyle, Shape, dash};
 pub use pen::RADIUS;
 pub use picture::{bitmap, svg};
+pub use race::{Cost, front, has_converged};
 pub(crate) use race::{Race, Win};
-pub use race::{front, has_converged};
 pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 

@@ -1,7 +1,31 @@
-//! Compares rows: which ones no other row beats, and which method reaches an error fastest.
+//! Compares rows by their cost and error: which ones no other row beats, and which method reaches an error fastest.
 
-use super::{Cost, Method, Row, Subject, distinct};
+use super::{Method, Probe, Row, Subject, distinct};
 use geometry::tessellate::Surface;
+
+/// A cost of a setting: time in ms, or triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cost {
+    #[default]
+    Ms,
+    Triangles,
+}
+
+impl Cost {
+    pub fn of(self, probe: &Probe) -> f64 {
+        match self {
+            Self::Ms => probe.time.total(),
+            Self::Triangles => probe.triangles as f64,
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ms => "Tessellation and drawing, ms",
+            Self::Triangles => "Triangles",
+        }
+    }
+}
 
 /// The rows of a mesh that can be compared, with their errors. With a reference surface these are all rows. Without one they
 /// are the rows of one surface, since each surface is compared with its own limit.
