@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use geometry::names::shown;
 use geometry::numbers::{counted, grouped, short};
@@ -93,7 +94,7 @@ impl Report<'_> {
             ours: farthest.ours.to_array(),
             distance: distance(farthest.distance),
         };
-        let finding = |finding: &Finding| JsonFinding { kind: finding.kind(), text: finding.to_string() };
+        let finding = |finding: &Finding| json!({ "kind": finding.kind(), "text": finding.to_string() });
         let triangle = |patch: &u32| self.ours.topology.patches[*patch as usize].triangle;
         Json {
             theirs: self.theirs,
@@ -122,7 +123,7 @@ pub(super) struct Json<'a> {
     theirs: &'a str,
     mesh: &'a str,
     same: bool,
-    findings: Vec<JsonFinding>,
+    findings: Vec<Value>,
     vertices: u64,
     triangles: u64,
     our_triangles: u64,
@@ -136,12 +137,6 @@ pub(super) struct Json<'a> {
     /// Triangles of the mesh whose patches differ, and those whose patches have no triangles.
     triangles_different: Vec<u32>,
     triangles_missing: Vec<u32>,
-}
-
-#[derive(Debug, Serialize)]
-struct JsonFinding {
-    kind: &'static str,
-    text: String,
 }
 
 #[derive(Debug, Serialize)]
