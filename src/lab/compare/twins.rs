@@ -9,7 +9,7 @@ use super::foreign::ForeignMesh;
 use super::locator::Place;
 use super::our_mesh::{OurMesh, is_thin, sorted};
 use geometry::mesh::weld::weld_alike;
-use geometry::tessellate::{FIXED_ONE, Vertex};
+use geometry::tessellate::Vertex;
 
 /// What their triangles are of ours.
 pub(super) struct Twins<'a> {
@@ -112,8 +112,7 @@ impl<'a> Twins<'a> {
     /// The place of a vertex of ours.
     pub(super) fn place(&self, own: u32) -> Place {
         let own = &self.own[own as usize];
-        let weights = own.domain().map(|weight| f64::from(weight) / f64::from(FIXED_ONE));
-        Place { patch: own.patch(), weights, distance: 0.0 }
+        Place { patch: own.patch(), weights: own.exact_domain(), distance: 0.0 }
     }
 
     /// Whether all of their triangles are ours, but for those of which nothing can be said.
