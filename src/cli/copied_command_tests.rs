@@ -119,10 +119,7 @@ fn options_with_other_values_are_written() {
     assert_eq!(args.shot.surface.tessellation().height_scale, -0.5);
     let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
     let args = parsed(&moving.line());
-    assert_eq!(
-        (args.shot.surface.animation.animation.as_deref(), args.shot.surface.animation.time),
-        (Some("-run, fast"), 0.1)
-    );
+    assert_eq!((args.shot.surface.animation.as_deref(), args.shot.surface.time), (Some("-run, fast"), 0.1));
     assert_eq!(args.shot.reference_shape.reference_shape, None, "an animation has no reference surface");
 }
 

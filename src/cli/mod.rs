@@ -2,7 +2,6 @@
 
 mod adapters;
 mod adjacency;
-mod animation;
 mod camera_and_light_report;
 mod chart;
 mod check;
@@ -40,7 +39,6 @@ use clap::{Parser, Subcommand};
 use thiserror::Error;
 
 pub(crate) use adapters::AdapterOption;
-pub(crate) use animation::AnimationOption;
 use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};

@@ -31,7 +31,7 @@ impl ReferenceSurfaceOption {
         surface: &SurfaceOptions,
         is_shown: bool,
     ) -> Result<Option<ReferenceSurface>, CliError> {
-        let moves = surface.animation.animation.is_some();
+        let moves = surface.animation.is_some();
         if let Some(source) = &self.reference_shape {
             refuse(
                 moves,

@@ -145,7 +145,7 @@ impl ShotOptions {
         let (given, factors_file) = given.unzip();
         let subject = Subject {
             left,
-            moment: self.surface.animation.moment(&loaded)?,
+            moment: self.surface.moment(&loaded)?,
             given: given.map(Given::from).or(user_lod),
             surface_shader,
             matcap: matcap.map(Arc::new),
