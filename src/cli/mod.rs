@@ -21,7 +21,6 @@ mod own_factors_and_surface;
 #[cfg(test)]
 mod page_tests;
 mod posed;
-mod reference_shape;
 mod render;
 mod shaders;
 mod shot_options;
@@ -43,7 +42,6 @@ use output_guard::{file_of, file_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
 pub(crate) use own_factors_and_surface::{FactorsOption, LodShaderOption, SurfaceShaderOption};
-pub(crate) use reference_shape::ReferenceSurfaceOption;
 pub use render::{preview, run_with as render_with};
 pub use tessellate::run_with as tessellate_with;
 
