@@ -2,7 +2,6 @@
 
 mod cameras;
 mod declared;
-mod lod_camera;
 mod opening;
 mod values;
 mod view;
@@ -32,12 +31,11 @@ use declared::GivenTessellation;
 pub(crate) use declared::{
     Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,
 };
-pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
     CameraOption, ending_in, model, picture, picture_or_page, size, source, whole, whole_from, within,
 };
-pub(crate) use view::{MeshAt, ViewOptions};
+pub(crate) use view::{LodCameraOption, MeshAt, ViewOptions};
 
 /// The options about LOD, which can't be given with something that takes its place.
 pub(crate) const LOD_OPTIONS: [&str; 5] = ["lod", "factor", "pixels", "distances", "max_triangles"];
