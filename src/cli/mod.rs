@@ -13,7 +13,6 @@ mod factors;
 mod gallery;
 mod gate_options;
 mod info;
-mod interrupt;
 mod material_report;
 mod options;
 mod output_guard;
@@ -32,6 +31,8 @@ mod view_files;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Parser, Subcommand};
@@ -254,7 +255,7 @@ pub fn run(command: Command) -> ExitCode {
         }
         Err(error @ CliError::Interrupted { .. }) => {
             fail(&error);
-            ExitCode::from(interrupt::INTERRUPTED)
+            ExitCode::from(INTERRUPTED)
         }
         Err(CliError::Gates(sentences)) => {
             sentences.iter().for_each(|sentence| note(sentence));
@@ -292,6 +293,23 @@ fn load_apart(source: &Source, preparation: &Preparation, written: &[Option<&Pat
     let loaded = load(source, preparation)?;
     keep_apart(loaded.files.iter().map(|path| Some(path.as_path())), written.iter().copied())?;
     Ok(loaded)
+}
+
+/// The exit code after Ctrl-C: 128 + SIGINT, as shells return it.
+const INTERRUPTED: u8 = 130;
+
+/// Returns a flag that Ctrl-C sets. A second Ctrl-C ends the program. `piece` is what the command ends after, such as "setting".
+fn stop_on_interrupt(piece: &'static str) -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let set = stop.clone();
+    // Without a handler, Ctrl-C ends the program at once, and what was written until then stays.
+    let _ = ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+        note(&format!("ending after this {piece}; Ctrl-C again ends at once"));
+    });
+    stop
 }
 
 /// Reports the progress of a long command on standard error, at most once a second.
