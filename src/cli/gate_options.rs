@@ -50,8 +50,8 @@ impl GateOptions {
         )
     }
 
-    /// Writes pictures of the failed gates' worst places, if they were asked for, into a folder that is made if it isn't there; none of a
-    /// gate that is about no place. `stem` begins their names.
+    /// Writes pictures of the failed gates' worst places, if they were asked for, into a folder that is made if it isn't there;
+    /// none of a gate that is about no place. `stem` begins their names.
     pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
         let Some(folder) = self.evidence.as_deref() else { return Ok(()) };
         let stem = stem.file_stem().unwrap_or_default().to_string_lossy();

@@ -1,5 +1,6 @@
-//! The options `--factors`, `--lod-shader` and `--surface-shader`: factors of a file in place of LOD's, and WGSL functions of the user's
-//! own in place of LOD and of a surface's control points; what can't be combined with them, and a report on where they disagree.
+//! The options `--factors`, `--lod-shader` and `--surface-shader`: factors of a file in place of LOD's, and WGSL functions of
+//! the user's own in place of LOD and of a surface's control points; what can't be combined with them, and a report on where
+//! they disagree.
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -150,7 +150,7 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// The largest error of settings that was found: a part of the reference surface's diagonal, or px without a reference surface.
+    /// The largest error that was found: a part of the reference surface's diagonal, or px without a reference surface.
     pub fn error(&self, probe: &Probe) -> Option<f64> {
         let error = match self.reference_shape {
             Some(_) => probe.errors.map(|errors| errors.largest.at_least),

@@ -26,8 +26,8 @@ impl LodKind {
         Self::ALL.into_iter().find(|kind| kind.declared().0 == lod && (*kind == Self::ErrorRows) == has_rows)
     }
 
-    /// Its LOD, the partitioning that it is commonly used with, and the number that says how fine it is. LOD by error uses numbers of
-    /// segments that nest, which are whole.
+    /// Its LOD, the partitioning that it is commonly used with, and the number that says how fine it is. LOD by error uses
+    /// numbers of segments that nest, which are whole.
     fn declared(self) -> (Lod, Partitioning, fn(&mut Tessellation) -> &mut f32) {
         match self {
             Self::Uniform => (Lod::Uniform, Partitioning::FractionalOdd, |own| &mut own.factor),

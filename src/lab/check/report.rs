@@ -59,8 +59,8 @@ pub struct GateResult {
     pub passed: bool,
     /// What was found, and where if it failed, in a sentence without its end.
     pub text: String,
-    /// The worst place of a gate that failed: the mesh's triangles that it lies on; `at`, in object units, null for a place of a picture;
-    /// and `px`, from the picture's top left. Null if there is none.
+    /// The worst place of a gate that failed: the mesh's triangles that it lies on; `at`, in object units, null for a place of
+    /// a picture; and `px`, from the picture's top left. Null if there is none.
     #[serde(rename = "where")]
     pub place: Value,
     /// A picture of the place, a PNG file in base64.

@@ -146,8 +146,8 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// The text that follows a number of it; the gate that judges it, if there is one; and the largest number that still counts as
-    /// holding.
+    /// The text that follows a number of it; the gate that judges it, if there is one; and the largest number that still counts
+    /// as holding.
     const fn declared(self) -> (&'static str, Option<GateKind>, f64) {
         match self {
             Self::Points => ("edge points that differ", Some(GateKind::Cracks), 0.0),
