@@ -118,7 +118,7 @@ fn options_with_other_values_are_written() {
     };
     let args = parsed(&shown.line());
     assert_eq!(args.file, Source::File("./-x.glb".into()));
-    assert_eq!(args.shot.reference_shape.reference_shape, Some(Source::File("./shape:y".into())));
+    assert_eq!(args.shot.reference_shape, Some(Source::File("./shape:y".into())));
     let heights = Some(HeightSource::File("./material".into()));
     assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
     assert_eq!((args.shot.select, args.shot.surface.view.orthographic), (Some(7), true));
@@ -127,11 +127,8 @@ fn options_with_other_values_are_written() {
     assert_eq!(args.shot.surface.tessellation().height_scale, -0.5);
     let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
     let args = parsed(&moving.line());
-    assert_eq!(
-        (args.shot.surface.animation.animation.as_deref(), args.shot.surface.animation.time),
-        (Some("-run, fast"), 0.1)
-    );
-    assert_eq!(args.shot.reference_shape.reference_shape, None, "an animation has no reference surface");
+    assert_eq!((args.shot.surface.animation.as_deref(), args.shot.surface.time), (Some("-run, fast"), 0.1));
+    assert_eq!(args.shot.reference_shape, None, "an animation has no reference surface");
 }
 
 #[test]

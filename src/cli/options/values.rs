@@ -108,6 +108,12 @@ pub(crate) fn angle(text: &str) -> Result<f32, String> {
     angle.ok_or_else(|| "expected a number of degrees".to_owned())
 }
 
+/// Parses a time that is finite and not negative.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    let time = text.trim().parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
+    time.ok_or_else(|| "expected a number of seconds, 0 or more".to_owned())
+}
+
 /// Parses a position in object units.
 pub(super) fn position(text: &str) -> Result<Vec3, String> {
     let place = numbers(text).and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
