@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::background_job::{BackgroundJob, Stopped};
 use crate::app::App;
+use crate::commands::CompanionFile;
 use geometry::progress::Progress;
 use inspect::engine::Preparation;
 use inspect::settings::Settings;
@@ -15,18 +16,9 @@ use load::files::Limits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Work {
     Mesh,
-    /// The reference surface.
-    ReferenceShape,
-    /// The mesh of another file for the left half.
-    LeftMesh,
-    /// The file of light.
-    Light,
-    /// Reading a file of factors, or comparing its factors under another convention.
-    Factors,
-    Matcap,
-    /// Watching the file of the LOD shader. It goes on after the first version.
-    LodShader,
-    SurfaceShader,
+    /// Reading what is open beside the mesh. Factors are compared, too, under another convention, and the files of shaders watched, which
+    /// goes on after the first version.
+    Companion(CompanionFile),
     /// Watching the mesh's files.
     MeshFiles,
     /// Finding the meshes beside the one that is open.
@@ -57,8 +49,7 @@ impl Work {
 
     /// Whether it reads a file beside the mesh.
     fn is_companion(self) -> bool {
-        use Work::{Factors, LeftMesh, Light, LodShader, Matcap, ReferenceShape, SurfaceShader};
-        matches!(self, ReferenceShape | LeftMesh | Light | Factors | Matcap | LodShader | SurfaceShader)
+        matches!(self, Self::Companion(_))
     }
 
     /// Whether it ends with the document.

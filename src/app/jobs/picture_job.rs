@@ -203,7 +203,7 @@ impl App {
         };
         let subject = Subject {
             loaded: document.loaded.clone(),
-            left: self.left_mesh.as_ref().map(|left| left.loaded.clone()),
+            left: self.left_mesh.as_ref().map(|left| left.content.clone()),
             moment: document.moment,
             given: document.scene.tessellator.given().cloned(),
             surface_shader: document.scene.tessellator.surface_shader().cloned(),
@@ -230,7 +230,7 @@ impl App {
     /// What commands compare with: the chosen mesh; and while the overlay is on, an exact or the limit surface.
     fn reference_surface(&self, settings: &Settings) -> Option<ReferenceSurface> {
         let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
-        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.source.to_string());
+        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.to_string());
         let exact = self.source().filter(|_| is_shown).map(ToString::to_string);
         match self.yardstick().1 {
             Some(reference_shape) => Some(ReferenceSurface::ReferenceShape(chosen.or(exact)?, reference_shape)),

@@ -10,6 +10,7 @@ use super::companion_files::{absolute_path, file_name, new_generation};
 use super::file_watch::{Stamped, watch};
 use super::job_list::Work;
 use crate::app::App;
+use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use geometry::tessellate::{Lod, Surface, Tessellation};
@@ -22,7 +23,7 @@ use inspect::user_shader::read_user_shader;
 pub(crate) trait UserShaderSlot: UserShader {
     type Setting: Copy;
 
-    const WORK: Work;
+    const FILE: CompanionFile;
 
     /// The setting while functions take its place. Nothing depends on it then.
     const PLACEHOLDER: Self::Setting;
@@ -49,7 +50,7 @@ pub(crate) trait UserShaderSlot: UserShader {
 impl UserShaderSlot for LodShader {
     type Setting = Lod;
 
-    const WORK: Work = Work::LodShader;
+    const FILE: CompanionFile = CompanionFile::LodShader;
 
     const PLACEHOLDER: Lod = Lod::Uniform;
 
@@ -81,7 +82,7 @@ impl UserShaderSlot for LodShader {
 impl UserShaderSlot for SurfaceShader {
     type Setting = Surface;
 
-    const WORK: Work = Work::SurfaceShader;
+    const FILE: CompanionFile = CompanionFile::SurfaceShader;
 
     const PLACEHOLDER: Surface = Surface::OF_USER_SHADER;
 
@@ -200,7 +201,7 @@ impl App {
         let progress = Progress::default();
         let (engine, context, wanted) = (self.engine.clone(), context.clone(), progress.clone());
         spawn(move || read_versions(&engine, &context, &path, &sender, &wanted));
-        self.jobs.follow(S::WORK, progress, move || {
+        self.jobs.follow(Work::Companion(S::FILE), progress, move || {
             let version = versions.try_recv();
             let is_there = !matches!(version, Err(TryRecvError::Empty));
             is_there.then(|| Box::new(move |app: &mut Self, _: &_| app.take_version::<S>(version.ok())) as _)
@@ -252,7 +253,7 @@ impl App {
         let mut own = self.settings.tessellation;
         self.put_back::<S>(&mut own);
         self.settings.tessellation = own;
-        self.jobs.stop(S::WORK);
+        self.jobs.stop(Work::Companion(S::FILE));
         *S::slot(self) = None;
     }
 
@@ -280,7 +281,7 @@ impl App {
             None => {
                 let why = format!("watching {} stopped unexpectedly; open it again", open.name());
                 open.error.get_or_insert(why);
-                self.jobs.stop(S::WORK);
+                self.jobs.stop(Work::Companion(S::FILE));
                 return;
             }
         }
