@@ -3,9 +3,8 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Sender, TryRecvError, channel};
 
-use super::background_job::{caught, spawn};
+use super::background_job::caught;
 use super::companion_files::{absolute_path, file_name, new_generation};
 use super::file_watch::{Stamped, watch};
 use super::job_list::Work;
@@ -147,20 +146,11 @@ impl<S: UserShaderSlot> OpenShader<S> {
 type Read<S> = Result<Arc<S>, String>;
 
 /// Reads and compiles the file, and again after every change, until nobody wants it any more.
-fn read_versions<S: UserShaderSlot>(
-    engine: &Engine,
-    context: &egui::Context,
-    path: &Path,
-    versions: &Sender<Read<S>>,
-    wanted: &Progress,
-) {
+fn read_versions<S: UserShaderSlot>(engine: &Engine, path: &Path, take: &dyn Fn(Read<S>) -> bool, wanted: &Progress) {
     let files = Stamped::now([path.to_owned()]);
     let send = || {
         let version = caught(|| read(engine, path));
-        let version = version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path))));
-        let is_wanted = versions.send(version).is_ok();
-        context.request_repaint();
-        is_wanted
+        take(version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path)))))
     };
     if send() {
         watch(files, wanted, send);
@@ -197,15 +187,9 @@ impl App {
     /// Reads the file, even if it hasn't changed, and watches it for this window.
     pub(in crate::app) fn watch_shader<S: UserShaderSlot>(&mut self, context: &egui::Context) {
         let Some(path) = S::open_in(self).map(|open| open.path.clone()) else { return };
-        let (sender, versions) = channel();
-        let progress = Progress::default();
-        let (engine, context, wanted) = (self.engine.clone(), context.clone(), progress.clone());
-        spawn(move || read_versions(&engine, &context, &path, &sender, &wanted));
-        self.jobs.follow(Work::Companion(S::FILE), progress, move || {
-            let version = versions.try_recv();
-            let is_there = !matches!(version, Err(TryRecvError::Empty));
-            is_there.then(|| Box::new(move |app: &mut Self, _: &_| app.take_version::<S>(version.ok())) as _)
-        });
+        let engine = self.engine.clone();
+        let read = move |wanted: &Progress, take: &dyn Fn(Read<S>) -> bool| read_versions(&engine, &path, take, wanted);
+        self.jobs.follow(context, Work::Companion(S::FILE), read, |app, _, version| app.take_version::<S>(version));
     }
 
     /// The file with functions that give factors, if it is open and one of its versions can be used.
@@ -281,7 +265,6 @@ impl App {
             None => {
                 let why = format!("watching {} stopped unexpectedly; open it again", open.name());
                 open.error.get_or_insert(why);
-                self.jobs.stop(Work::Companion(S::FILE));
                 return;
             }
         }
