@@ -46,68 +46,45 @@ pub(crate) trait UserShaderSlot: UserShader {
     fn shown(app: &App) -> u64;
 }
 
-impl UserShaderSlot for LodShader {
-    type Setting = Lod;
+/// Declares the files: the setting with its type and placeholder, where the app has the file, and what its functions are called in the
+/// pipelines, in the tessellator's report, and in what the document's scene has of files.
+macro_rules! user_shader_slots {
+    ($($shader:ident: $setting:ident: $type:ty = $placeholder:expr, $slot:ident, $pipeline:ident, $report:ident, $shown:ident;)+) => {$(
+        impl UserShaderSlot for $shader {
+            type Setting = $type;
+            const FILE: CompanionFile = CompanionFile::$shader;
+            const PLACEHOLDER: $type = $placeholder;
 
-    const FILE: CompanionFile = CompanionFile::LodShader;
+            fn setting(tessellation: &mut Tessellation) -> &mut $type {
+                &mut tessellation.$setting
+            }
 
-    const PLACEHOLDER: Lod = Lod::Uniform;
+            fn slot(app: &mut App) -> &mut Option<OpenShader<Self>> {
+                &mut app.$slot
+            }
 
-    fn setting(tessellation: &mut Tessellation) -> &mut Lod {
-        &mut tessellation.lod
-    }
+            fn open_in(app: &App) -> Option<&OpenShader<Self>> {
+                app.$slot.as_ref()
+            }
 
-    fn slot(app: &mut App) -> &mut Option<OpenShader<Self>> {
-        &mut app.lod_shader
-    }
+            fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
+                engine.pipelines.$pipeline(shader).prepare(&engine.gpu)
+            }
 
-    fn open_in(app: &App) -> Option<&OpenShader<Self>> {
-        app.lod_shader.as_ref()
-    }
+            fn report(tessellator: &Tessellator) -> Option<UserReport> {
+                tessellator.$report()
+            }
 
-    fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
-        engine.pipelines.user_lod(shader).prepare(&engine.gpu)
-    }
-
-    fn report(tessellator: &Tessellator) -> Option<UserReport> {
-        tessellator.user_lod_report()
-    }
-
-    fn shown(app: &App) -> u64 {
-        app.document.as_ref().map_or(0, |document| document.from_files.factors)
-    }
+            fn shown(app: &App) -> u64 {
+                app.document.as_ref().map_or(0, |document| document.from_files.$shown)
+            }
+        }
+    )+};
 }
 
-impl UserShaderSlot for SurfaceShader {
-    type Setting = Surface;
-
-    const FILE: CompanionFile = CompanionFile::SurfaceShader;
-
-    const PLACEHOLDER: Surface = Surface::OF_USER_SHADER;
-
-    fn setting(tessellation: &mut Tessellation) -> &mut Surface {
-        &mut tessellation.surface
-    }
-
-    fn slot(app: &mut App) -> &mut Option<OpenShader<Self>> {
-        &mut app.surface_shader
-    }
-
-    fn open_in(app: &App) -> Option<&OpenShader<Self>> {
-        app.surface_shader.as_ref()
-    }
-
-    fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
-        engine.pipelines.user_surface(shader).prepare(&engine.gpu)
-    }
-
-    fn report(tessellator: &Tessellator) -> Option<UserReport> {
-        tessellator.user_surface_report()
-    }
-
-    fn shown(app: &App) -> u64 {
-        app.document.as_ref().map_or(0, |document| document.from_files.surface)
-    }
+user_shader_slots! {
+    LodShader: lod: Lod = Lod::Uniform, lod_shader, user_lod, user_lod_report, factors;
+    SurfaceShader: surface: Surface = Surface::OF_USER_SHADER, surface_shader, user_surface, user_surface_report, surface;
 }
 
 /// A version of a file, and a number of its own.
