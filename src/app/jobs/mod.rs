@@ -4,6 +4,7 @@ pub(super) mod background_job;
 pub(super) mod chart_job;
 pub(super) mod companion_files;
 pub(super) mod deviation_job;
+pub(super) mod drawn_measurement;
 pub(super) mod explain_job;
 pub(super) mod file_watch;
 pub(super) mod folder_job;

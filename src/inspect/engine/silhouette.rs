@@ -24,6 +24,13 @@ pub struct SilhouetteView {
     pub lod: LodView,
 }
 
+impl SilhouetteView {
+    /// The samples of the picture that are compared on this device.
+    pub fn grid(&self, gpu: &Gpu) -> SampleGrid {
+        SampleGrid::new(self.size, gpu.device.limits().max_texture_dimension_2d)
+    }
+}
+
 /// A drawing under way. It has a tessellator of its own, so that what is shown stays as it is.
 pub struct SilhouetteDrawing {
     /// See [`sibling`].
@@ -105,7 +112,7 @@ impl Engine {
         tessellation: &Tessellation,
         view: &SilhouetteView,
     ) -> Result<SilhouetteDrawing, GpuError> {
-        let grid = SampleGrid::new(view.size, self.gpu.device.limits().max_texture_dimension_2d);
+        let grid = view.grid(&self.gpu);
         let coverage = self.silhouettes.start(&self.gpu, grid, view.seen.clip_from_object)?;
         tessellator.pose_as(scene.tessellator.posed())?;
         if scene.tessellator.given() != tessellator.given() {
