@@ -19,7 +19,7 @@ impl App {
 
     /// The upper end of a message: below the toolbar, so that this stays in reach.
     pub(in crate::app) fn message_place(&self) -> egui::Pos2 {
-        self.viewport.rect.center_top() + egui::vec2(0.0, 8.0)
+        self.viewport.rect.unwrap_or(egui::Rect::NOTHING).center_top() + egui::vec2(0.0, 8.0)
     }
 
     /// Shows the last error, or what is to be read about the last file that was written, until it is closed.

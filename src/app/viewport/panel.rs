@@ -43,7 +43,7 @@ const GREETING: &str =
 impl App {
     pub(in crate::app) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
         let rect = ui.available_rect_before_wrap();
-        self.viewport.rect = rect;
+        self.viewport.rect = Some(rect);
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         let points = vec2(rect.width(), rect.height());
