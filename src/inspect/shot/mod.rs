@@ -191,22 +191,19 @@ impl Shot {
             left.tessellator.give(subject.given.clone().filter(|_| takes_given))?;
             left.tessellator.set_surface_shader(None)?;
         }
-        let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
-        let (lod_view, results) = (view.lod_view(&scene), Default::default());
-        let (silhouette, judged, error_place) = (None, Vec::new(), None);
         let mut shot = Self {
+            posed: subject.loaded.posed(subject.moment),
+            lod_view: view.lod_view(&scene),
+            scale: deviation_scale(0.0, scene.ulp()),
+            results: Default::default(),
+            silhouette: None,
+            judged: Vec::new(),
+            error_place: None,
             subject,
-            posed,
             engine,
             scene,
             target,
             view,
-            lod_view,
-            results,
-            scale,
-            silhouette,
-            judged,
-            error_place,
         };
         shot.engine.prepare(&shot.scene, &shot.subject.settings)?;
         shot.count()?;
