@@ -224,7 +224,7 @@ impl Picture {
         if self.drawn != Some(wanted) {
             self.begun.get_or_insert_with(Instant::now);
         }
-        let is_counted = self.count(engine, scene, &wanted, under_way.is_none())?;
+        let is_counted = self.count(scene, &wanted, under_way.is_none())?;
         let Some((target, _)) = &self.target else { return Ok(()) };
         if self.in_flight.is_some() || !is_counted {
             return Ok(());
@@ -255,13 +255,7 @@ impl Picture {
 
     /// Lets the device count what each half will emit, with the wanted inputs if `anew` is set. Returns true once the counts
     /// are known, and false while the left half is still being made.
-    fn count(
-        &mut self,
-        engine: &Engine,
-        scene: &mut Scene,
-        wanted: &PictureRequest,
-        anew: bool,
-    ) -> Result<bool, GpuError> {
+    fn count(&mut self, scene: &mut Scene, wanted: &PictureRequest, anew: bool) -> Result<bool, GpuError> {
         let mut is_counted = true;
         for half in SplitSide::BOTH {
             let Some(inputs) = wanted.inputs_of(half) else { continue };
@@ -270,11 +264,7 @@ impl Picture {
             if anew {
                 tessellator.set(&inputs)?;
             }
-            if tessellator.needs_count() {
-                let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
-                tessellator.count(&mut recorder)?;
-                recorder.submit();
-                tessellator.request_counts();
+            if tessellator.count(&mut self.timing)? {
                 self.counting = Some(*wanted);
             }
             is_counted &= self.in_flight.is_none() && tessellator.poll_counts()?;

@@ -12,7 +12,7 @@ use crate::app::painting::{Painting, ShownPicture};
 use crate::app::{App, Document};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::ScreenView;
-use gpu::{GpuError, Recorder, Timing};
+use gpu::{GpuError, Timing, submit_untimed};
 use inspect::engine::Engine;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ColorSource, Colors, Settings, SplitSide, SplitView};
@@ -164,7 +164,7 @@ impl Preview {
         wanted: &PictureRequest,
         shape: Shape,
     ) -> Result<(), GpuError> {
-        if !count(engine, scene, wanted)? || !self.pace.is_free() {
+        if !count(scene, wanted)? || !self.pace.is_free() {
             return Ok(());
         }
         if self.drawn == Some((*wanted, shape)) {
@@ -185,10 +185,9 @@ pub(super) fn draw(
     target: &Target,
     wanted: &PictureRequest,
 ) -> Result<Arc<AtomicBool>, GpuError> {
-    let mut timing = Timing::Off;
-    let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-    engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
-    recorder.submit();
+    submit_untimed(&engine.gpu, |recorder| {
+        engine.renderer.draw(recorder, scene, target, &wanted.camera, &wanted.settings)
+    })?;
     let done = Arc::new(AtomicBool::new(false));
     let own = done.clone();
     engine.gpu.queue.on_submitted_work_done(move || own.store(true, Ordering::Release));
@@ -196,21 +195,14 @@ pub(super) fn draw(
 }
 
 /// Lets the device count what each half emits. Returns true once that is known.
-pub(super) fn count(engine: &Engine, scene: &mut Scene, wanted: &PictureRequest) -> Result<bool, GpuError> {
+pub(super) fn count(scene: &mut Scene, wanted: &PictureRequest) -> Result<bool, GpuError> {
     let mut is_counted = true;
     for half in SplitSide::BOTH {
         let Some(inputs) = wanted.inputs_of(half) else { continue };
         let Some(scene) = scene.half_mut(half) else { return Ok(false) };
-        let tessellator = &mut scene.tessellator;
-        tessellator.set(&inputs)?;
-        if tessellator.needs_count() {
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-            tessellator.count(&mut recorder)?;
-            recorder.submit();
-            tessellator.request_counts();
-        }
-        is_counted &= tessellator.poll_counts()?;
+        scene.tessellator.set(&inputs)?;
+        scene.tessellator.count(&mut Timing::Off)?;
+        is_counted &= scene.tessellator.poll_counts()?;
     }
     Ok(is_counted)
 }

@@ -57,7 +57,7 @@ use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
 use geometry::view::ScreenView;
-use gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
+use gpu::{Given, GpuError, SurfaceShader, Timing, submit_untimed};
 use load::panorama::Panorama;
 
 /// What is drawn.
@@ -321,10 +321,9 @@ impl Shot {
         let steps = Renderer::step_count(scene, settings);
         for step in 0..steps {
             progress.check()?;
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-            engine.renderer.draw_steps(&mut recorder, scene, target, &view.camera, settings, step..step + 1)?;
-            recorder.submit();
+            submit_untimed(&engine.gpu, |recorder| {
+                engine.renderer.draw_steps(recorder, scene, target, &view.camera, settings, step..step + 1)
+            })?;
             engine.gpu.wait();
             progress.set((step + 1) as f32 / steps as f32);
         }
