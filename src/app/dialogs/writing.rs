@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 use egui::Theme;
 
 use super::notice::Notice;
+use super::purpose::AskedFile;
 use super::turntable_window::TurntableWindow;
 use crate::app::App;
 use crate::app::jobs::companion_files::file_name;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::picture_job::PictureChoices;
-use crate::commands::Written;
+use crate::commands::{Purpose, Written};
 use geometry::mesh::adjacency::Layout;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
@@ -135,19 +136,12 @@ fn without_warnings(write: impl FnOnce(&Path, &Progress) -> Result<(), String> +
 /// # Errors
 /// It ends otherwise; as a sentence.
 fn check_ending(what: Written, path: &Path) -> Result<(), String> {
-    let endings: &[&str] = match what {
-        Written::Chart => return Ok(()),
-        Written::Folder if ending(path).is_empty() => return Ok(()),
-        Written::Folder => return Err(format!("{}: the name of a folder must have no ending", shown_path(path))),
-        Written::Picture => &["png", "html"],
-        Written::Gif => &["gif"],
-        Written::Factors => &["csv"],
-        Written::Adjacency => &["json", "bin"],
-        Written::Stats => &["json"],
-        Written::Mesh => &["glb", "obj"],
-    };
-    match endings.contains(&&*ending(path)) {
-        true => Ok(()),
-        false => Err(format!("{}: the name must end in .{}", shown_path(path), endings.join(" or ."))),
+    let kinds = AskedFile::new(Purpose::Write(what)).kinds;
+    let endings: Vec<_> = kinds.into_iter().flat_map(|(_, endings)| endings).collect();
+    match (what, &*ending(path)) {
+        (Written::Chart, _) | (Written::Folder, "") => Ok(()),
+        (Written::Folder, _) => Err(format!("{}: the name of a folder must have no ending", shown_path(path))),
+        (_, own) if endings.contains(&own) => Ok(()),
+        _ => Err(format!("{}: the name must end in .{}", shown_path(path), endings.join(" or ."))),
     }
 }
