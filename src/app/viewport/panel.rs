@@ -174,8 +174,7 @@ impl App {
             camera,
             settings,
             inputs: settings.inputs(view),
-            clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds),
-            viewport,
+            view: ScreenView { clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds), viewport },
         };
         Ok(Some((wanted, document.from_files == from_files && document.moment == moment)))
     }
@@ -193,8 +192,8 @@ impl App {
             return Ok(());
         }
         let bounds = document.scene.bounds;
-        let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport: wanted.viewport };
-        let seen = wanted.camera.lod_view(wanted.viewport, &bounds);
+        let view = wanted.view;
+        let seen = wanted.camera.lod_view(view.viewport, &bounds);
         let silhouette = SilhouetteView { size, seen, lod: wanted.inputs.view };
         // What is counted in a view stays that of the frozen one, with all other numbers.
         let (camera, counted_in) = match self.viewport.frozen {

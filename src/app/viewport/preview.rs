@@ -73,11 +73,6 @@ impl Preview {
         Self { is_on: true, coarseness: finest, finest, ..Self::default() }
     }
 
-    /// The same, switched on or off.
-    pub(crate) fn with(self, is_on: bool) -> Self {
-        Self { is_on, ..self }
-    }
-
     /// Whether a picture that takes as long as the last full one is replaced by a preview while the camera moves.
     pub(super) fn is_due(&self, full: &Picture) -> bool {
         self.is_on && full.whole_ms.is_some_and(|ms| ms > LATE_MS)
@@ -282,7 +277,7 @@ impl App {
         self.viewport.warm_up.give_way();
         let preview = &mut self.viewport.preview;
         preview.land();
-        preview.fit(&self.painting, &self.engine, full.viewport)?;
+        preview.fit(&self.painting, &self.engine, full.view.viewport)?;
         let light = self
             .environment
             .as_ref()
@@ -324,11 +319,6 @@ impl App {
     /// The view of what is shown: of a preview, or of the full picture.
     pub(in crate::app) fn shown_view(&self) -> Option<ScreenView> {
         let picture = &self.viewport.picture;
-        match self.viewport.preview.shown(picture) {
-            Some((PictureRequest { clip_from_object, viewport, .. }, _)) => {
-                Some(ScreenView { clip_from_object: *clip_from_object, viewport: *viewport })
-            }
-            None => picture.seen_from(),
-        }
+        self.viewport.preview.shown(picture).map(|(drawn, _)| drawn.view).or(picture.seen_from())
     }
 }
