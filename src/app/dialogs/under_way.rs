@@ -1,6 +1,6 @@
 //! What takes long and can be stopped. One at a time is shown over the picture, and stopped there or by its key.
 
-use super::notice::Notice;
+use super::windows::Notice;
 use crate::app::App;
 use crate::app::jobs::job_list::{Job, Work};
 use crate::commands::CompanionFile;

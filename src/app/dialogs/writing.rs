@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use egui::Theme;
 
-use super::notice::Notice;
 use super::purpose::AskedFile;
 use super::turntable_window::TurntableWindow;
+use super::windows::Notice;
 use crate::app::App;
 use crate::app::jobs::companion_files::file_name;
 use crate::app::jobs::job_list::Work;
