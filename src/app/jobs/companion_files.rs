@@ -161,18 +161,12 @@ impl App {
             Ok(None) => Err(format!("{wanted} can't be a reference surface: it has no triangles")),
             Err(error) => Err(error.to_string()),
         };
-        let title = format!("Loading the reference surface {}", source.title());
-        self.read_companion(
-            context,
-            CompanionFile::ReferenceShape,
-            title,
-            source.title(),
-            load,
-            |app, reference_shape| {
-                app.reference_shape = Some(Opened::new(source, reference_shape));
-                app.settings.overlays.colors = Colors::Deviation;
-            },
-        );
+        let (title, what) = (format!("Loading the reference surface {}", source.title()), source.title());
+        let take = |app: &mut Self, reference_shape| {
+            app.reference_shape = Some(Opened::new(source, reference_shape));
+            app.settings.overlays.colors = Colors::Deviation;
+        };
+        self.read_companion(context, CompanionFile::ReferenceShape, title, what, load, take);
     }
 
     /// Loads a reference surface of a file again, which is turned and scaled as the mesh is.

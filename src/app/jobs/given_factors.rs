@@ -58,21 +58,15 @@ impl App {
             Ok((Arc::new(factors), compared))
         };
         let what = shown_path(&path);
-        self.read_companion(
-            context,
-            CompanionFile::Factors,
-            String::new(),
-            what,
-            read,
-            move |app, (factors, compared)| {
-                app.forget_shader::<LodShader>();
-                // The file's factors take LOD's place: nothing follows the view.
-                let lod = std::mem::replace(&mut app.settings.tessellation.lod, Lod::Uniform);
-                let lod = app.given.as_ref().map_or(lod, |given| given.content.lod);
-                let given = GivenFactors { factors, partitioning, compared: Some(compared), lod };
-                app.given = Some(OpenFile::new(path, given));
-            },
-        );
+        let take = move |app: &mut Self, (factors, compared)| {
+            app.forget_shader::<LodShader>();
+            // The file's factors take LOD's place: nothing follows the view.
+            let lod = std::mem::replace(&mut app.settings.tessellation.lod, Lod::Uniform);
+            let lod = app.given.as_ref().map_or(lod, |given| given.content.lod);
+            let given = GivenFactors { factors, partitioning, compared: Some(compared), lod };
+            app.given = Some(OpenFile::new(path, given));
+        };
+        self.read_companion(context, CompanionFile::Factors, String::new(), what, read, take);
     }
 
     pub fn factors_file(&self) -> Option<&Path> {
@@ -121,18 +115,12 @@ impl App {
         given.content.compared = None;
         let (factors, topology) = (given.content.factors.clone(), document.loaded.topology.clone());
         let compare = move |_: &_| Ok(ComparedFactors::new(&topology, &factors, own.convention));
-        self.read_companion(
-            context,
-            CompanionFile::Factors,
-            String::new(),
-            shown_path(&path),
-            compare,
-            |app, compared| {
-                if let Some(given) = &mut app.given {
-                    given.content.compared = Some(compared);
-                }
-            },
-        );
+        let take = |app: &mut Self, compared| {
+            if let Some(given) = &mut app.given {
+                given.content.compared = Some(compared);
+            }
+        };
+        self.read_companion(context, CompanionFile::Factors, String::new(), shown_path(&path), compare, take);
     }
 }
 
