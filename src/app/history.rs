@@ -159,11 +159,12 @@ impl App {
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
         let Some(Undoable { settings, preparation, companions: files }) = step else { return };
-        [Work::ReferenceShape, Work::LeftMesh, Work::Matcap, Work::Light]
+        use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
+        [ReferenceShape, LeftMesh, Matcap, Environment]
             .into_iter()
-            .for_each(|work| self.jobs.stop(work));
+            .for_each(|companion| self.jobs.stop(Work::Companion(companion)));
         if self.given.is_none() {
-            self.jobs.stop(Work::Factors);
+            self.jobs.stop(Work::Companion(Factors));
         }
         if self.jobs.load().is_some_and(|load| load.keep_view) {
             self.jobs.stop(Work::Mesh);
@@ -189,7 +190,7 @@ impl App {
         self.replace_again::<LodShader>();
         self.replace_again::<SurfaceShader>();
         self.replace_by_factors();
-        if !self.jobs.has(Work::Light) {
+        if !self.jobs.has(Work::Companion(CompanionFile::Environment)) {
             // A file of light may be gone.
             self.cancel_environment();
         }

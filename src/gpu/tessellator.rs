@@ -308,18 +308,6 @@ impl Tessellator {
         self.counts_done
     }
 
-    /// Whether [`Self::count`] has to run before anything can be emitted.
-    pub fn needs_count(&self) -> bool {
-        !self.counts_done && self.pending.is_none()
-    }
-
-    /// Asks for the counts after the recorder was submitted; [`Self::poll_counts`] says when they are here.
-    pub fn request_counts(&mut self) {
-        if let Some(pending) = &mut self.pending {
-            pending.request();
-        }
-    }
-
     /// Takes the counts if the device has finished them. True once they are known.
     ///
     /// # Errors

@@ -10,6 +10,7 @@ use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::file_watch::{Stamped, sources};
 use crate::app::jobs::job_list::{Load, Work};
 use crate::app::jobs::scenes::scene_of;
+use crate::commands::CompanionFile;
 use geometry::progress::{Progress, Stage};
 use gpu::GpuError;
 use inspect::engine::{self, Engine, Preparation};
@@ -207,8 +208,8 @@ impl App {
             (self.viewport.frozen, self.viewport.ruler) = (None, None);
         }
         if !keep_view {
-            self.forget_reference_shape();
-            self.forget_left_mesh();
+            self.close_companion(CompanionFile::ReferenceShape);
+            self.close_companion(CompanionFile::LeftMesh);
         } else if is_turned {
             self.follow_reference_shape(context);
             self.follow_left_mesh(context);

@@ -54,11 +54,11 @@ impl App {
             return;
         };
         ui.label("Panorama").on_hover_text("The file of light that is open (--environment).");
-        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
+        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.from.display().to_string());
         ui.end_row();
         ui.label("");
         if ui.button("Close environment").on_hover_text(CLOSE_ENVIRONMENT).clicked() {
-            self.close_environment();
+            self.close_companion(CompanionFile::Environment);
         }
         ui.end_row();
     }

@@ -2,8 +2,8 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
+use crate::app::jobs::companion_files::LeftMesh;
 use crate::app::jobs::job_list::Work;
-use crate::app::jobs::left_mesh::LeftMesh;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
@@ -77,7 +77,7 @@ impl App {
         let shown = self.left_mesh.as_ref().map_or_else(|| "The same".to_owned(), LeftMesh::title);
         let combo = egui::ComboBox::from_id_salt("Left mesh").selected_text(shown).truncate().show_ui(ui, |ui| {
             if ui.selectable_label(self.left_mesh.is_none(), "The same").clicked() {
-                self.forget_left_mesh();
+                self.close_companion(CompanionFile::LeftMesh);
             }
             let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
             if has_before && ui.selectable_label(false, "Before the change on disk").clicked() {
@@ -145,7 +145,7 @@ impl App {
         if let Some(given) = &self.given {
             let hover = "These factors take the place of those of LOD.";
             ui.label("Factors").on_hover_text(hover);
-            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.path.display().to_string());
+            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.from.display().to_string());
             ui.end_row();
             ui.label("");
             let button = ui.button("Close the file");
@@ -200,7 +200,6 @@ impl App {
         ui.end_row();
     }
 
-    /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     /// A choice of material variants, which is there only if the file has some. Another variant loads the mesh again.
     fn variant_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = self.document.as_ref().filter(|document| !document.loaded.variants.is_empty()) else {
@@ -240,6 +239,7 @@ impl App {
         }
     }
 
+    /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;
