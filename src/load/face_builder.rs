@@ -8,7 +8,7 @@ use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
-use super::notes::{Notes, counted, counts};
+use super::notes::{Notes, counts};
 use super::parts::{Part, Parts};
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
@@ -154,12 +154,12 @@ impl<'a> FaceBuilder<'a> {
         self.import.lacking_normals(if self.cage.is_some() { 0 } else { count }, what)
     }
 
-    /// Says which part the next faces belong to, by its name.
+    /// Says which part the next faces belong to, as [`Parts::enter`] does.
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
-    pub(super) fn enter_part(&mut self, name: &[u8]) -> Result<(), ReadError> {
-        self.parts.enter(name, self.memory)?;
+    pub(super) fn enter_part(&mut self, path: &[u8], level: usize) -> Result<(), ReadError> {
+        self.parts.enter(path, level, self.memory)?;
         self.builder.enter_part(self.parts.current());
         Ok(())
     }
@@ -405,6 +405,7 @@ impl<'a> FaceBuilder<'a> {
         progress: &Progress,
     ) -> Result<Finished, ReadError> {
         self.end_cage(None, progress)?;
+        self.parts.enter_materials(&mut self.builder, self.memory)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
         let holds = named.unwrap_or(holds);
@@ -421,10 +422,8 @@ impl<'a> FaceBuilder<'a> {
         let flawed = self.flawed().map(|flawed| format!("{flawed}; they are left out."));
         self.notes.extend(flawed);
         self.notes.extend(self.found.sentences());
-        let (parts, beyond, places) = self.parts.into_list();
-        self.notes.extend(counted([(beyond, "parts beyond the first 65,536, which can't be hidden")]));
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
+        let parts = self.parts.finish(&mut mesh, &mut self.notes);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
         Ok(Finished { mesh, numbers, notes: self.notes, parts, is_refined: self.is_refined == Some(true) })
     }

@@ -1,5 +1,7 @@
-//! The list of the file's parts, which can be hidden, and the menu of a part, which is over the picture too.
+//! The tree of the file's parts, which can be hidden, and the menu of a part, which is over the picture too.
 
+use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::app::App;
@@ -10,7 +12,8 @@ use crate::commands::{Action, CameraAction, all};
 use geometry::names::{shortened, shown};
 use inspect::render::framed_size;
 use load::ShownParts;
-use load::parts::Part;
+use load::part_tree::{Branch, end, leaves, name};
+use load::selection::{MATERIAL, is_part_of};
 
 /// The greatest length of a name in the list, in characters.
 const LONGEST: usize = 40;
@@ -18,7 +21,14 @@ const LONGEST: usize = 40;
 /// So many parts have a filter.
 const MANY: usize = 8;
 
-/// What is done with a part: a place in the list of parts.
+/// How far a part is right of the group that it lies in, in points, and how far at most.
+const INDENT: f32 = 12.0;
+const MOST_INDENT: f32 = 72.0;
+
+/// The width of the button that folds a group, in points.
+const FOLD_WIDTH: f32 = 16.0;
+
+/// What is done with a part or a group: a place in the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PartAction {
     Hide(usize),
@@ -26,48 +36,63 @@ enum PartAction {
     /// Shows it alone.
     Solo(usize),
     Frame(usize),
+    CopyName(usize),
     ShowAll,
 }
 
 impl App {
-    /// A switch for each part, if the file has several. The mesh is loaded again without those that are hidden.
+    /// A switch for each part and group, if the file has several. The mesh is loaded again without those that are hidden.
     pub(in crate::app) fn parts_section(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = self.document.as_ref().filter(|document| document.loaded.parts.len() > 1) else { return };
-        let parts = document.loaded.parts.clone();
-        if !self.panels.open.title(ui, Section::Parts) {
+        let Some(document) = &self.document else { return };
+        let tree = document.loaded.part_tree.clone();
+        let has_several = [false, true].map(|of_materials| count(&tree, of_materials)[1] > 1);
+        if has_several == [false; 2] || !self.panels.open.title(ui, Section::Parts) {
             return;
         }
-        let picked = self.picked_part();
+        let of_materials = &mut self.panels.lists_materials;
+        if has_several == [true; 2] {
+            ui.horizontal(|ui| {
+                for (value, label, hover) in [
+                    (false, "By node", "Lists the parts of the file, and the groups that they lie in."),
+                    (true, "By material", "Lists the materials, whose triangles can be hidden as those of parts."),
+                ] {
+                    ui.selectable_value(of_materials, value, label).on_hover_text(hover);
+                }
+            });
+        } else {
+            *of_materials = has_several[1];
+        }
+        let of_materials = *of_materials;
+        let [shown, all] = count(&tree, of_materials);
+        let picked = self.picked_branch(&tree, of_materials);
         let filter = &mut self.panels.parts_filter;
-        if parts.len() > MANY {
+        if all > MANY {
             let field =
                 egui::TextEdit::singleline(filter).hint_text("Filter parts by name").desired_width(f32::INFINITY);
-            let field = ui.add(field).on_hover_text("Lists the parts whose names contain this.");
+            let field = ui.add(field).on_hover_text("Lists the parts and groups whose paths contain this.");
             ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Filter parts by name"));
         } else {
             filter.clear();
         }
         let filter = filter.to_lowercase();
-        let listed: Vec<usize> =
-            (0..parts.len()).filter(|&part| parts[part].name.to_lowercase().contains(&filter)).collect();
+        let folded = &mut self.panels.folded_groups;
+        let listed = listed(&tree, of_materials, &filter, folded);
         let mut action = None;
-        list(ui, "parts", listed.len(), 0, |ui, row| {
-            let part = listed[row];
-            let (response, chosen) = part_row(ui, &parts, part, picked == Some(part));
+        list(ui, "parts", listed.len(), (filter.len(), of_materials.into()), |ui, row| {
+            let at = listed[row];
+            let (response, chosen) = part_row(ui, &tree, at, picked == Some(at), folded);
             action = chosen.or(action);
-            response.context_menu(|ui| action = part_entries(ui, &parts, part).or(action));
+            response.context_menu(|ui| action = part_entries(ui, &tree, at).or(action));
             response
         });
-        let hidden = parts.iter().filter(|part| part.is_hidden).count();
         ui.horizontal(|ui| {
-            let button = ui.add_enabled(hidden > 0, egui::Button::new("Show all parts"));
+            let button = ui.add_enabled(*self.parts != ShownParts::default(), egui::Button::new("Show all parts"));
             if button.on_hover_text("Shows the parts that are hidden.").clicked() {
                 action = Some(PartAction::ShowAll);
             }
-            let [shown, all] = [parts.len() - hidden, parts.len()].map(|count| grouped(count as u64));
-            ui.weak(format!("{shown} of {all} shown"));
+            ui.weak(format!("{} of {} shown", grouped(shown as u64), grouped(all as u64)));
         });
-        action.into_iter().for_each(|action| self.act_on_parts(&parts, action));
+        action.into_iter().for_each(|action| self.act_on_parts(ui.ctx(), &tree, action));
     }
 
     /// The part of the selected triangle: a place in the list of parts.
@@ -76,13 +101,26 @@ impl App {
         document.loaded.mesh.part_of(triangle).map(|part| part as usize)
     }
 
+    /// The part or the material of the selected triangle: a place in the tree.
+    fn picked_branch(&self, tree: &[Branch], of_materials: bool) -> Option<usize> {
+        if !of_materials {
+            let picked = self.picked_part()?;
+            return tree.iter().position(|branch| branch.part == Some(picked));
+        }
+        let (document, triangle) = (self.document.as_ref()?, self.selected_triangle()?);
+        let mut materials = document.loaded.mesh.materials.iter();
+        let path = [MATERIAL, &materials.find(|material| material.triangles.contains(&triangle))?.name].concat();
+        tree.iter().position(|branch| branch.path == path)
+    }
+
     /// The menu of what was clicked with the right button in the picture.
     pub(in crate::app) fn part_menu(&mut self, ui: &mut egui::Ui) {
-        let parts = self.document.as_ref().map(|document| document.loaded.parts.clone()).unwrap_or_default();
-        let picked = self.picked_part().filter(|_| parts.len() > 1);
-        let action = picked.and_then(|part| {
-            ui.strong(shortened(&shown(&parts[part].name), LONGEST));
-            part_entries(ui, &parts, part)
+        let tree = self.document.as_ref().map(|document| document.loaded.part_tree.clone()).unwrap_or_default();
+        let of_materials = count(&tree, false)[1] < 2;
+        let picked = self.picked_branch(&tree, of_materials).filter(|_| count(&tree, of_materials)[1] > 1);
+        let action = picked.and_then(|at| {
+            ui.strong(shortened(&shown(&tree[at].path), LONGEST));
+            part_entries(ui, &tree, at)
         });
         if picked.is_some() {
             ui.separator();
@@ -96,71 +134,137 @@ impl App {
         ] {
             self.command_button(ui, &commands, &now, &action, [label; 2]);
         }
-        action.into_iter().for_each(|action| self.act_on_parts(&parts, action));
+        action.into_iter().for_each(|action| self.act_on_parts(ui.ctx(), &tree, action));
     }
 
-    fn act_on_parts(&mut self, parts: &[Part], action: PartAction) {
+    fn act_on_parts(&mut self, context: &egui::Context, tree: &[Branch], action: PartAction) {
         match action {
-            PartAction::Hide(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, false),
-            PartAction::Show(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, true),
-            PartAction::Solo(part) => self.parts = Arc::new(ShownParts::alone(&parts[part].name)),
-            PartAction::Frame(part) => self.frame_part(part as u32),
+            PartAction::Hide(at) => Arc::make_mut(&mut self.parts).set(tree, at, false),
+            PartAction::Show(at) => Arc::make_mut(&mut self.parts).set(tree, at, true),
+            PartAction::Solo(at) => self.parts = Arc::new(ShownParts::alone(&name(tree, &tree[at]))),
+            PartAction::Frame(at) => self.frame_part(tree, at),
+            PartAction::CopyName(at) => context.copy_text(name(tree, &tree[at])),
             PartAction::ShowAll => self.parts = Arc::default(),
         }
     }
 
-    fn frame_part(&mut self, part: u32) {
+    fn frame_part(&mut self, tree: &[Branch], at: usize) {
         let Some(document) = &self.document else { return };
-        if let Some(bounds) = document.shown().0.part_bounds(part) {
+        let mesh = document.shown().0;
+        let parts: HashSet<_> = tree[at..end(tree, at)].iter().filter_map(|branch| branch.part).collect();
+        let is_own = |material: &str| is_part_of(&[MATERIAL, material].concat(), &tree[at].path);
+        let of_materials = mesh.materials.iter().filter(|material| is_own(&material.name));
+        let of_parts = mesh.part_ranges.iter().filter(|range| parts.contains(&(range.part as usize)));
+        let triangles: Vec<Range<u32>> = of_materials
+            .map(|material| material.triangles.clone())
+            .chain(of_parts.map(|range| range.triangles.clone()))
+            .collect();
+        if let Some(bounds) = mesh.bounds_of(triangles.into_iter().flatten()) {
             let size = framed_size(self.viewport.picture.size(), &self.settings);
             self.viewport.camera.frame(&bounds, size);
         }
     }
 }
 
-/// A part's row: whether it is shown, and a button that shows it alone. Returns the switch, and what is to be done.
-fn part_row(ui: &mut egui::Ui, parts: &[Part], number: usize, is_picked: bool) -> (egui::Response, Option<PartAction>) {
-    let part = &parts[number];
+/// How many parts are shown, and how many there are; or how many materials.
+fn count(tree: &[Branch], of_materials: bool) -> [usize; 2] {
+    let own = || leaves(tree).filter(|leaf| leaf.is_material() == of_materials);
+    [own().filter(|leaf| leaf.shown > 0).count(), own().count()]
+}
+
+/// The places of the rows whose paths contain `filter`. What lies in groups that are folded isn't listed, unless it is searched.
+fn listed(tree: &[Branch], of_materials: bool, filter: &str, folded: &HashSet<String>) -> Vec<usize> {
+    let (mut listed, mut at) = (Vec::new(), 0);
+    while let Some(branch) = tree.get(at) {
+        let is_wanted = filter.is_empty() || branch.path.to_lowercase().contains(filter);
+        listed.extend((is_wanted && branch.is_material() == of_materials).then_some(at));
+        at = if filter.is_empty() && folded.contains(&branch.path) { end(tree, at) } else { at + 1 };
+    }
+    listed
+}
+
+/// The row of a part or group: a button that folds it, whether it is shown, its triangles, and a button that shows it alone. Returns the
+/// switch, and what is to be done.
+fn part_row(
+    ui: &mut egui::Ui,
+    tree: &[Branch],
+    at: usize,
+    is_picked: bool,
+    folded: &mut HashSet<String>,
+) -> (egui::Response, Option<PartAction>) {
+    let branch = &tree[at];
+    let path = shown(&branch.path);
+    let of_group = if branch.part.is_some() { String::new() } else { format!("{} parts, ", branch.parts) };
     let hover = format!(
-        "{}: {}. A part that is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
-        shown(&part.name),
-        counted(part.triangles.into(), "triangle")
+        "{path}: {of_group}{}. What is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
+        counted(branch.triangles, "triangle")
     );
-    let is_alone = !part.is_hidden && parts.iter().filter(|part| !part.is_hidden).count() == 1;
-    let mut is_shown = !part.is_hidden;
+    let [shown_parts, all] = count(tree, branch.is_material());
+    let is_alone = branch.shown == branch.parts && shown_parts == branch.parts && all > branch.parts;
+    let mut is_shown = branch.shown > 0;
     let mut action = None;
     let height = ui.spacing().interact_size.y;
     let from_right = egui::Layout::right_to_left(egui::Align::Center);
     let row = egui::vec2(ui.available_width(), height);
     let response = ui.allocate_ui_with_layout(row, from_right, |ui| {
         let alone = ui.add(switch_button(is_alone, "Solo"));
-        let name = format!("Show only {}", shown(&part.name));
-        alone.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_alone, &name));
-        if alone.on_hover_text("Shows this part alone; a second click shows all (--show-part).").clicked() {
-            action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(number) });
+        let label = format!("Show only {path}");
+        alone.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_alone, &label));
+        if alone.on_hover_text("Shows this alone; a second click shows all (--show-part).").clicked() {
+            action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(at) });
         }
-        let name = shortened(&shown(&part.name), LONGEST);
-        let name = if is_picked { egui::RichText::new(name).strong() } else { egui::RichText::new(name) };
+        ui.weak(grouped(branch.triangles));
+        let name = egui::RichText::new(shortened(&shown(&branch.label()), LONGEST));
+        let name = if is_picked { name.strong() } else { name };
         let layout = egui::Layout::left_to_right(egui::Align::Center);
-        ui.with_layout(layout, |ui| ui.checkbox(&mut is_shown, name).on_hover_text(hover)).inner
+        ui.with_layout(layout, |ui| {
+            ui.add_space((branch.depth as f32 * INDENT).min(MOST_INDENT));
+            fold_button(ui, branch, &path, folded);
+            let is_partly_shown = is_shown && branch.shown < branch.parts;
+            ui.add(egui::Checkbox::new(&mut is_shown, name).indeterminate(is_partly_shown)).on_hover_text(hover)
+        })
+        .inner
     });
     if response.inner.changed() {
-        action = Some(if is_shown { PartAction::Show(number) } else { PartAction::Hide(number) });
+        action = Some(if is_shown { PartAction::Show(at) } else { PartAction::Hide(at) });
     }
     (response.inner, action)
 }
 
-/// What can be done with a part.
-fn part_entries(ui: &mut egui::Ui, parts: &[Part], part: usize) -> Option<PartAction> {
-    let (is_hidden, are_hidden) = (parts[part].is_hidden, parts.iter().any(|part| part.is_hidden));
+/// The button that folds a group.
+fn fold_button(ui: &mut egui::Ui, branch: &Branch, path: &str, folded: &mut HashSet<String>) {
+    if branch.part.is_some() {
+        return;
+    }
+    let is_open = !folded.contains(&branch.path);
+    let button = egui::Button::new(if is_open { "-" } else { "+" }).min_size(egui::vec2(FOLD_WIDTH, 0.0));
+    let button = ui.add(button);
+    let label = format!("Unfold {path}");
+    button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_open, &label));
+    if button.on_hover_text("Lists what lies in this group, or not.").clicked() && !folded.remove(&branch.path) {
+        folded.insert(branch.path.clone());
+    }
+}
+
+/// What can be done with a part or a group.
+fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize) -> Option<PartAction> {
+    let (branch, are_hidden) = (&tree[at], leaves(tree).any(|leaf| leaf.shown == 0));
+    let what = if branch.part.is_none() {
+        "group"
+    } else if branch.is_material() {
+        "material"
+    } else {
+        "part"
+    };
     let entries = [
-        (PartAction::Frame(part), "Frame this part", !is_hidden),
-        (PartAction::Solo(part), "Show only this part", true),
-        (PartAction::Hide(part), "Hide this part", !is_hidden),
-        (PartAction::Show(part), "Show this part", is_hidden),
-        (PartAction::ShowAll, "Show all parts", are_hidden),
+        (PartAction::Frame(at), format!("Frame this {what}"), branch.shown > 0),
+        (PartAction::Solo(at), format!("Show only this {what}"), true),
+        (PartAction::Hide(at), format!("Hide this {what}"), branch.shown > 0),
+        (PartAction::Show(at), format!("Show this {what}"), branch.shown < branch.parts),
+        (PartAction::CopyName(at), "Copy its name".to_owned(), true),
+        (PartAction::ShowAll, "Show all parts".to_owned(), are_hidden),
     ];
-    let chosen = |(action, label, is_possible): (_, &str, bool)| {
+    let chosen = |(action, label, is_possible): (_, String, bool)| {
         ui.add_enabled(is_possible, egui::Button::new(label)).clicked().then_some(action)
     };
     let chosen = entries.into_iter().filter_map(chosen).last();

@@ -8,6 +8,7 @@ use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
+use load::part_tree::{self, Branch};
 use load::parts::Part;
 use load::selection::Selection;
 use load::{
@@ -34,6 +35,8 @@ pub struct Loaded {
     pub scene: Option<usize>,
     /// The parts of the file, also those that are left out.
     pub parts: Arc<Vec<Part>>,
+    /// The same as a tree.
+    pub part_tree: Arc<Vec<Branch>>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
@@ -55,6 +58,7 @@ impl Loaded {
             scenes: Vec::new(),
             scene: None,
             parts: Arc::default(),
+            part_tree: Arc::default(),
             files: Vec::new(),
             topology,
             load_ms: 0.0,
@@ -147,6 +151,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         variants,
         scenes,
         scene,
+        part_tree: Arc::new(part_tree::tree(&parts)),
         parts: Arc::new(parts),
         files,
         topology: Arc::new(topology),

@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::GltfError;
 use super::notes::Notes;
-use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
+use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, LOD, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
 use crate::uri::shown;
 
 /// How an extension changes a model.
@@ -74,8 +74,7 @@ const KNOWN: [(&str, Effect); 51] = [
     ("MPEG_media", Effect::None),
     ("MPEG_mesh_linking", shape("moves meshes with others", EXPORT)),
     ("MPEG_scene_dynamic", shape("changes the scene over time", EXPORT)),
-    // The node that has it is the finest level.
-    ("MSFT_lod", Effect::None),
+    (LOD, Effect::None),
     ("MSFT_packing_normalRoughnessMetallic", Effect::None),
     ("MSFT_packing_occlusionRoughnessMetallic", Effect::None),
     ("OMI_physics_body", Effect::None),

@@ -1,6 +1,6 @@
-//! The named nodes of a scene that have a mesh, as parts that can be left out.
+//! The nodes of a scene that have a mesh, as parts that can be left out.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use ::gltf::Semantic;
 use ::gltf::json::mesh::Primitive;
@@ -9,27 +9,26 @@ use ::gltf::json::{Mesh, Root};
 use ::gltf::mesh::Mode;
 
 use super::extensions::InstancingExtension;
+use super::nodes::parents;
 use super::reach::{Reach, attribute};
 use super::{GltfError, primitive};
 use crate::memory_budget::Budget;
-use crate::parts::{Part, Parts};
+use crate::parts::{Parts, node_path};
 use crate::selection::Selection;
 use geometry::casts::to_usize;
 
 /// The parts of a scene.
 #[derive(Debug, Default)]
 pub(super) struct NodeParts {
-    pub list: Vec<Part>,
-    /// The place in the list of each node that is a part.
+    pub list: Parts,
+    /// The part of each node that has a mesh.
     pub of_node: HashMap<usize, u32>,
-    /// How many nodes aren't parts because there are too many of them.
-    pub beyond: usize,
-    /// Whether any part was left out.
+    /// Whether any node lost its mesh.
     pub is_cut: bool,
 }
 
-/// Lists the named nodes that the scene shows and that have a mesh; a node without a name has that of its mesh. Nodes of the same name
-/// are one part. Takes the meshes of the parts that aren't `selected`, as if the file didn't have them: their data isn't looked at.
+/// Lists the nodes that the scene shows and that have a mesh; a node without a name has that of its mesh. Nodes of the same path are
+/// one part. Takes the meshes of the parts that aren't `selected`, as if the file didn't have them: their data isn't looked at.
 ///
 /// # Errors
 /// [`GltfError::TooLarge`].
@@ -37,18 +36,25 @@ pub(super) fn take(
     root: &mut Root,
     instances: &HashMap<usize, InstancingExtension>,
     reach: &Reach,
+    levels: &HashSet<usize>,
     selected: &Selection,
     budget: &Budget,
 ) -> Result<NodeParts, GltfError> {
-    let mut parts = Parts::new(selected);
-    let (mut cut, mut entered) = (Vec::new(), Vec::new());
+    let (mut list, mut of_node, mut cut) = (Parts::new(selected), HashMap::new(), Vec::new());
+    let parents = parents(&root.nodes, |_| {});
     for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| reach.shown[*i]) {
         let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { continue };
-        let Some(name) = node.name.as_ref().or(mesh.name.as_ref()).filter(|name| !name.is_empty()) else { continue };
-        parts.enter(name.as_bytes(), budget).map_err(GltfError::too_large("the list of named nodes"))?;
-        entered.extend(parts.current().map(|part| (i, part)));
+        let named = |node: usize| (root.nodes[node].name.as_deref().unwrap_or_default(), levels.contains(&node));
+        let own = match named(i) {
+            ("", is_level) => (mesh.name.as_deref().unwrap_or_default(), is_level),
+            own => own,
+        };
+        let above = std::iter::successors(parents[i], |&node| parents[node]).map(named);
+        let (path, level) = node_path(std::iter::once(own).chain(above));
+        list.enter(path.as_bytes(), level, budget).map_err(GltfError::too_large("the list of nodes"))?;
+        of_node.extend(list.current().map(|part| (i, part)));
         let first = instances.get(&i).and_then(InstancingExtension::first);
-        if parts.leave_out(triangles(root, mesh).saturating_mul(first.map_or(1, |first| count(root, first)))) {
+        if list.leave_out(triangles(root, mesh).saturating_mul(first.map_or(1, |first| count(root, first)))) {
             cut.push(i);
         }
     }
@@ -56,9 +62,7 @@ pub(super) fn take(
     for node in cut {
         (root.nodes[node].mesh, root.nodes[node].skin) = (None, None);
     }
-    let (list, beyond, places) = parts.into_list();
-    let of_node = entered.into_iter().map(|(node, part)| (node, places[part as usize])).collect();
-    Ok(NodeParts { list, of_node, beyond, is_cut })
+    Ok(NodeParts { list, of_node, is_cut })
 }
 
 /// Returns how many triangles a mesh has, with those of strips that only connect parts.

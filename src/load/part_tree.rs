@@ -1,0 +1,220 @@
+//! The tree of a file's parts: groups, what lies in them, and materials.
+
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use super::parts::{Part, ends};
+use super::selection::{MATERIAL, ShownParts, is_material, is_part_of};
+
+/// A part, or a group of parts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Branch {
+    /// Its path. One that ends in `/.` is that of a part whose name is a group's too, without what lies in it.
+    pub path: String,
+    /// In how many groups it lies.
+    pub depth: usize,
+    /// Its place in the list of parts; none for a group.
+    pub part: Option<usize>,
+    /// How many parts it consists of, how many of them are shown, and how many triangles all have.
+    pub parts: usize,
+    pub shown: usize,
+    pub triangles: u64,
+    /// Whether it is a level of detail other than the first, or lies in one.
+    pub is_level: bool,
+}
+
+impl Branch {
+    /// Its own name.
+    pub fn label(&self) -> String {
+        match self.path.strip_prefix(MATERIAL).unwrap_or(&self.path).rsplit('/').collect::<Vec<_>>()[..] {
+            [".", own, ..] => format!("{own} alone"),
+            [own, ..] => own.to_owned(),
+            [] => String::new(),
+        }
+    }
+
+    pub fn is_material(&self) -> bool {
+        is_material(&self.path)
+    }
+}
+
+/// Returns the groups and parts: groups before what lies in them, otherwise in the order of the file.
+pub fn tree(parts: &[Part]) -> Vec<Branch> {
+    let names = parts.iter().map(|part| &*part.name);
+    let above = names.flat_map(|name| ends(name).filter(|end| *end < name.len()).map(|end| &name[..end]));
+    let groups: HashSet<&str> = above.collect();
+    let (mut numbers, mut branches) = (HashMap::new(), BTreeMap::new());
+    for (place, part) in parts.iter().enumerate() {
+        let path = part.name.clone() + if groups.contains(&*part.name) { "/." } else { "" };
+        let mut key = Vec::new();
+        for end in ends(&path) {
+            let next = numbers.len();
+            key.push(*numbers.entry(path[..end].to_owned()).or_insert(next));
+            let branch = branches.entry(key.clone()).or_insert_with(|| Branch {
+                path: path[..end].to_owned(),
+                depth: key.len() - 1,
+                part: (end == path.len()).then_some(place),
+                parts: 0,
+                shown: 0,
+                triangles: 0,
+                is_level: (1..=end).contains(&part.level),
+            });
+            branch.parts += 1;
+            branch.shown += usize::from(!part.is_hidden);
+            branch.triangles += u64::from(part.triangles);
+        }
+    }
+    branches.into_values().collect()
+}
+
+/// Returns the parts of a tree.
+pub fn leaves(tree: &[Branch]) -> impl Iterator<Item = &Branch> {
+    tree.iter().filter(|branch| branch.part.is_some())
+}
+
+/// Returns where what lies in a branch ends.
+pub fn end(tree: &[Branch], at: usize) -> usize {
+    at + 1 + tree[at + 1..].iter().take_while(|branch| branch.depth > tree[at].depth).count()
+}
+
+/// Returns a name that means a branch and nothing else: its path, after a slash if the path has this meaning elsewhere too.
+pub fn name(tree: &[Branch], branch: &Branch) -> String {
+    let meant = leaves(tree).filter(|leaf| is_part_of(&leaf.path, &branch.path)).count();
+    if meant == branch.parts { branch.path.clone() } else { format!("/{}", branch.path) }
+}
+
+impl ShownParts {
+    /// Shows a branch, or leaves it out.
+    pub fn set(&mut self, tree: &[Branch], at: usize, is_shown: bool) {
+        let (branch, name) = (&tree[at], name(tree, &tree[at]));
+        let is_same_kind = |other: &&String| is_material(other) == branch.is_material();
+        let mut listed = self.only.iter().filter(is_same_kind).count();
+        if is_shown {
+            self.hidden = self.hidden.iter().flat_map(|hidden| rest(tree, hidden, &name)).collect();
+            if listed == 0 && branch.is_level {
+                self.only.extend(shown_names(tree));
+                listed = 1;
+            }
+            if listed > 0 && !self.only.contains(&name) {
+                self.only.push(name);
+            }
+        } else if listed > 1 && self.only.contains(&name) {
+            // Without the last name all parts would be shown.
+            self.only.retain(|other| *other != name);
+        } else {
+            let is_within = |other: &String| rest(tree, other, &name).is_empty();
+            self.hidden.retain(|other| !is_within(other));
+            self.hidden.push(name);
+        }
+    }
+}
+
+/// Returns names of what a name means without what another one means.
+fn rest(tree: &[Branch], given: &str, without: &str) -> Vec<String> {
+    let (common, others): (Vec<_>, Vec<_>) = leaves(tree)
+        .filter(|leaf| is_part_of(&leaf.path, given))
+        .partition(|leaf| is_part_of(&leaf.path, without));
+    if common.is_empty() { vec![given.to_owned()] } else { others.into_iter().map(|leaf| name(tree, leaf)).collect() }
+}
+
+/// Returns names of all nodes that are shown.
+fn shown_names(tree: &[Branch]) -> Vec<String> {
+    let (mut names, mut at) = (Vec::new(), 0);
+    while let Some(branch) = tree.get(at) {
+        let is_whole = branch.shown == branch.parts;
+        names.extend((is_whole && !branch.is_material()).then(|| name(tree, branch)));
+        at = if is_whole { end(tree, at) } else { at + 1 };
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests;
+    use super::*;
+
+    /// Parts with these names, of 1, 2, 3 and so on triangles, of which `shown` says what is left out.
+    fn parts(names: &[&str], shown: &ShownParts) -> Vec<Part> {
+        let part = |(i, name): (u32, &&str)| Part {
+            name: (*name).to_owned(),
+            triangles: i,
+            is_hidden: shown.hide(name, 0),
+            level: 0,
+        };
+        (1..).zip(names).map(part).collect()
+    }
+
+    #[test]
+    fn groups_come_before_what_lies_in_them_and_a_part_that_is_a_group_has_a_row_of_its_own() {
+        let tree = tree(&parts(&["Car/Wheel", "Hat", "Car", "Car/Door/Knob", "material:Red"], &ShownParts::default()));
+        let rows = tree.iter().map(|own| (own.path.as_str(), own.label(), own.depth, own.part, own.parts, own.triangles));
+        let row = |path, label: &str, depth, part, parts, triangles| {
+            (path, label.to_owned(), depth, part, parts, triangles)
+        };
+        assert_eq!(
+            rows.collect::<Vec<_>>(),
+            [
+                row("Car", "Car", 0, None, 3, 8),
+                row("Car/Wheel", "Wheel", 1, Some(0), 1, 1),
+                row("Car/.", "Car alone", 1, Some(2), 1, 3),
+                row("Car/Door", "Door", 1, None, 1, 4),
+                row("Car/Door/Knob", "Knob", 2, Some(3), 1, 4),
+                row("Hat", "Hat", 0, Some(1), 1, 2),
+                row("material:Red", "Red", 0, Some(4), 1, 5),
+            ]
+        );
+        assert_eq!([0, 1, 3, 5].map(|at| end(&tree, at)), [5, 2, 5, 6]);
+    }
+
+    #[test]
+    fn a_branch_has_a_name_that_means_nothing_else() {
+        let tree = tree(&parts(&["a/b", "b", "a", "c/a"], &ShownParts::default()));
+        let names: Vec<_> = tree.iter().map(|branch| (branch.path.as_str(), name(&tree, branch))).collect();
+        let named = |path, name: &str| (path, name.to_owned());
+        assert_eq!(
+            names,
+            [
+                named("a", "/a"),
+                named("a/b", "a/b"),
+                named("a/.", "/a/."),
+                named("b", "/b"),
+                named("c", "c"),
+                named("c/a", "c/a"),
+            ]
+        );
+    }
+
+    #[test]
+    fn parts_and_groups_are_shown_alone_added_and_left_out() {
+        let names = ["g/a", "g/b", "c"];
+        let mut shown = ShownParts::alone("g");
+        let mut set = |path: &str, is_shown: bool| {
+            let parts = parts(&names, &shown);
+            let tree = tree(&parts);
+            let at = tree.iter().position(|branch| branch.path == path).expect("a branch");
+            shown.set(&tree, at, is_shown);
+            (shown.clone(), names.map(|name| !shown.hide(name, 0)))
+        };
+        let lists = |hidden: &[&str], only: &[&str]| {
+            let [hidden, only] = [hidden, only].map(|names| names.iter().map(|name| (*name).to_owned()).collect());
+            ShownParts { hidden, only }
+        };
+        assert_eq!(set("c", true), (lists(&[], &["g", "c"]), [true; 3]));
+        assert_eq!(set("g", false), (lists(&[], &["c"]), [false, false, true]));
+        assert_eq!(set("c", false), (lists(&["c"], &["c"]), [false; 3]), "without the last name all would be shown");
+        assert_eq!(set("c", true), (lists(&[], &["c"]), [false, false, true]));
+        shown_is_whole_again(&names);
+    }
+
+    /// A part of a group that is hidden is shown, and the group is hidden and shown as one.
+    fn shown_is_whole_again(names: &[&str]) {
+        let mut shown = ShownParts::default();
+        let mut set = |at: usize, is_shown: bool| {
+            let tree = tree(&parts(names, &shown));
+            shown.set(&tree, at, is_shown);
+            shown.hidden.clone()
+        };
+        assert_eq!(set(1, false), ["g/a"]);
+        assert_eq!(set(0, false), ["g"], "the group has the part");
+        assert_eq!(set(2, true), ["g/a"], "the rest of the group stays hidden");
+        assert_eq!(set(0, true), [""; 0]);
+    }
+}
