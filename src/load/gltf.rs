@@ -135,7 +135,9 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     of_materials.map_err(GltfError::too_large("the list of materials"))?;
     if builder.is_empty() {
         let mut holds = match reach.hidden {
-            0 if parsed.parts.is_cut || parsed.parts.list.are_hidden() => format!("its named parts are hidden; {}", parsed.parts.list.names()),
+            0 if parsed.parts.is_cut || parsed.parts.list.are_hidden() => {
+                format!("its named parts are hidden; {}", parsed.parts.list.names())
+            }
             0 => primitives.holds(document),
             hidden => {
                 let said = "nodes of its scene that have a mesh (--show-hidden shows them)";

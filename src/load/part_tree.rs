@@ -110,9 +110,8 @@ impl ShownParts {
 
 /// Returns names of what a name means without what another one means.
 fn rest(tree: &[Branch], given: &str, without: &str) -> Vec<String> {
-    let (common, others): (Vec<_>, Vec<_>) = leaves(tree)
-        .filter(|leaf| is_part_of(&leaf.path, given))
-        .partition(|leaf| is_part_of(&leaf.path, without));
+    let (common, others): (Vec<_>, Vec<_>) =
+        leaves(tree).filter(|leaf| is_part_of(&leaf.path, given)).partition(|leaf| is_part_of(&leaf.path, without));
     if common.is_empty() { vec![given.to_owned()] } else { others.into_iter().map(|leaf| name(tree, leaf)).collect() }
 }
 
@@ -128,7 +127,7 @@ fn shown_names(tree: &[Branch]) -> Vec<String> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
     use super::*;
 
     /// Parts with these names, of 1, 2, 3 and so on triangles, of which `shown` says what is left out.
@@ -145,10 +144,10 @@ mod tests;
     #[test]
     fn groups_come_before_what_lies_in_them_and_a_part_that_is_a_group_has_a_row_of_its_own() {
         let tree = tree(&parts(&["Car/Wheel", "Hat", "Car", "Car/Door/Knob", "material:Red"], &ShownParts::default()));
-        let rows = tree.iter().map(|own| (own.path.as_str(), own.label(), own.depth, own.part, own.parts, own.triangles));
-        let row = |path, label: &str, depth, part, parts, triangles| {
-            (path, label.to_owned(), depth, part, parts, triangles)
-        };
+        let rows =
+            tree.iter().map(|own| (own.path.as_str(), own.label(), own.depth, own.part, own.parts, own.triangles));
+        let row =
+            |path, label: &str, depth, part, parts, triangles| (path, label.to_owned(), depth, part, parts, triangles);
         assert_eq!(
             rows.collect::<Vec<_>>(),
             [

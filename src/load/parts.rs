@@ -12,7 +12,7 @@ use super::notes::{Notes, counted};
 use super::selection::{MATERIAL, Selection, ShownParts, choice, is_material};
 use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::MeshBuilder;
-use geometry::mesh::{Mesh, MemoryRefused};
+use geometry::mesh::{MemoryRefused, Mesh};
 
 /// The greatest number of parts. The triangles of others belong to none, and are always shown.
 const MAX_PARTS: usize = 1 << 16;
@@ -288,7 +288,16 @@ mod tests {
 
     #[test]
     fn only_the_first_level_of_detail_is_shown_unless_another_is_named() {
-        let names = ["Car_LOD0", "Car_LOD1/Wheel", "Car_LOD2", "set/Car_LOD1", "Fold1", "LOD_3", "set/hat-lod0", "set/hat-lod1"];
+        let names = [
+            "Car_LOD0",
+            "Car_LOD1/Wheel",
+            "Car_LOD2",
+            "set/Car_LOD1",
+            "Fold1",
+            "LOD_3",
+            "set/hat-lod0",
+            "set/hat-lod1",
+        ];
         let shown = |hidden: &[&str], only: &[&str]| {
             let mut parts = hiding(hidden, only);
             let shown = names.map(|name| !entered(&mut parts, name, 1));

@@ -108,7 +108,8 @@ fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
 
 #[test]
 fn materials_are_parts_too_if_there_are_several() {
-    let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\no car\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\nf 3 2 1\no bike\nf 2 3 1\n";
+    let faces =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\no car\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\nf 3 2 1\no bike\nf 2 3 1\n";
     let read = |hidden: &[&str], only: &[&str]| {
         let [hidden, only] =
             [hidden, only].map(|names| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());

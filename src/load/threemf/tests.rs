@@ -302,7 +302,8 @@ fn objects_with_triangles_are_parts_by_their_names() {
 
 #[test]
 fn components_lie_in_the_objects_that_have_them() {
-    let object = |id: u32, name: &str, content: &str| format!("<object id=\"{id}\"{name} type=\"model\">{content}</object>");
+    let object =
+        |id: u32, name: &str, content: &str| format!("<object id=\"{id}\"{name} type=\"model\">{content}</object>");
     let component = |id: u32| format!("<components><component objectid=\"{id}\"/></components>");
     let objects = [
         object(1, " name=\"bolt\"", &cube_mesh()),
