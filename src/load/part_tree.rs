@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::{Part, ends};
-use super::selection::{MATERIAL, ShownParts, is_material, is_part_of};
+use super::selection::{ShownParts, is_material, is_part_of};
 
 /// A part, or a group of parts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub struct Branch {
 impl Branch {
     /// Its own name.
     pub fn label(&self) -> String {
-        match self.path.strip_prefix(MATERIAL).unwrap_or(&self.path).rsplit('/').collect::<Vec<_>>()[..] {
+        match self.path.rsplit('/').collect::<Vec<_>>()[..] {
             [".", own, ..] => format!("{own} alone"),
             [own, ..] => own.to_owned(),
             [] => String::new(),
@@ -83,47 +83,43 @@ pub fn name(tree: &[Branch], branch: &Branch) -> String {
 }
 
 impl ShownParts {
-    /// Shows a branch, or leaves it out.
+    /// Shows a branch, or leaves it out. Levels of detail other than the first are shown only if the branch is one, or lies in one.
     pub fn set(&mut self, tree: &[Branch], at: usize, is_shown: bool) {
-        let (branch, name) = (&tree[at], name(tree, &tree[at]));
-        let is_same_kind = |other: &&String| is_material(other) == branch.is_material();
-        let mut listed = self.only.iter().filter(is_same_kind).count();
-        if is_shown {
-            self.hidden = self.hidden.iter().flat_map(|hidden| rest(tree, hidden, &name)).collect();
-            if listed == 0 && branch.is_level {
-                self.only.extend(shown_names(tree));
-                listed = 1;
-            }
-            if listed > 0 && !self.only.contains(&name) {
-                self.only.push(name);
-            }
-        } else if listed > 1 && self.only.contains(&name) {
-            // Without the last name all parts would be shown.
-            self.only.retain(|other| *other != name);
+        let (branch, changed) = (&tree[at], at..end(tree, at));
+        let is_changed = |i: usize| changed.contains(&i) && (!is_shown || branch.is_level || !tree[i].is_level);
+        let shown = |i: usize| if is_changed(i) { is_shown } else { tree[i].shown > 0 };
+        let is_other = |name: &String| is_material(name) != branch.is_material();
+        let lists_shown = is_shown && branch.is_level || !self.only.iter().all(is_other);
+        self.only.retain(is_other);
+        self.hidden.retain(is_other);
+        let names = |mut whole: Vec<usize>| {
+            whole.retain(|at| tree[*at].is_material() == branch.is_material());
+            whole.into_iter().map(|at| name(tree, &tree[at]))
+        };
+        // A group that is named doesn't show other levels.
+        let only = whole(tree, |group, i| shown(i) && tree[i].is_level == group.is_level);
+        let mut only = names(only).peekable();
+        // Without a name all parts would be shown.
+        if lists_shown && only.peek().is_some() {
+            self.only.extend(only);
         } else {
-            let is_within = |other: &String| rest(tree, other, &name).is_empty();
-            self.hidden.retain(|other| !is_within(other));
-            self.hidden.push(name);
+            let mut hidden = whole(tree, |_, i| !shown(i));
+            hidden.retain(|at| !tree[*at].is_level);
+            self.hidden.extend(names(hidden));
         }
     }
 }
 
-/// Returns names of what a name means without what another one means.
-fn rest(tree: &[Branch], given: &str, without: &str) -> Vec<String> {
-    let (common, others): (Vec<_>, Vec<_>) =
-        leaves(tree).filter(|leaf| is_part_of(&leaf.path, given)).partition(|leaf| is_part_of(&leaf.path, without));
-    if common.is_empty() { vec![given.to_owned()] } else { others.into_iter().map(|leaf| name(tree, leaf)).collect() }
-}
-
-/// Returns names of all nodes that are shown.
-fn shown_names(tree: &[Branch]) -> Vec<String> {
-    let (mut names, mut at) = (Vec::new(), 0);
-    while let Some(branch) = tree.get(at) {
-        let is_whole = branch.shown == branch.parts;
-        names.extend((is_whole && !branch.is_material()).then(|| name(tree, branch)));
-        at = if is_whole { end(tree, at) } else { at + 1 };
+/// Returns the largest branches of which all parts fit, each with a branch that it lies in.
+fn whole(tree: &[Branch], fits: impl Fn(&Branch, usize) -> bool) -> Vec<usize> {
+    let (mut whole, mut at) = (Vec::new(), 0);
+    while at < tree.len() {
+        let end = end(tree, at);
+        let is_whole = (at..end).all(|i| tree[i].part.is_none() || fits(&tree[at], i));
+        whole.extend(is_whole.then_some(at));
+        at = if is_whole { end } else { at + 1 };
     }
-    names
+    whole
 }
 
 #[cfg(test)]
@@ -157,7 +153,7 @@ mod tests {
                 row("Car/Door", "Door", 1, None, 1, 4),
                 row("Car/Door/Knob", "Knob", 2, Some(3), 1, 4),
                 row("Hat", "Hat", 0, Some(1), 1, 2),
-                row("material:Red", "Red", 0, Some(4), 1, 5),
+                row("material:Red", "material:Red", 0, Some(4), 1, 5),
             ]
         );
         assert_eq!([0, 1, 3, 5].map(|at| end(&tree, at)), [5, 2, 5, 6]);
@@ -198,8 +194,8 @@ mod tests {
         };
         assert_eq!(set("c", true), (lists(&[], &["g", "c"]), [true; 3]));
         assert_eq!(set("g", false), (lists(&[], &["c"]), [false, false, true]));
-        assert_eq!(set("c", false), (lists(&["c"], &["c"]), [false; 3]), "without the last name all would be shown");
-        assert_eq!(set("c", true), (lists(&[], &["c"]), [false, false, true]));
+        assert_eq!(set("c", false), (lists(&["g", "c"], &[]), [false; 3]), "without the last name all would be shown");
+        assert_eq!(set("c", true), (lists(&["g"], &[]), [false, false, true]));
         shown_is_whole_again(&names);
     }
 
@@ -215,5 +211,31 @@ mod tests {
         assert_eq!(set(0, false), ["g"], "the group has the part");
         assert_eq!(set(2, true), ["g/a"], "the rest of the group stays hidden");
         assert_eq!(set(0, true), [""; 0]);
+    }
+
+    #[test]
+    fn another_level_is_shown_beside_what_is_shown_and_a_group_shows_only_the_first() {
+        let names = ["Car/Car_LOD0", "Car/Car_LOD1", "Hat"];
+        let mut shown = ShownParts::default();
+        let mut set = |path: &str, is_shown: bool| {
+            let level = |name: &str| if name.ends_with('1') { name.len() } else { 0 };
+            let part = |name: &&str| Part {
+                name: (*name).to_owned(),
+                triangles: 1,
+                is_hidden: shown.hide(name, level(name)),
+                level: level(name),
+            };
+            let tree = tree(&names.iter().map(part).collect::<Vec<_>>());
+            let at = tree.iter().position(|branch| branch.path == path).expect("a branch");
+            shown.set(&tree, at, is_shown);
+            (names.map(|name| !shown.hide(name, level(name))), shown.clone())
+        };
+        assert_eq!(set("Car", false).0, [false, false, true]);
+        let (now, lists) = set("Car", true);
+        assert_eq!((now, lists), ([true, false, true], ShownParts::default()));
+        let (now, lists) = set("Car/Car_LOD1", true);
+        assert_eq!((now, lists.only), ([true; 3], ["Car/Car_LOD0", "Car/Car_LOD1", "Hat"].map(str::to_owned).to_vec()));
+        assert_eq!(set("Car/Car_LOD0", false).0, [false, true, true]);
+        assert_eq!(set("Hat", false).0, [false, true, false]);
     }
 }

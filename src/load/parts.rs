@@ -122,11 +122,6 @@ impl Parts {
         self.current.map(to_u32)
     }
 
-    /// Whether any part was entered.
-    pub(super) fn have_begun(&self) -> bool {
-        !self.found.is_empty()
-    }
-
     /// Counts triangles of the current part. Returns whether they are left out.
     pub(super) fn leave_out(&mut self, triangles: usize) -> bool {
         let Some(part) = self.current.map(|number| &mut self.found[number]) else { return false };
@@ -174,7 +169,7 @@ impl Parts {
 }
 
 /// Adds the names that a name consists of to a path; `default` if there are none.
-pub(super) fn join(path: &mut String, name: &str, default: &str) {
+fn join(path: &mut String, name: &str, default: &str) {
     let names = if name.trim_matches('/').is_empty() { default } else { name };
     for name in names.split('/').filter(|name| !name.is_empty()) {
         if !path.is_empty() {
@@ -184,28 +179,18 @@ pub(super) fn join(path: &mut String, name: &str, default: &str) {
     }
 }
 
-/// Adds the name of what the next parts lie in to a path, unless that becomes too long.
-pub(super) fn join_above(path: &mut String, name: &str, default: &str) {
-    if path.len() + name.len() < LONGEST_ABOVE {
-        join(path, name, default);
-    }
-}
-
 /// Returns a node's path, and how much of it is that of a further [level](Part::level). `nodes` are the node and those that it lies in,
 /// from the innermost: their names, and whether each is such a level.
 pub(super) fn node_path<'a>(nodes: impl Iterator<Item = (&'a str, bool)>) -> (String, usize) {
     let nodes: Vec<_> = nodes.take(MOST_ABOVE).collect();
     let (mut path, mut level) = (String::new(), 0);
-    let [(own, is_own_level), above @ ..] = &nodes[..] else { return (path, level) };
-    for &(name, is_level) in above.iter().rev() {
-        join_above(&mut path, name, if is_level { DEFAULT_PART } else { "" });
+    for (i, &(name, is_level)) in nodes.iter().enumerate().rev() {
+        if i == 0 || path.len() + name.len() < LONGEST_ABOVE {
+            join(&mut path, name, if i == 0 || is_level { DEFAULT_PART } else { "" });
+        }
         if is_level && level == 0 {
             level = path.len();
         }
-    }
-    join(&mut path, own, DEFAULT_PART);
-    if *is_own_level && level == 0 {
-        level = path.len();
     }
     (path, level)
 }

@@ -130,17 +130,19 @@ fn of_thousands_of_parts_only_those_in_sight_are_laid_out() {
 }
 
 #[test]
-fn materials_are_listed_in_place_of_nodes() {
-    let text =
+fn materials_are_listed_after_the_parts_and_found_by_their_prefix() {
+    let red_and_blue =
         eleven_parts().replace("o Part4\n", "o Part4\nusemtl red\n").replace("o Part9\n", "o Part9\nusemtl blue\n");
-    let (_folder, mut harness) = uniform_of("materials.obj", text);
-    scroll_to(&mut harness, "By material");
-    click(&mut harness, "By material");
-    harness.get_by_label("3 of 3 shown");
-    switch(&mut harness, "red");
+    let (_folder, mut harness) = uniform_of("materials.obj", red_and_blue);
+    scroll_to(&mut harness, "Filter parts by name");
+    harness.get_by_label("14 of 14 shown");
+    click(&mut harness, "Filter parts by name");
+    harness.get_by_label("Filter parts by name").type_text("material:");
+    settle(&mut harness);
+    assert!(harness.query_by_label("Part4").is_none(), "it isn't listed");
+    switch(&mut harness, "material:red");
     assert_eq!(triangles(&harness), 12, "those before Part4 and from Part9 on");
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts.hidden, ["material:red"]);
-    scroll_to(&mut harness, "By node");
-    click(&mut harness, "By node");
-    harness.get_by_label("11 of 11 shown");
+    click(&mut harness, "Show only material:blue");
+    assert_eq!(triangles(&harness), 4);
 }

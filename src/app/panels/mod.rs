@@ -52,8 +52,6 @@ pub(super) struct Panels {
     pub edited: SplitSide,
     /// What the paths of listed parts contain.
     pub parts_filter: String,
-    /// Whether the list of parts has materials, not nodes, if the file has several of both.
-    pub lists_materials: bool,
     /// The paths of groups in the list of parts that are folded.
     pub folded_groups: HashSet<String>,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.

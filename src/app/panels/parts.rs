@@ -43,42 +43,29 @@ enum PartAction {
 impl App {
     /// A switch for each part and group, if the file has several. The mesh is loaded again without those that are hidden.
     pub(in crate::app) fn parts_section(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = &self.document else { return };
+        let Some(document) = self.document.as_ref().filter(|document| document.loaded.part_tree.len() > 1) else {
+            return;
+        };
         let tree = document.loaded.part_tree.clone();
-        let has_several = [false, true].map(|of_materials| count(&tree, of_materials)[1] > 1);
-        if has_several == [false; 2] || !self.panels.open.title(ui, Section::Parts) {
+        if !self.panels.open.title(ui, Section::Parts) {
             return;
         }
-        let of_materials = &mut self.panels.lists_materials;
-        if has_several == [true; 2] {
-            ui.horizontal(|ui| {
-                for (value, label, hover) in [
-                    (false, "By node", "Lists the parts of the file, and the groups that they lie in."),
-                    (true, "By material", "Lists the materials, whose triangles can be hidden as those of parts."),
-                ] {
-                    ui.selectable_value(of_materials, value, label).on_hover_text(hover);
-                }
-            });
-        } else {
-            *of_materials = has_several[1];
-        }
-        let of_materials = *of_materials;
-        let [shown, all] = count(&tree, of_materials);
-        let picked = self.picked_branch(&tree, of_materials);
+        let [shown, all] = count(&tree, |_| true);
+        let picked = self.picked_branch(&tree);
         let filter = &mut self.panels.parts_filter;
         if all > MANY {
             let field =
                 egui::TextEdit::singleline(filter).hint_text("Filter parts by name").desired_width(f32::INFINITY);
-            let field = ui.add(field).on_hover_text("Lists the parts and groups whose paths contain this.");
+            let field = ui.add(field).on_hover_text("Lists the parts, groups and materials whose paths contain this.");
             ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Filter parts by name"));
         } else {
             filter.clear();
         }
         let filter = filter.to_lowercase();
         let folded = &mut self.panels.folded_groups;
-        let listed = listed(&tree, of_materials, &filter, folded);
+        let listed = listed(&tree, &filter, folded);
         let mut action = None;
-        list(ui, "parts", listed.len(), (filter.len(), of_materials.into()), |ui, row| {
+        list(ui, "parts", listed.len(), (filter.len(), 0), |ui, row| {
             let at = listed[row];
             let (response, chosen) = part_row(ui, &tree, at, picked == Some(at), folded);
             action = chosen.or(action);
@@ -101,23 +88,15 @@ impl App {
         document.loaded.mesh.part_of(triangle).map(|part| part as usize)
     }
 
-    /// The part or the material of the selected triangle: a place in the tree.
-    fn picked_branch(&self, tree: &[Branch], of_materials: bool) -> Option<usize> {
-        if !of_materials {
-            let picked = self.picked_part()?;
-            return tree.iter().position(|branch| branch.part == Some(picked));
-        }
-        let (document, triangle) = (self.document.as_ref()?, self.selected_triangle()?);
-        let mut materials = document.loaded.mesh.materials.iter();
-        let path = [MATERIAL, &materials.find(|material| material.triangles.contains(&triangle))?.name].concat();
-        tree.iter().position(|branch| branch.path == path)
+    fn picked_branch(&self, tree: &[Branch]) -> Option<usize> {
+        let picked = self.picked_part()?;
+        tree.iter().position(|branch| branch.part == Some(picked))
     }
 
     /// The menu of what was clicked with the right button in the picture.
     pub(in crate::app) fn part_menu(&mut self, ui: &mut egui::Ui) {
         let tree = self.document.as_ref().map(|document| document.loaded.part_tree.clone()).unwrap_or_default();
-        let of_materials = count(&tree, false)[1] < 2;
-        let picked = self.picked_branch(&tree, of_materials).filter(|_| count(&tree, of_materials)[1] > 1);
+        let picked = self.picked_branch(&tree).filter(|_| tree.len() > 1);
         let action = picked.and_then(|at| {
             ui.strong(shortened(&shown(&tree[at].path), LONGEST));
             part_entries(ui, &tree, at)
@@ -166,18 +145,17 @@ impl App {
     }
 }
 
-/// How many parts are shown, and how many there are; or how many materials.
-fn count(tree: &[Branch], of_materials: bool) -> [usize; 2] {
-    let own = || leaves(tree).filter(|leaf| leaf.is_material() == of_materials);
-    [own().filter(|leaf| leaf.shown > 0).count(), own().count()]
+/// How many of these parts are shown, and how many there are.
+fn count(tree: &[Branch], is_counted: impl Fn(&Branch) -> bool) -> [usize; 2] {
+    let counted = || leaves(tree).filter(|leaf| is_counted(leaf));
+    [counted().filter(|leaf| leaf.shown > 0).count(), counted().count()]
 }
 
 /// The places of the rows whose paths contain `filter`. What lies in groups that are folded isn't listed, unless it is searched.
-fn listed(tree: &[Branch], of_materials: bool, filter: &str, folded: &HashSet<String>) -> Vec<usize> {
+fn listed(tree: &[Branch], filter: &str, folded: &HashSet<String>) -> Vec<usize> {
     let (mut listed, mut at) = (Vec::new(), 0);
     while let Some(branch) = tree.get(at) {
-        let is_wanted = filter.is_empty() || branch.path.to_lowercase().contains(filter);
-        listed.extend((is_wanted && branch.is_material() == of_materials).then_some(at));
+        listed.extend((filter.is_empty() || branch.path.to_lowercase().contains(filter)).then_some(at));
         at = if filter.is_empty() && folded.contains(&branch.path) { end(tree, at) } else { at + 1 };
     }
     listed
@@ -199,7 +177,7 @@ fn part_row(
         "{path}: {of_group}{}. What is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
         counted(branch.triangles, "triangle")
     );
-    let [shown_parts, all] = count(tree, branch.is_material());
+    let [shown_parts, all] = count(tree, |leaf| leaf.is_material() == branch.is_material());
     let is_alone = branch.shown == branch.parts && shown_parts == branch.parts && all > branch.parts;
     let mut is_shown = branch.shown > 0;
     let mut action = None;

@@ -1,15 +1,11 @@
 //! Levels of detail (MSFT_lod): a node that has the extension is the first, and names the nodes that are the others.
 
 use std::collections::HashSet;
-use std::iter::successors;
 
 use ::gltf::json::{Index, Root};
 
 use super::nodes::{parents, walk};
 use geometry::casts::to_u32;
-
-/// How many nodes above one that has levels are looked at.
-const MOST_ABOVE: usize = 1 << 10;
 
 /// Places the other levels of nodes that the scene shows beside the first one, unless the scene shows them somewhere. Returns them.
 pub(super) fn place(root: &mut Root, levels: &[(usize, Vec<usize>)]) -> HashSet<usize> {
@@ -19,9 +15,8 @@ pub(super) fn place(root: &mut Root, levels: &[(usize, Vec<usize>)]) -> HashSet<
     let roots: Vec<usize> = root.scenes[scene].nodes.iter().map(|node| node.value()).collect();
     let shown: HashSet<usize> = walk(&root.nodes, &parents, &roots, &[]).into_iter().collect();
     for (node, ids) in levels.iter().filter(|(node, _)| shown.contains(node)) {
-        for &id in ids.iter().filter(|id| **id < parents.len()) {
-            let holds_first = successors(Some(*node), |&node| parents[node]).take(MOST_ABOVE).any(|node| node == id);
-            if holds_first || !others.insert(id) || shown.contains(&id) || parents[id].is_some() {
+        for &id in ids.iter().filter(|id| **id < parents.len() && *id != node) {
+            if !others.insert(id) || shown.contains(&id) || parents[id].is_some() {
                 continue;
             }
             // What the scene doesn't show can't hold the node that it is placed below.

@@ -58,7 +58,7 @@ fn other_levels_of_detail_are_placed_beside_the_first_and_shown_if_they_are_name
     draft.root["extensionsUsed"] = json!(["MSFT_lod"]);
     draft.root["nodes"] = json!([
         { "name": "group", "translation": [0, 7, 0], "children": [1] },
-        { "name": "near", "mesh": 0, "extensions": { "MSFT_lod": { "ids": [2, 0, 99, 1] } } },
+        { "name": "near", "mesh": 0, "extensions": { "MSFT_lod": { "ids": [2, 99, 1] } } },
         { "name": "far", "mesh": 1, "children": [3] },
         { "name": "bolt", "mesh": 1 },
         { "name": "near", "mesh": 1, "extensions": { "MSFT_lod": { "ids": [5] } } },
