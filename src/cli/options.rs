@@ -253,11 +253,10 @@ impl WeldOption {
 /// Which parts of a file are read.
 #[derive(Clone, Debug, Default, Args)]
 pub struct PartOptions {
-    /// Leave out the part or group of the file that has this name or path, as in `Body/Arm`, or a material, as in `material:Red`; may be
-    /// given several times. `info` lists the parts
+    /// Leave out the part, group or material of this name or path; may be given several times. `info` lists them
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     hide_part: Vec<String>,
-    /// Show only the part, group or material of the file that has this name, and others that are given so
+    /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
 }

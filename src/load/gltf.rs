@@ -24,7 +24,6 @@ mod gltf_error;
 mod instances;
 mod json;
 mod lenient;
-mod levels;
 mod lights;
 mod material_lists;
 mod material_source;

@@ -10,7 +10,7 @@ use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::read_error::ReadError;
-use super::selection::{Selection, choice, is_part_of};
+use super::selection::{Selection, choice, is_material, is_part_of};
 use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
@@ -158,7 +158,10 @@ pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMe
     if let Some(scene) = selected.scene.filter(|scene| scenes::number(&loaded.scenes, scene).is_none()) {
         return absent("scene", scene, loaded.scenes.clone(), "it has no scenes, so omit --scene");
     }
-    let is_unknown = |name: &&String| loaded.parts.iter().all(|part| !is_part_of(&part.name, name));
+    // The materials of parts that are left out aren't known.
+    let is_cut = loaded.parts.iter().any(|part| part.is_hidden && !is_material(&part.name));
+    let may_be = |name: &str| is_cut && is_material(name);
+    let is_unknown = |name: &&String| !may_be(name) && loaded.parts.iter().all(|part| !is_part_of(&part.name, name));
     if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown) {
         let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
         return absent("part", part, known, "it has no named parts, so omit --hide-part and --show-part");

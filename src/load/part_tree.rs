@@ -22,21 +22,6 @@ pub struct Branch {
     pub is_level: bool,
 }
 
-impl Branch {
-    /// Its own name.
-    pub fn label(&self) -> String {
-        match self.path.rsplit('/').collect::<Vec<_>>()[..] {
-            [".", own, ..] => format!("{own} alone"),
-            [own, ..] => own.to_owned(),
-            [] => String::new(),
-        }
-    }
-
-    pub fn is_material(&self) -> bool {
-        is_material(&self.path)
-    }
-}
-
 /// Returns the groups and parts: groups before what lies in them, otherwise in the order of the file.
 pub fn tree(parts: &[Part]) -> Vec<Branch> {
     let names = parts.iter().map(|part| &*part.name);
@@ -88,12 +73,12 @@ impl ShownParts {
         let (branch, changed) = (&tree[at], at..end(tree, at));
         let is_changed = |i: usize| changed.contains(&i) && (!is_shown || branch.is_level || !tree[i].is_level);
         let shown = |i: usize| if is_changed(i) { is_shown } else { tree[i].shown > 0 };
-        let is_other = |name: &String| is_material(name) != branch.is_material();
+        let is_other = |name: &String| is_material(name) != is_material(&branch.path);
         let lists_shown = is_shown && branch.is_level || !self.only.iter().all(is_other);
         self.only.retain(is_other);
         self.hidden.retain(is_other);
         let names = |mut whole: Vec<usize>| {
-            whole.retain(|at| tree[*at].is_material() == branch.is_material());
+            whole.retain(|at| is_material(&tree[*at].path) == is_material(&branch.path));
             whole.into_iter().map(|at| name(tree, &tree[at]))
         };
         // A group that is named doesn't show other levels.
@@ -140,20 +125,17 @@ mod tests {
     #[test]
     fn groups_come_before_what_lies_in_them_and_a_part_that_is_a_group_has_a_row_of_its_own() {
         let tree = tree(&parts(&["Car/Wheel", "Hat", "Car", "Car/Door/Knob", "material:Red"], &ShownParts::default()));
-        let rows =
-            tree.iter().map(|own| (own.path.as_str(), own.label(), own.depth, own.part, own.parts, own.triangles));
-        let row =
-            |path, label: &str, depth, part, parts, triangles| (path, label.to_owned(), depth, part, parts, triangles);
+        let rows = tree.iter().map(|own| (own.path.as_str(), own.depth, own.part, own.parts, own.triangles));
         assert_eq!(
             rows.collect::<Vec<_>>(),
             [
-                row("Car", "Car", 0, None, 3, 8),
-                row("Car/Wheel", "Wheel", 1, Some(0), 1, 1),
-                row("Car/.", "Car alone", 1, Some(2), 1, 3),
-                row("Car/Door", "Door", 1, None, 1, 4),
-                row("Car/Door/Knob", "Knob", 2, Some(3), 1, 4),
-                row("Hat", "Hat", 0, Some(1), 1, 2),
-                row("material:Red", "material:Red", 0, Some(4), 1, 5),
+                ("Car", 0, None, 3, 8),
+                ("Car/Wheel", 1, Some(0), 1, 1),
+                ("Car/.", 1, Some(2), 1, 3),
+                ("Car/Door", 1, None, 1, 4),
+                ("Car/Door/Knob", 2, Some(3), 1, 4),
+                ("Hat", 0, Some(1), 1, 2),
+                ("material:Red", 0, Some(4), 1, 5),
             ]
         );
         assert_eq!([0, 1, 3, 5].map(|at| end(&tree, at)), [5, 2, 5, 6]);

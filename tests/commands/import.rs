@@ -71,8 +71,11 @@ fn materials_are_left_out_and_levels_of_detail_are_chosen() {
     assert_eq!(triangles(&["--show-part", "car_LOD1"]), 1.0);
     assert_eq!(triangles(&["--show-part", "material:blue"]), 2.0);
     assert_eq!(triangles(&["--hide-part", "material:blue"]), 1.0);
+    let none_is_blue = ["--show-part", "car_LOD1", "--hide-part", "material:blue"];
+    assert_eq!(triangles(&none_is_blue), 1.0, "materials of parts that are left out aren't asked for");
     assert_eq!(info(&[&file])["parts"].as_array().expect("a list").len(), 2, "materials have a list of their own");
-    sentence(&["info", &file, "--hide-part", "material:green"], &["no part material:green", "material:red"]);
+    let plain = folder.write("plain.obj", text.replace("_LOD", " "));
+    sentence(&["info", &plain, "--hide-part", "material:green"], &["no part material:green", "material:red"]);
 }
 
 #[test]

@@ -21,18 +21,15 @@ const LONGEST: usize = 40;
 /// So many parts have a filter.
 const MANY: usize = 8;
 
-/// How far a part is right of the group that it lies in, in points, and how far at most.
+/// How far a part is right of the group that it lies in, in points, and how often at most.
 const INDENT: f32 = 12.0;
-const MOST_INDENT: f32 = 72.0;
-
-/// The width of the button that folds a group, in points.
-const FOLD_WIDTH: f32 = 16.0;
+const MOST_INDENTS: usize = 6;
 
 /// What is done with a part or a group: a place in the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PartAction {
-    Hide(usize),
-    Show(usize),
+    /// Shows it, or leaves it out.
+    Set(usize, bool),
     /// Shows it alone.
     Solo(usize),
     Frame(usize),
@@ -43,15 +40,13 @@ enum PartAction {
 impl App {
     /// A switch for each part and group, if the file has several. The mesh is loaded again without those that are hidden.
     pub(in crate::app) fn parts_section(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = self.document.as_ref().filter(|document| document.loaded.part_tree.len() > 1) else {
-            return;
-        };
+        let Some(document) = self.document.as_ref().filter(|document| document.loaded.parts.len() > 1) else { return };
         let tree = document.loaded.part_tree.clone();
         if !self.panels.open.title(ui, Section::Parts) {
             return;
         }
-        let [shown, all] = count(&tree, |_| true);
-        let picked = self.picked_branch(&tree);
+        let [shown, all] = [leaves(&tree).filter(|leaf| leaf.shown > 0).count(), leaves(&tree).count()];
+        let picked = self.picked_part();
         let filter = &mut self.panels.parts_filter;
         if all > MANY {
             let field =
@@ -62,18 +57,18 @@ impl App {
             filter.clear();
         }
         let filter = filter.to_lowercase();
-        let folded = &mut self.panels.folded_groups;
+        let (selected, folded) = (&*self.parts, &mut self.panels.folded_groups);
         let listed = listed(&tree, &filter, folded);
         let mut action = None;
         list(ui, "parts", listed.len(), (filter.len(), 0), |ui, row| {
             let at = listed[row];
-            let (response, chosen) = part_row(ui, &tree, at, picked == Some(at), folded);
+            let (response, chosen) = part_row(ui, &tree, at, (picked, selected), folded);
             action = chosen.or(action);
             response.context_menu(|ui| action = part_entries(ui, &tree, at).or(action));
             response
         });
         ui.horizontal(|ui| {
-            let button = ui.add_enabled(*self.parts != ShownParts::default(), egui::Button::new("Show all parts"));
+            let button = ui.add_enabled(*selected != ShownParts::default(), egui::Button::new("Show all parts"));
             if button.on_hover_text("Shows the parts that are hidden.").clicked() {
                 action = Some(PartAction::ShowAll);
             }
@@ -88,15 +83,11 @@ impl App {
         document.loaded.mesh.part_of(triangle).map(|part| part as usize)
     }
 
-    fn picked_branch(&self, tree: &[Branch]) -> Option<usize> {
-        let picked = self.picked_part()?;
-        tree.iter().position(|branch| branch.part == Some(picked))
-    }
-
     /// The menu of what was clicked with the right button in the picture.
     pub(in crate::app) fn part_menu(&mut self, ui: &mut egui::Ui) {
         let tree = self.document.as_ref().map(|document| document.loaded.part_tree.clone()).unwrap_or_default();
-        let picked = self.picked_branch(&tree).filter(|_| tree.len() > 1);
+        let picked = self.picked_part().filter(|_| leaves(&tree).count() > 1);
+        let picked = picked.and_then(|part| tree.iter().position(|branch| branch.part == Some(part)));
         let action = picked.and_then(|at| {
             ui.strong(shortened(&shown(&tree[at].path), LONGEST));
             part_entries(ui, &tree, at)
@@ -118,8 +109,7 @@ impl App {
 
     fn act_on_parts(&mut self, context: &egui::Context, tree: &[Branch], action: PartAction) {
         match action {
-            PartAction::Hide(at) => Arc::make_mut(&mut self.parts).set(tree, at, false),
-            PartAction::Show(at) => Arc::make_mut(&mut self.parts).set(tree, at, true),
+            PartAction::Set(at, is_shown) => Arc::make_mut(&mut self.parts).set(tree, at, is_shown),
             PartAction::Solo(at) => self.parts = Arc::new(ShownParts::alone(&name(tree, &tree[at]))),
             PartAction::Frame(at) => self.frame_part(tree, at),
             PartAction::CopyName(at) => context.copy_text(name(tree, &tree[at])),
@@ -129,26 +119,16 @@ impl App {
 
     fn frame_part(&mut self, tree: &[Branch], at: usize) {
         let Some(document) = &self.document else { return };
-        let mesh = document.shown().0;
-        let parts: HashSet<_> = tree[at..end(tree, at)].iter().filter_map(|branch| branch.part).collect();
-        let is_own = |material: &str| is_part_of(&[MATERIAL, material].concat(), &tree[at].path);
-        let of_materials = mesh.materials.iter().filter(|material| is_own(&material.name));
-        let of_parts = mesh.part_ranges.iter().filter(|range| parts.contains(&(range.part as usize)));
-        let triangles: Vec<Range<u32>> = of_materials
-            .map(|material| material.triangles.clone())
-            .chain(of_parts.map(|range| range.triangles.clone()))
-            .collect();
-        if let Some(bounds) = mesh.bounds_of(triangles.into_iter().flatten()) {
+        let (mesh, parts, own) = (document.shown().0, &document.loaded.parts, name(tree, &tree[at]));
+        let of_parts = mesh.part_ranges.iter().filter(|range| is_part_of(&parts[range.part as usize].name, &own));
+        let of_materials =
+            mesh.materials.iter().filter(|material| is_part_of(&[MATERIAL, &material.name].concat(), &own));
+        let ranges = of_materials.map(|own| &own.triangles).chain(of_parts.map(|own| &own.triangles));
+        if let Some(bounds) = mesh.bounds_of(ranges.flat_map(Range::clone)) {
             let size = framed_size(self.viewport.picture.size(), &self.settings);
             self.viewport.camera.frame(&bounds, size);
         }
     }
-}
-
-/// How many of these parts are shown, and how many there are.
-fn count(tree: &[Branch], is_counted: impl Fn(&Branch) -> bool) -> [usize; 2] {
-    let counted = || leaves(tree).filter(|leaf| is_counted(leaf));
-    [counted().filter(|leaf| leaf.shown > 0).count(), counted().count()]
 }
 
 /// The places of the rows whose paths contain `filter`. What lies in groups that are folded isn't listed, unless it is searched.
@@ -167,78 +147,72 @@ fn part_row(
     ui: &mut egui::Ui,
     tree: &[Branch],
     at: usize,
-    is_picked: bool,
+    (picked, selected): (Option<usize>, &ShownParts),
     folded: &mut HashSet<String>,
 ) -> (egui::Response, Option<PartAction>) {
     let branch = &tree[at];
-    let path = shown(&branch.path);
-    let of_group = if branch.part.is_some() { String::new() } else { format!("{} parts, ", branch.parts) };
+    let (path, is_group) = (shown(&branch.path), branch.part.is_none());
     let hover = format!(
-        "{path}: {of_group}{}. What is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
+        "{path}: {}{}. What is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
+        if is_group { format!("{} parts, ", branch.parts) } else { String::new() },
         counted(branch.triangles, "triangle")
     );
-    let [shown_parts, all] = count(tree, |leaf| leaf.is_material() == branch.is_material());
-    let is_alone = branch.shown == branch.parts && shown_parts == branch.parts && all > branch.parts;
+    let is_alone = selected.only.len() == 1 && *selected == ShownParts::alone(&name(tree, branch));
     let mut is_shown = branch.shown > 0;
     let mut action = None;
     let height = ui.spacing().interact_size.y;
     let from_right = egui::Layout::right_to_left(egui::Align::Center);
     let row = egui::vec2(ui.available_width(), height);
     let response = ui.allocate_ui_with_layout(row, from_right, |ui| {
-        let alone = ui.add(switch_button(is_alone, "Solo"));
-        let label = format!("Show only {path}");
-        alone.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_alone, &label));
-        if alone.on_hover_text("Shows this alone; a second click shows all (--show-part).").clicked() {
+        let hover_alone = "Shows this alone; a second click shows all (--show-part).";
+        if named_switch(ui, is_alone, "Solo", &format!("Show only {path}"), hover_alone) {
             action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(at) });
         }
         ui.weak(grouped(branch.triangles));
-        let name = egui::RichText::new(shortened(&shown(&branch.label()), LONGEST));
-        let name = if is_picked { name.strong() } else { name };
+        let label = match branch.path.rsplit('/').next() {
+            Some(".") | None => "itself",
+            Some(own) => own,
+        };
+        let label = egui::RichText::new(shortened(&shown(label), LONGEST));
+        let label = if picked.is_some() && picked == branch.part { label.strong() } else { label };
         let layout = egui::Layout::left_to_right(egui::Align::Center);
         ui.with_layout(layout, |ui| {
-            ui.add_space((branch.depth as f32 * INDENT).min(MOST_INDENT));
-            fold_button(ui, branch, &path, folded);
+            ui.add_space(branch.depth.min(MOST_INDENTS) as f32 * INDENT);
+            let is_open = !folded.contains(&branch.path);
+            let (sign, hover_fold) = (if is_open { "-" } else { "+" }, "Lists what lies in this group, or not.");
+            if is_group
+                && named_switch(ui, is_open, sign, &format!("Unfold {path}"), hover_fold)
+                && !folded.remove(&branch.path)
+            {
+                folded.insert(branch.path.clone());
+            }
             let is_partly_shown = is_shown && branch.shown < branch.parts;
-            ui.add(egui::Checkbox::new(&mut is_shown, name).indeterminate(is_partly_shown)).on_hover_text(hover)
+            ui.add(egui::Checkbox::new(&mut is_shown, label).indeterminate(is_partly_shown)).on_hover_text(hover)
         })
         .inner
     });
     if response.inner.changed() {
-        action = Some(if is_shown { PartAction::Show(at) } else { PartAction::Hide(at) });
+        action = Some(PartAction::Set(at, is_shown));
     }
     (response.inner, action)
 }
 
-/// The button that folds a group.
-fn fold_button(ui: &mut egui::Ui, branch: &Branch, path: &str, folded: &mut HashSet<String>) {
-    if branch.part.is_some() {
-        return;
-    }
-    let is_open = !folded.contains(&branch.path);
-    let button = egui::Button::new(if is_open { "-" } else { "+" }).min_size(egui::vec2(FOLD_WIDTH, 0.0));
-    let button = ui.add(button);
-    let label = format!("Unfold {path}");
-    button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_open, &label));
-    if button.on_hover_text("Lists what lies in this group, or not.").clicked() && !folded.remove(&branch.path) {
-        folded.insert(branch.path.clone());
-    }
+/// A button that stays pressed while something is on, with a name that says what it is about. Returns whether it was clicked.
+fn named_switch(ui: &mut egui::Ui, is_on: bool, text: &str, name: &str, hover: &str) -> bool {
+    let button = ui.add(switch_button(is_on, text));
+    button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, name));
+    button.on_hover_text(hover).clicked()
 }
 
 /// What can be done with a part or a group.
 fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize) -> Option<PartAction> {
     let (branch, are_hidden) = (&tree[at], leaves(tree).any(|leaf| leaf.shown == 0));
-    let what = if branch.part.is_none() {
-        "group"
-    } else if branch.is_material() {
-        "material"
-    } else {
-        "part"
-    };
+    let (is_shown, what) = (branch.shown > 0, if branch.part.is_some() { "part" } else { "group" });
     let entries = [
-        (PartAction::Frame(at), format!("Frame this {what}"), branch.shown > 0),
+        (PartAction::Frame(at), format!("Frame this {what}"), is_shown),
         (PartAction::Solo(at), format!("Show only this {what}"), true),
-        (PartAction::Hide(at), format!("Hide this {what}"), branch.shown > 0),
-        (PartAction::Show(at), format!("Show this {what}"), branch.shown < branch.parts),
+        (PartAction::Set(at, false), format!("Hide this {what}"), is_shown),
+        (PartAction::Set(at, true), format!("Show this {what}"), branch.shown < branch.parts),
         (PartAction::CopyName(at), "Copy its name".to_owned(), true),
         (PartAction::ShowAll, "Show all parts".to_owned(), are_hidden),
     ];

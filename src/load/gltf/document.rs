@@ -19,7 +19,7 @@ use super::reach::Reach;
 use super::repair::Settled;
 use super::scenes::Scenes;
 use super::schema_check::Faults;
-use super::{GltfError, extension_table, extensions, glb, json, levels, repair, schema, schema_check, variants};
+use super::{GltfError, extension_table, extensions, glb, json, repair, schema, schema_check, variants};
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
 use geometry::mesh::{Borrowed, Light};
@@ -87,7 +87,7 @@ pub(super) fn parse(
     if !requires_draco {
         extensions.leave_out_packed(&root);
     }
-    let levels = levels::place(&mut root, &extensions.levels);
+    let levels = node_parts::place_levels(&mut root, &extensions.levels);
     let mut reach = Reach::new(&root, &faults, hiding);
     let parts = node_parts::take(&mut root, &extensions.instances, &reach, &levels, &selected, budget)?;
     if parts.is_cut {

@@ -1,21 +1,22 @@
-//! The nodes of a scene that have a mesh, as parts that can be left out.
+//! The nodes of a scene that have a mesh, as parts that can be left out, and the nodes that are levels of detail (MSFT_lod): one that has
+//! the extension is the first, and names the others.
 
 use std::collections::{HashMap, HashSet};
 
 use ::gltf::Semantic;
 use ::gltf::json::mesh::Primitive;
 use ::gltf::json::validation::Checked;
-use ::gltf::json::{Mesh, Root};
+use ::gltf::json::{Index, Mesh, Root};
 use ::gltf::mesh::Mode;
 
 use super::extensions::InstancingExtension;
-use super::nodes::parents;
+use super::nodes::{parents, walk};
 use super::reach::{Reach, attribute};
 use super::{GltfError, primitive};
 use crate::memory_budget::Budget;
 use crate::parts::{Parts, node_path};
 use crate::selection::Selection;
-use geometry::casts::to_usize;
+use geometry::casts::{to_u32, to_usize};
 
 /// The parts of a scene.
 #[derive(Debug, Default)]
@@ -63,6 +64,28 @@ pub(super) fn take(
         (root.nodes[node].mesh, root.nodes[node].skin) = (None, None);
     }
     Ok(NodeParts { list, of_node, is_cut })
+}
+
+/// Places the other levels of nodes that the scene shows beside the first one, unless the scene shows them somewhere. Returns them.
+pub(super) fn place_levels(root: &mut Root, levels: &[(usize, Vec<usize>)]) -> HashSet<usize> {
+    let mut others = HashSet::new();
+    let Some(scene) = root.scene.map(|scene| scene.value()).filter(|_| !levels.is_empty()) else { return others };
+    let parents = parents(&root.nodes, |_| {});
+    let roots: Vec<usize> = root.scenes[scene].nodes.iter().map(|node| node.value()).collect();
+    let shown: HashSet<usize> = walk(&root.nodes, &parents, &roots, &[]).into_iter().collect();
+    for (node, ids) in levels.iter().filter(|(node, _)| shown.contains(node)) {
+        for &id in ids.iter().filter(|id| **id < parents.len() && *id != node) {
+            if !others.insert(id) || shown.contains(&id) || parents[id].is_some() {
+                continue;
+            }
+            // What the scene doesn't show can't hold the node that it is placed below.
+            match parents[*node] {
+                Some(parent) => root.nodes[parent].children.get_or_insert_default().push(Index::new(to_u32(id))),
+                None => root.scenes[scene].nodes.push(Index::new(to_u32(id))),
+            }
+        }
+    }
+    others
 }
 
 /// Returns how many triangles a mesh has, with those of strips that only connect parts.
