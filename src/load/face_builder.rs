@@ -9,7 +9,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
 use super::notes::{Notes, counts};
-use super::parts::{Part, Parts};
+use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
 use super::recent_corners::{RecentCorners, VertexNumbers};
@@ -90,17 +90,6 @@ counts! {
         maybe_overlapping =>
             "polygons that have no area, cross themselves or are too large, cut into triangles that may overlap";
     }
-}
-
-/// A mesh, and what belongs to it.
-pub(super) struct Finished {
-    pub mesh: Mesh,
-    /// Each corner's number.
-    pub numbers: Vec<u32>,
-    pub notes: Notes,
-    pub parts: Vec<Part>,
-    /// Whether all of it is refined.
-    pub is_refined: bool,
 }
 
 impl<'a> FaceBuilder<'a> {
@@ -385,16 +374,15 @@ impl<'a> FaceBuilder<'a> {
         self.end_cage(None, progress)?;
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
         let are_colored = self.are_colored;
-        let Finished { mut mesh, numbers, mut notes, parts, is_refined } =
-            self.finish_numbered(name, holds, progress)?;
+        let (mut loaded, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
         let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
-        if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
-            tangents::with_details(&mut mesh, colors, &numbers, &mut notes, memory, progress)?;
+        if let Some(colors) = colors.filter(|_| are_colored || loaded.mesh.materials.iter().any(has_normals)) {
+            tangents::with_details(&mut loaded.mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
-        Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, is_refined, ..LoadedMesh::default() })
+        Ok(LoadedMesh { warnings: notes.into_warnings(), file_bytes, ..loaded })
     }
 
-    /// Builds the mesh as [`finish`](Self::finish) does, with what the reader adds to it.
+    /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the notes for what the reader adds to it.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
@@ -403,7 +391,7 @@ impl<'a> FaceBuilder<'a> {
         name: &str,
         holds: String,
         progress: &Progress,
-    ) -> Result<Finished, ReadError> {
+    ) -> Result<(LoadedMesh, Vec<u32>, Notes), ReadError> {
         self.end_cage(None, progress)?;
         self.parts.enter_materials(&mut self.builder, self.memory)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
@@ -425,7 +413,8 @@ impl<'a> FaceBuilder<'a> {
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         let parts = self.parts.finish(&mut mesh, &mut self.notes);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
-        Ok(Finished { mesh, numbers, notes: self.notes, parts, is_refined: self.is_refined == Some(true) })
+        let is_refined = self.is_refined == Some(true);
+        Ok((LoadedMesh { mesh, parts, is_refined, ..LoadedMesh::default() }, numbers, self.notes))
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.

@@ -21,7 +21,6 @@ mod surfaces;
 mod textures;
 mod vertices;
 
-use super::face_builder::Finished;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
@@ -81,19 +80,10 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(placed);
     drop(scene);
     progress.set(0.8);
-    let finished = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
-    let Finished { mut mesh, numbers, mut notes, parts, is_refined } = finished;
-    RigBuilder::complete(&mut mesh, numbers, details, binder, &mut notes, &budget, progress)?;
+    let (mut loaded, numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
+    RigBuilder::complete(&mut loaded.mesh, numbers, details, binder, &mut notes, &budget, progress)?;
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh {
-        mesh,
-        warnings: notes.into_warnings(),
-        parts,
-        files,
-        file_bytes,
-        is_refined,
-        ..LoadedMesh::default()
-    })
+    Ok(LoadedMesh { warnings: notes.into_warnings(), files, file_bytes, ..loaded })
 }
 
 #[cfg(test)]

@@ -81,8 +81,6 @@ fn gather<'a>(
         corners: Vec::new(),
         found: Counts::default(),
     };
-    // Faces before the first object or group belong to a part too.
-    reader.enter_part(0, b"")?;
     if !vertices.colors.is_empty() {
         reader.faces.color()?;
     }
@@ -251,6 +249,7 @@ impl Reader<'_, '_> {
                 }
                 Found::Absent { line } => {
                     self.found.faces += 1;
+                    self.begin_parts()?;
                     self.faces.leave_out(FilePosition::Line(*line));
                 }
                 Found::Smoothing(group) => self.smoothing.iter_mut().for_each(|smoothing| smoothing.group = *group),
@@ -266,6 +265,7 @@ impl Reader<'_, '_> {
     /// Takes faces that are triangles, and their corners.
     fn take_triangles(&mut self, faces: &[Found], triangles: &[[VertexNumbers; 3]]) -> Result<(), ReadError> {
         self.found.faces += faces.len();
+        self.begin_parts()?;
         let mut next = 0;
         while next < faces.len() {
             next += self.add_triangles(&triangles[next..])?;
@@ -285,8 +285,14 @@ impl Reader<'_, '_> {
         self.faces.enter_part(&path, 0)
     }
 
+    /// Enters the part of faces that belong to none, if there was none before.
+    fn begin_parts(&mut self) -> Result<(), ReadError> {
+        if self.faces.parts.have_begun() { Ok(()) } else { self.faces.enter_part(b"", 0) }
+    }
+
     /// Adds a face with these corners.
     fn add_face(&mut self, numbers: &[VertexNumbers], place: FilePosition) -> Result<(), ReadError> {
+        self.begin_parts()?;
         let mut corners = std::mem::take(&mut self.corners);
         corners.clear();
         for &vertex in numbers {

@@ -122,6 +122,11 @@ impl Parts {
         self.current.map(to_u32)
     }
 
+    /// Whether any part was entered.
+    pub(super) fn have_begun(&self) -> bool {
+        !self.found.is_empty()
+    }
+
     /// Counts triangles of the current part. Returns whether they are left out.
     pub(super) fn leave_out(&mut self, triangles: usize) -> bool {
         let Some(part) = self.current.map(|number| &mut self.found[number]) else { return false };

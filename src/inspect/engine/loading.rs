@@ -16,7 +16,7 @@ use load::{
 };
 
 /// A mesh with its topology, and how long both took.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Loaded {
     pub source: Source,
     /// The preparation that was requested. The crease band may have become narrower than that.
@@ -47,23 +47,7 @@ pub struct Loaded {
 impl Loaded {
     /// A mesh that no file has.
     pub fn from_mesh(mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
-        Self {
-            source: Source::default(),
-            preparation: Preparation::default(),
-            crease_band: CreaseBand::default(),
-            read: mesh.clone(),
-            mesh,
-            warnings: Vec::new(),
-            variants: Vec::new(),
-            scenes: Vec::new(),
-            scene: None,
-            parts: Arc::default(),
-            part_tree: Arc::default(),
-            files: Vec::new(),
-            topology,
-            load_ms: 0.0,
-            topology_ms: 0.0,
-        }
+        Self { read: mesh.clone(), mesh, topology, ..Self::default() }
     }
 
     /// Returns this mesh at a moment of one of its clips, deformed on the CPU. Without a moment it is at rest.
