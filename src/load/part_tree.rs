@@ -18,8 +18,8 @@ pub struct Branch {
     pub parts: usize,
     pub shown: usize,
     pub triangles: u64,
-    /// Whether it is a level of detail other than the first, or lies in one.
-    pub is_level: bool,
+    /// How much of its path is that of another level of detail than the first, as [`Part::level`].
+    level: usize,
 }
 
 /// Returns the groups and parts: groups before what lies in them, otherwise in the order of the file.
@@ -41,7 +41,7 @@ pub fn tree(parts: &[Part]) -> Vec<Branch> {
                 parts: 0,
                 shown: 0,
                 triangles: 0,
-                is_level: (1..=end).contains(&part.level),
+                level: if part.level <= end { part.level } else { 0 },
             });
             branch.parts += 1;
             branch.shown += usize::from(!part.is_hidden);
@@ -70,11 +70,11 @@ pub fn name(tree: &[Branch], branch: &Branch) -> String {
 impl ShownParts {
     /// Shows a branch, or leaves it out. Levels of detail other than the first are shown only if the branch is one, or lies in one.
     pub fn set(&mut self, tree: &[Branch], at: usize, is_shown: bool) {
-        let (branch, changed) = (&tree[at], at..end(tree, at));
-        let is_changed = |i: usize| changed.contains(&i) && (!is_shown || branch.is_level || !tree[i].is_level);
-        let shown = |i: usize| if is_changed(i) { is_shown } else { tree[i].shown > 0 };
+        let (branch, changed, before) = (&tree[at], at..end(tree, at), self.clone());
+        let is_changed = |i: usize| changed.contains(&i) && (!is_shown || branch.level > 0 || tree[i].level == 0);
+        let shown = |i: usize| if is_changed(i) { is_shown } else { !before.hide(&tree[i].path, tree[i].level) };
         let is_other = |name: &String| is_material(name) != is_material(&branch.path);
-        let lists_shown = is_shown && branch.is_level || !self.only.iter().all(is_other);
+        let lists_shown = is_shown && branch.level > 0 || !self.only.iter().all(is_other);
         self.only.retain(is_other);
         self.hidden.retain(is_other);
         let names = |mut whole: Vec<usize>| {
@@ -82,14 +82,14 @@ impl ShownParts {
             whole.into_iter().map(|at| name(tree, &tree[at]))
         };
         // A group that is named doesn't show other levels.
-        let only = whole(tree, |group, i| shown(i) && tree[i].is_level == group.is_level);
+        let only = whole(tree, |group, i| shown(i) && tree[i].level == group.level);
         let mut only = names(only).peekable();
         // Without a name all parts would be shown.
         if lists_shown && only.peek().is_some() {
             self.only.extend(only);
         } else {
             let mut hidden = whole(tree, |_, i| !shown(i));
-            hidden.retain(|at| !tree[*at].is_level);
+            hidden.retain(|at| tree[*at].level == 0);
             self.hidden.extend(names(hidden));
         }
     }

@@ -2,7 +2,6 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
-use std::sync::Arc;
 
 use crate::app::App;
 use crate::app::sections::Section;
@@ -46,7 +45,7 @@ impl App {
             return;
         }
         let [shown, all] = [leaves(&tree).filter(|leaf| leaf.shown > 0).count(), leaves(&tree).count()];
-        let picked = self.picked_part();
+        let (picked, selected) = (self.picked_part(), self.preparation().parts);
         let filter = &mut self.panels.parts_filter;
         if all > MANY {
             let field =
@@ -57,18 +56,18 @@ impl App {
             filter.clear();
         }
         let filter = filter.to_lowercase();
-        let (selected, folded) = (&*self.parts, &mut self.panels.folded_groups);
+        let folded = &mut self.panels.folded_groups;
         let listed = listed(&tree, &filter, folded);
         let mut action = None;
         list(ui, "parts", listed.len(), (filter.len(), 0), |ui, row| {
             let at = listed[row];
-            let (response, chosen) = part_row(ui, &tree, at, (picked, selected), folded);
+            let (response, chosen) = part_row(ui, &tree, at, (picked, &selected), folded);
             action = chosen.or(action);
             response.context_menu(|ui| action = part_entries(ui, &tree, at).or(action));
             response
         });
         ui.horizontal(|ui| {
-            let button = ui.add_enabled(*selected != ShownParts::default(), egui::Button::new("Show all parts"));
+            let button = ui.add_enabled(selected != ShownParts::default(), egui::Button::new("Show all parts"));
             if button.on_hover_text("Shows the parts that are hidden.").clicked() {
                 action = Some(PartAction::ShowAll);
             }
@@ -108,13 +107,15 @@ impl App {
     }
 
     fn act_on_parts(&mut self, context: &egui::Context, tree: &[Branch], action: PartAction) {
+        let mut parts = self.preparation().parts;
         match action {
-            PartAction::Set(at, is_shown) => Arc::make_mut(&mut self.parts).set(tree, at, is_shown),
-            PartAction::Solo(at) => self.parts = Arc::new(ShownParts::alone(&name(tree, &tree[at]))),
+            PartAction::Set(at, is_shown) => parts.set(tree, at, is_shown),
+            PartAction::Solo(at) => parts = ShownParts::alone(&name(tree, &tree[at])),
+            PartAction::ShowAll => parts = ShownParts::default(),
             PartAction::Frame(at) => self.frame_part(tree, at),
             PartAction::CopyName(at) => context.copy_text(name(tree, &tree[at])),
-            PartAction::ShowAll => self.parts = Arc::default(),
         }
+        self.prepare(context, |preparation| preparation.parts = parts);
     }
 
     fn frame_part(&mut self, tree: &[Branch], at: usize) {
