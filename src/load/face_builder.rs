@@ -23,7 +23,7 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, Mesh, Slot};
+use geometry::mesh::{CornerDetail, Material, Slot};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
