@@ -120,8 +120,8 @@ impl App {
         self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_companions()
     }
 
-    /// Takes over how a mesh that was opened is prepared. This isn't a step of undo: all steps have this mesh's preparation from now on,
-    /// and no files that were about another one.
+    /// Takes over how a mesh that was opened is prepared. This isn't a step of undo: all steps have this mesh's preparation from
+    /// now on, and no files that were about another one.
     pub(super) fn take_preparation(&mut self) {
         let Undoable { preparation, settings, .. } = self.undoable();
         self.takes_back = false;

@@ -382,7 +382,7 @@ impl<'a> FaceBuilder<'a> {
         Ok(LoadedMesh { warnings: notes.into_warnings(), file_bytes, ..loaded })
     }
 
-    /// Builds the mesh as [`finish`](Self::finish) does, and returns each corner's number and the notes for what the reader adds to it.
+    /// Builds the mesh as [`finish`](Self::finish) does; returns each corner's number too, and the notes, for what the reader adds.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).

@@ -68,7 +68,7 @@ pub fn name(tree: &[Branch], branch: &Branch) -> String {
 }
 
 impl ShownParts {
-    /// Shows a branch, or leaves it out. Levels of detail other than the first are shown only if the branch is one, or lies in one.
+    /// Shows a branch, or leaves it out. Further levels of detail are shown only if the branch is one, or lies in one.
     pub fn set(&mut self, tree: &[Branch], at: usize, is_shown: bool) {
         let (branch, changed, before) = (&tree[at], at..end(tree, at), self.clone());
         let is_changed = |i: usize| changed.contains(&i) && (!is_shown || branch.level > 0 || tree[i].level == 0);

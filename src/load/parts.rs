@@ -1,7 +1,7 @@
-//! The parts of a file: its objects and groups, its solids, its nodes and its materials, by name. Those that are hidden are left out.
+//! The parts of a file by name: objects and groups, solids, nodes and materials. Those that are hidden are left out.
 //!
-//! A part's name is its path: the names of what it lies in, from the outermost, and its own, with slashes between them. A name that has
-//! a slash is therefore several. Names that are empty don't count, and parts of one path are one part.
+//! A part's name is its path: the names of what it lies in, from the outermost, and its own, with slashes between them. A name
+//! that has a slash is therefore several. Names that are empty don't count, and parts of one path are one part.
 
 use std::collections::HashMap;
 
@@ -39,7 +39,7 @@ pub struct Part {
     pub triangles: u32,
     #[serde(rename = "hidden")]
     pub is_hidden: bool,
-    /// The length of that start of the name, in bytes, which is the path of a level of detail other than the first; 0 if there is none.
+    /// The length in bytes of that start of the name that is the path of a level of detail other than the first, or 0.
     #[serde(skip)]
     pub level: usize,
 }
@@ -91,7 +91,7 @@ impl Parts {
         Ok(())
     }
 
-    /// How much of a path is that of a further level, as its names say: `Car_LOD1` is one if there was another level of `Car_LOD` before.
+    /// How much of a path is that of a further level by its names: `Car_LOD1`, if there was another level of `Car_LOD` before.
     fn named_level(&mut self, path: &str) -> usize {
         let is_further = |end: &usize| {
             let common = path[..*end].trim_end_matches(|c: char| c.is_ascii_digit());
@@ -105,7 +105,7 @@ impl Parts {
         ends(path).find(is_further).unwrap_or(0)
     }
 
-    /// Enters the materials as parts, if there are several or some are selected, and leaves out the triangles of those that are hidden.
+    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones.
     pub(super) fn enter_materials(&mut self, builder: &mut MeshBuilder, budget: &Budget) -> Result<(), MemoryRefused> {
         let mut selected = self.selected.hidden.iter().chain(&self.selected.only);
         if builder.used_materials() < 2 && !selected.any(|name| is_material(name)) {
@@ -139,8 +139,8 @@ impl Parts {
         self.current.is_some_and(|number| self.found[number].is_hidden)
     }
 
-    /// Returns the parts that have triangles, and makes the mesh's ranges, which name parts that were [current](Self::current), places
-    /// among them. `notes` gets how often a part was entered that is one too many, and how many levels of detail are left out.
+    /// Returns the parts that have triangles, and makes the mesh's ranges, which name parts that were [current](Self::current),
+    /// places among them. `notes` gets how often a part too many was entered, and how many levels of detail are left out.
     pub(super) fn finish(mut self, mesh: &mut Mesh, notes: &mut Notes) -> Vec<Part> {
         let mut listed = 0;
         let places = self.found.iter().map(|part| {
@@ -184,8 +184,8 @@ fn join(path: &mut String, name: &str, default: &str) {
     }
 }
 
-/// Returns a node's path, and how much of it is that of a further [level](Part::level). `nodes` are the node and those that it lies in,
-/// from the innermost: their names, and whether each is such a level.
+/// Returns a node's path, and how much of it is that of a further [level](Part::level). `nodes` are the node and those that it
+/// lies in, from the innermost: their names, and whether each is such a level.
 pub(super) fn node_path<'a>(nodes: impl Iterator<Item = (&'a str, bool)>) -> (String, usize) {
     let nodes: Vec<_> = nodes.take(MOST_ABOVE).collect();
     let (mut path, mut level) = (String::new(), 0);

@@ -33,8 +33,8 @@ impl ShownParts {
         Self { hidden: Vec::new(), only: vec![name.to_owned()] }
     }
 
-    /// Whether a part is left out, by its path. The start of the path that has this length, unless that is 0, is a further level of
-    /// detail: it is shown only if a name means it, and not all of what it lies in.
+    /// Whether a part is left out, by its path. The start of the path that has this length, unless that is 0, is a further level
+    /// of detail: it is shown only if a name means it, and not all of what it lies in.
     pub(super) fn hide(&self, path: &str, level: usize) -> bool {
         let above = path[..level].rsplit_once('/').map_or("", |(above, _)| above);
         let is_named = |name: &String| is_part_of(path, name) && (level == 0 || !is_part_of(above, name));
@@ -51,8 +51,9 @@ pub fn is_material(name: &str) -> bool {
     name.starts_with(MATERIAL)
 }
 
-/// Whether a name that a user gave means a part, by its path: some names of the path that follow one another. A name that begins with a
-/// slash begins with the first one, and one that ends in `/.` ends with the last one: it means a part without what lies in it.
+/// Whether a name that a user gave means a part, by its path: some names of the path that follow one another. A name that begins
+/// with a slash begins with the first one, and one that ends in `/.` ends with the last one: it means a part without what lies in
+/// it.
 pub fn is_part_of(path: &str, name: &str) -> bool {
     is_material(path) == is_material(name) && format!("//{path}/./").contains(&format!("/{name}/"))
 }

@@ -125,8 +125,8 @@ impl App {
         Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
     }
 
-    /// Loads the mesh again if its normals, its axis or its unit were changed, also by undo. While something is dragged, and while another
-    /// mesh is being loaded, it waits.
+    /// Loads the mesh again if its normals, its axis or its unit were changed, also by undo. While something is dragged, and
+    /// while another mesh is being loaded, it waits.
     pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
         let opens_another = self.jobs.load().is_some_and(|load| !load.keep_view);
         if self.document.is_none() || opens_another || context.egui_is_using_pointer() {

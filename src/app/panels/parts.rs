@@ -142,8 +142,8 @@ fn listed(tree: &[Branch], filter: &str, folded: &HashSet<String>) -> Vec<usize>
     listed
 }
 
-/// The row of a part or group: a button that folds it, whether it is shown, its triangles, and a button that shows it alone. Returns the
-/// switch, and what is to be done.
+/// The row of a part or group: a button that folds it, whether it is shown, its triangles, and a button that shows it alone.
+/// Returns the switch, and what is to be done.
 fn part_row(
     ui: &mut egui::Ui,
     tree: &[Branch],

@@ -113,8 +113,8 @@ pub(super) fn is_on(element: &Element, name: &str) -> bool {
     is_set(element, name).unwrap_or(true)
 }
 
-/// Returns which nodes the file hides: those that are switched off, or whose display layer is, and those below them that inherit it.
-/// None are if hidden nodes are shown.
+/// Returns which nodes the file hides: those that are switched off, or whose display layer is, and those below them that inherit
+/// it. None are if hidden nodes are shown.
 fn hidden(scene: &Scene, show_hidden: bool, order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
     let mut is_off: Vec<bool> = scene.nodes.into_iter().map(|node| !is_on(&node.element, "Visibility")).collect();
     let layers = scene.display_layers.into_iter().filter(|layer| !is_on(&layer.element, "Show"));

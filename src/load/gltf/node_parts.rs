@@ -1,5 +1,5 @@
-//! The nodes of a scene that have a mesh, as parts that can be left out, and the nodes that are levels of detail (MSFT_lod): one that has
-//! the extension is the first, and names the others.
+//! The nodes of a scene that have a mesh, as parts that can be left out, and the nodes that are levels of detail (MSFT_lod): one
+//! that has the extension is the first, and names the others.
 
 use std::collections::{HashMap, HashSet};
 
@@ -28,8 +28,8 @@ pub(super) struct NodeParts {
     pub is_cut: bool,
 }
 
-/// Lists the nodes that the scene shows and that have a mesh; a node without a name has that of its mesh. Nodes of the same path are
-/// one part. Takes the meshes of the parts that aren't `selected`, as if the file didn't have them: their data isn't looked at.
+/// Lists the nodes that the scene shows and that have a mesh; a node without a name has that of its mesh. Nodes of one path are
+/// one part. Takes the meshes of parts that aren't `selected`, as if the file didn't have them: their data isn't looked at.
 ///
 /// # Errors
 /// [`GltfError::TooLarge`].
@@ -66,7 +66,7 @@ pub(super) fn take(
     Ok(NodeParts { list, of_node, is_cut })
 }
 
-/// Places the other levels of nodes that the scene shows beside the first one, unless the scene shows them somewhere. Returns them.
+/// Places the other levels of nodes that the scene shows beside the first, unless the scene shows them. Returns them.
 pub(super) fn place_levels(root: &mut Root, levels: &[(usize, Vec<usize>)]) -> HashSet<usize> {
     let mut others = HashSet::new();
     let Some(scene) = root.scene.map(|scene| scene.value()).filter(|_| !levels.is_empty()) else { return others };
