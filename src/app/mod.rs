@@ -28,8 +28,8 @@ use inspect::engine::{Engine, Loaded};
 use inspect::measure::{Cracks, Sizes};
 use inspect::render::Camera;
 use inspect::settings::{Settings, SplitSide};
+use load::Source;
 use load::files::Limits;
-use load::{ShownParts, Source};
 
 use commands::Commands;
 use dialogs::Dialogs;
@@ -54,8 +54,6 @@ pub struct App {
     render_state: egui_wgpu::RenderState,
     painting: Painting,
     settings: Settings,
-    /// Which parts of the file are to be shown.
-    parts: Arc<ShownParts>,
     /// The meshes that were dropped on the window together.
     dropped: Vec<PathBuf>,
     history: History<Undoable>,
@@ -114,7 +112,6 @@ impl App {
             render_state,
             painting,
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
-            parts: Arc::default(),
             dropped: Vec::new(),
             history: History::default(),
             takes_back: false,

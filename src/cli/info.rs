@@ -16,7 +16,9 @@ use geometry::numbers::exact;
 use geometry::progress::{Cancelled, Progress};
 use inspect::engine::{self, Loaded};
 use load::Source;
+use load::part_tree::{Branch, tree};
 use load::parts::Part;
+use load::selection::is_material;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -64,7 +66,7 @@ pub(super) struct Info {
     pub scenes: Vec<String>,
     /// Which of them this is; none if the file has no scenes.
     pub scene: Option<usize>,
-    /// The parts that the file has; empty for formats without any.
+    /// The parts that the file has, without its materials; empty for formats without any.
     pub parts: Vec<Part>,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
@@ -143,7 +145,7 @@ impl Info {
             variants: loaded.variants.clone(),
             scenes: loaded.scenes.clone(),
             scene: loaded.scene,
-            parts: loaded.parts.to_vec(),
+            parts: loaded.parts.iter().filter(|part| !is_material(&part.name)).cloned().collect(),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: joins?,
@@ -177,9 +179,13 @@ impl fmt::Display for Info {
             let is_read = if Some(i) == self.scene { ", which is shown" } else { "" };
             writeln!(f, "scene         {}{is_read}", shown(scene))?;
         }
-        for Part { name, triangles, is_hidden } in self.parts.iter().filter(|_| self.parts.len() > 1) {
-            let left_out = if *is_hidden { ", left out" } else { "" };
-            writeln!(f, "part          {}: {triangles} triangles{left_out}", shown(name))?;
+        for Branch { path, part, parts, shown: left, triangles, .. } in
+            tree(&self.parts).iter().filter(|_| self.parts.len() > 1)
+        {
+            let left_out = if *left == 0 { ", left out" } else { "" };
+            let (kind, count) =
+                if part.is_some() { ("part ", String::new()) } else { ("group", format!("{parts} parts, ")) };
+            writeln!(f, "{kind}         {}: {count}{triangles} triangles{left_out}", shown(path))?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.

@@ -274,10 +274,10 @@ impl WeldOption {
 /// Which parts of a file are read.
 #[derive(Clone, Debug, Default, Args)]
 pub struct PartOptions {
-    /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
+    /// Leave out the part, group or material of this name or path; may be given several times. `info` lists them
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     hide_part: Vec<String>,
-    /// Show only the part of the file that has this name, and others that are given so
+    /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
     /// Give the part of this name a surface of its own, or LOD that is 1/64 to 16 times as fine: several times as a whole, and for

@@ -8,7 +8,7 @@ use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
-use super::notes::{Notes, counted, counts};
+use super::notes::{Notes, counts};
 use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
@@ -140,12 +140,12 @@ impl<'a> FaceBuilder<'a> {
         self.import.lacking_normals(if self.cage.is_some() { 0 } else { count }, what)
     }
 
-    /// Says which part the next faces belong to, by its name.
+    /// Says which part the next faces belong to, as [`Parts::enter`] does.
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
-    pub(super) fn enter_part(&mut self, name: &[u8]) -> Result<(), ReadError> {
-        self.parts.enter(name, self.memory)?;
+    pub(super) fn enter_part(&mut self, path: &[u8], level: usize) -> Result<(), ReadError> {
+        self.parts.enter(path, level, self.memory)?;
         self.builder.enter_part(self.parts.current());
         Ok(())
     }
@@ -306,17 +306,17 @@ impl<'a> FaceBuilder<'a> {
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
     pub(super) fn finish(mut self, name: &str, holds: String, progress: &Progress) -> Result<LoadedMesh, ReadError> {
         self.end_cage(None, progress)?;
-        let (memory, colors, are_colored) = (self.memory, self.colors.take(), self.are_colored);
+        let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
+        let are_colored = self.are_colored;
         let (mut loaded, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
         let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
         if let Some(colors) = colors.filter(|_| are_colored || loaded.mesh.materials.iter().any(has_normals)) {
             tangents::with_details(&mut loaded.mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
-        Ok(LoadedMesh { warnings: notes.into_warnings(), ..loaded })
+        Ok(LoadedMesh { warnings: notes.into_warnings(), file_bytes, ..loaded })
     }
 
-    /// Builds the mesh as [`finish`](Self::finish) does, without warnings and details. Returns the numbers of its corners too, and what is
-    /// to be said of it.
+    /// Builds the mesh as [`finish`](Self::finish) does; returns each corner's number too, and the notes, for what the reader adds.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
@@ -327,6 +327,7 @@ impl<'a> FaceBuilder<'a> {
         progress: &Progress,
     ) -> Result<(LoadedMesh, Vec<u32>, Notes), ReadError> {
         self.end_cage(None, progress)?;
+        self.parts.enter_materials(&mut self.builder, self.memory)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
         let holds = named.unwrap_or(holds);
@@ -343,13 +344,11 @@ impl<'a> FaceBuilder<'a> {
         let flawed = self.flawed().map(|flawed| format!("{flawed}; they are left out."));
         self.notes.extend(flawed);
         self.notes.extend(self.found.sentences());
-        let (parts, beyond, places) = self.parts.into_list();
-        self.notes.extend(counted([(beyond, "parts beyond the first 65,536, which can't be hidden")]));
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
+        let parts = self.parts.finish(&mut mesh, &mut self.notes);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
-        let (file_bytes, is_refined) = (self.memory.files(), self.is_refined == Some(true));
-        Ok((LoadedMesh { mesh, parts, file_bytes, is_refined, ..LoadedMesh::default() }, numbers, self.notes))
+        let is_refined = self.is_refined == Some(true);
+        Ok((LoadedMesh { mesh, parts, is_refined, ..LoadedMesh::default() }, numbers, self.notes))
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.

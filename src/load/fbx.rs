@@ -82,7 +82,8 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     progress.set(0.8);
     let (mut loaded, numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
     RigBuilder::complete(&mut loaded.mesh, numbers, details, binder, &mut notes, &budget, progress)?;
-    Ok(LoadedMesh { warnings: notes.into_warnings(), files: files.named(), ..loaded })
+    let (files, file_bytes) = (files.named(), budget.files());
+    Ok(LoadedMesh { warnings: notes.into_warnings(), files, file_bytes, ..loaded })
 }
 
 #[cfg(test)]

@@ -30,6 +30,7 @@ mod obj;
 mod off;
 mod packing;
 pub mod panorama;
+pub mod part_tree;
 pub mod parts;
 mod ply;
 mod read_error;

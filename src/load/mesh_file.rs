@@ -10,7 +10,7 @@ use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::read_error::ReadError;
-use super::selection::{Selection, choice};
+use super::selection::{Selection, choice, is_material, is_part_of};
 use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
@@ -154,15 +154,20 @@ pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &mut Load
     if let Some(scene) = selected.scene.filter(|scene| scenes::number(&loaded.scenes, scene).is_none()) {
         return absent("scene", scene, loaded.scenes.clone(), "it has no scenes, so omit --scene");
     }
-    let is_unknown = |name: &&String| loaded.parts.iter().all(|part| part.name != **name);
-    let styled = selected.styles.iter().map(|(name, _)| name);
-    if let Some(part) = selected.hidden.iter().chain(selected.only).chain(styled).find(is_unknown) {
+    // The materials of parts that are left out aren't known.
+    let is_cut = loaded.parts.iter().any(|part| part.is_hidden && !is_material(&part.name));
+    let may_be = |name: &str| is_cut && is_material(name);
+    let is_unknown = |name: &&String| !may_be(name) && loaded.parts.iter().all(|part| !is_part_of(&part.name, name));
+    // Materials have no styles.
+    let is_styled = |name: &&String| is_material(name) || is_unknown(name);
+    let unknown = selected.styles.iter().map(|(name, _)| name).find(is_styled);
+    if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown).or(unknown) {
         let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
         return absent("part", part, known, "it has no named parts, so omit --hide-part, --show-part and --part");
     }
     if !selected.styles.is_empty() {
         let style = |part: &super::parts::Part| {
-            selected.styles.iter().rev().find(|(name, _)| *name == part.name).map(|(_, style)| *style)
+            selected.styles.iter().rev().find(|(name, _)| is_part_of(&part.name, name)).map(|(_, style)| *style)
         };
         loaded.mesh.part_styles = loaded.parts.iter().map(|part| style(part).unwrap_or_default()).collect();
     }

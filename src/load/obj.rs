@@ -25,7 +25,6 @@ use super::face_builder::{FaceBuilder, NumberedCorner, linear_color, read_faces}
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::counted;
-use super::parts::DEFAULT_PART;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::{Line, Lines, first_word, in_utf8};
@@ -250,17 +249,13 @@ impl Reader<'_, '_> {
     fn enter_part(&mut self, kind: usize, name: &[u8]) -> Result<(), ReadError> {
         self.part[kind] = name.to_vec();
         let [object, group] = &self.part;
-        match (object.is_empty(), group.is_empty()) {
-            (true, true) => self.faces.enter_part(DEFAULT_PART),
-            (true, false) => self.faces.enter_part(group),
-            (false, _) if group.is_empty() || group == object => self.faces.enter_part(object),
-            (false, _) => self.faces.enter_part(&[object, &b"/"[..], group].concat()),
-        }
+        let path = if object == group { object.clone() } else { [object, &b"/"[..], group].concat() };
+        self.faces.enter_part(&path, 0)
     }
 
     /// Enters the part of faces that belong to none, if there was none before.
     fn begin_parts(&mut self) -> Result<(), ReadError> {
-        if self.faces.parts.have_begun() { Ok(()) } else { self.faces.enter_part(DEFAULT_PART) }
+        if self.faces.parts.have_begun() { Ok(()) } else { self.faces.enter_part(b"", 0) }
     }
 
     /// Adds a face with these corners.

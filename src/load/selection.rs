@@ -11,9 +11,9 @@ pub struct Selection<'a> {
     pub variant: Option<&'a str>,
     /// The scene, by name or by number from 0; none for the file's default scene.
     pub scene: Option<&'a str>,
-    /// The names of parts that are left out.
+    /// The names of parts and groups that are left out.
     pub hidden: &'a [String],
-    /// The names of parts that alone are read; all parts if there are none.
+    /// The names of parts and groups that alone are read; all parts if there are none.
     pub only: &'a [String],
     /// What parts have in place of what the tessellation says for all, by their names.
     pub styles: &'a [(String, PartStyle)],
@@ -24,9 +24,9 @@ pub struct Selection<'a> {
 /// Which parts of a file are read, and how they differ.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShownParts {
-    /// The names of parts that are left out.
+    /// The names of parts and groups that are left out (see [`is_part_of`]).
     pub hidden: Vec<String>,
-    /// The names of parts that alone are read; all parts if there are none.
+    /// The names of parts and groups that alone are read; all parts if there are none.
     pub only: Vec<String>,
     /// What parts have in place of what the tessellation says for all, by their names.
     pub styles: Vec<(String, PartStyle)>,
@@ -57,18 +57,29 @@ impl ShownParts {
         }
     }
 
-    /// Shows a part, or leaves it out.
-    pub fn set(&mut self, name: &str, is_shown: bool) {
-        self.hidden.retain(|other| other != name);
-        let is_listed = self.only.iter().any(|other| other == name);
-        match is_shown {
-            true if !self.only.is_empty() && !is_listed => self.only.push(name.to_owned()),
-            true => {}
-            // Without the last name all parts would be shown.
-            false if self.only.len() > 1 => self.only.retain(|other| other != name),
-            false => self.hidden.push(name.to_owned()),
-        }
+    /// Whether a part is left out, by its path. The start of the path that has this length, unless that is 0, is a further level
+    /// of detail: it is shown only if a name means it, and not all of what it lies in.
+    pub(super) fn hide(&self, path: &str, level: usize) -> bool {
+        let above = path[..level].rsplit_once('/').map_or("", |(above, _)| above);
+        let is_named = |name: &String| is_part_of(path, name) && (level == 0 || !is_part_of(above, name));
+        let is_limited = level > 0 || self.only.iter().any(|name| is_material(name) == is_material(path));
+        self.hidden.iter().any(|name| is_part_of(path, name)) || is_limited && !self.only.iter().any(is_named)
     }
+}
+
+/// What the path of a material begins with.
+pub const MATERIAL: &str = "material:";
+
+/// Whether a part's path or name is that of a material.
+pub fn is_material(name: &str) -> bool {
+    name.starts_with(MATERIAL)
+}
+
+/// Whether a name that a user gave means a part, by its path: some names of the path that follow one another. A name that begins
+/// with a slash begins with the first one, and one that ends in `/.` ends with the last one: it means a part without what lies in
+/// it.
+pub fn is_part_of(path: &str, name: &str) -> bool {
+    is_material(path) == is_material(name) && format!("//{path}/./").contains(&format!("/{name}/"))
 }
 
 /// Returns which of something there are, as the end of a message; `none` says that there are none.

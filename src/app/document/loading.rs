@@ -2,7 +2,6 @@
 
 use std::io::ErrorKind;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use super::Document;
 use crate::app::App;
@@ -19,7 +18,7 @@ use inspect::settings::Settings;
 use load::environment_file::is_environment;
 use load::files::FileError;
 use load::format::Format;
-use load::{Import, LoadError, ShownParts, Source};
+use load::{Import, LoadError, Source};
 
 /// Why a mesh could not be loaded.
 struct NotLoaded {
@@ -88,12 +87,15 @@ impl App {
         self.load(context, source, preparation, false);
     }
 
-    /// Loads the same mesh again after `change` has changed its preparation.
+    /// Loads the same mesh again if `change` changes its preparation.
     pub fn prepare(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
         let Some(source) = self.source().cloned() else { return };
-        let mut preparation = self.preparation();
+        let before = self.preparation();
+        let mut preparation = before.clone();
         change(&mut preparation);
-        self.load(context, source, preparation, true);
+        if preparation != before {
+            self.load(context, source, preparation, true);
+        }
     }
 
     /// Begins a load that is under way anew, on another device.
@@ -124,27 +126,21 @@ impl App {
         Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
     }
 
-    /// Loads the mesh again if its normals, its axis, its unit or its hidden parts were changed, also by undo. While something is dragged,
-    /// and while another mesh is being loaded, it waits.
+    /// Loads the mesh again if its normals, its axis or its unit were changed, also by undo. While something is dragged, and
+    /// while another mesh is being loaded, it waits.
     pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
         let opens_another = self.jobs.load().is_some_and(|load| !load.keep_view);
         if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
             return;
         }
-        let (import, parts) = (self.settings.import, self.parts.clone());
-        let wanted = |preparation: &Preparation| preparation.import == import && preparation.parts == *parts;
-        if !wanted(&self.preparation()) {
-            self.prepare(context, |preparation| {
-                (preparation.import, preparation.parts) = (import, ShownParts::clone(&parts));
-            });
-        }
+        let import = self.settings.import;
+        self.prepare(context, |preparation| preparation.import = import);
     }
 
-    /// Goes back to the normals, the axis, the unit and the hidden parts that the mesh has, after a load that came to nothing.
+    /// Goes back to the normals, the axis and the unit that the mesh has, after a load that came to nothing.
     pub(in crate::app) fn keep_file_choices(&mut self) {
         if let Some(document) = &self.document {
             self.settings.import = document.loaded.preparation.import;
-            self.parts = Arc::new(document.loaded.preparation.parts.clone());
         }
     }
 

@@ -281,7 +281,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
          applies it.",
     );
     let mut applied = None;
-    list(ui, "Front", front.len(), 0, |ui, index| {
+    list(ui, "Front", front.len(), (front.len(), 0), |ui, index| {
         let (row, error) = front[index];
         let error = subject.shown_error(error);
         let cost = match diagram.cost {

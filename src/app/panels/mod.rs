@@ -29,6 +29,8 @@ mod toolbar;
 mod user_shaders;
 mod verdict;
 
+use std::collections::HashSet;
+
 use geometry::tessellate::Displacement;
 use inspect::settings::SplitSide;
 
@@ -47,8 +49,10 @@ pub(super) struct Panels {
     pub side: Side,
     /// The half of a split view whose settings are edited.
     pub edited: SplitSide,
-    /// What the names of listed parts contain.
+    /// What the paths of listed parts contain.
     pub parts_filter: String,
+    /// The paths of groups in the list of parts that are folded.
+    pub folded_groups: HashSet<String>,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
     /// How high the section of the selected patch is, in points.

@@ -129,10 +129,8 @@ impl Mesh {
         range.triangles.contains(&triangle).then_some(range.part)
     }
 
-    /// The box around a part of the file; none if it has no triangles.
-    pub fn part_bounds(&self, part: u32) -> Option<Bounds> {
-        let triangles =
-            self.part_ranges.iter().filter(|range| range.part == part).flat_map(|range| range.triangles.clone());
+    /// The box around triangles; none if there are none.
+    pub fn bounds_of(&self, triangles: impl Iterator<Item = u32> + Clone) -> Option<Bounds> {
         let corners = triangles.flat_map(|triangle| self.triangles[triangle as usize]);
         let positions = corners.map(|corner| self.corners[corner as usize].position);
         positions.clone().next().map(|_| Bounds::new(positions))

@@ -8,6 +8,7 @@ use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
+use load::part_tree::{self, Branch};
 use load::parts::Part;
 use load::selection::Selection;
 use load::{
@@ -15,7 +16,7 @@ use load::{
 };
 
 /// A mesh with its topology, and how long both took.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Loaded {
     pub source: Source,
     /// The preparation that was requested. The crease band may have become narrower than that.
@@ -34,6 +35,8 @@ pub struct Loaded {
     pub scene: Option<usize>,
     /// The parts of the file, also those that are left out.
     pub parts: Arc<Vec<Part>>,
+    /// The same as a tree.
+    pub part_tree: Arc<Vec<Branch>>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
@@ -44,22 +47,7 @@ pub struct Loaded {
 impl Loaded {
     /// A mesh that no file has.
     pub fn from_mesh(mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
-        Self {
-            source: Source::default(),
-            preparation: Preparation::default(),
-            crease_band: CreaseBand::default(),
-            read: mesh.clone(),
-            mesh,
-            warnings: Vec::new(),
-            variants: Vec::new(),
-            scenes: Vec::new(),
-            scene: None,
-            parts: Arc::default(),
-            files: Vec::new(),
-            topology,
-            load_ms: 0.0,
-            topology_ms: 0.0,
-        }
+        Self { read: mesh.clone(), mesh, topology, ..Self::default() }
     }
 
     /// Returns this mesh at a moment of one of its clips, deformed on the CPU. Without a moment it is at rest.
@@ -148,6 +136,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         variants,
         scenes,
         scene,
+        part_tree: Arc::new(part_tree::tree(&parts)),
         parts: Arc::new(parts),
         files,
         topology: Arc::new(topology),

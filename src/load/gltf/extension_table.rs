@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::GltfError;
 use super::notes::Notes;
-use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
+use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, LOD, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
 use crate::uri::shown;
 
 /// How an extension changes a model.
@@ -45,14 +45,14 @@ const KNOWN: [(&str, Effect); 9] = [
 ];
 
 /// The extensions that are read, and those that have no effect, besides those whose [names](concerns_looks) tell it. FB_ngon_encoding
-/// says which triangles are one polygon, and of nodes with MSFT_lod the one that has it is the finest level.
-const READ: [&str; 5] = [INSTANCING, MESHOPT, DRACO, KHR_MESHOPT, VISIBILITY];
+/// says which triangles are one polygon.
+const READ: [&str; 6] = [INSTANCING, MESHOPT, DRACO, KHR_MESHOPT, LOD, VISIBILITY];
 const WITHOUT_EFFECT: &str = "\
     AGI_stk_metadata CESIUM_primitive_outline EXT_instance_features EXT_mesh_features EXT_mesh_manifold \
     EXT_mesh_primitive_edge_visibility EXT_structural_metadata FB_geometry_metadata FB_ngon_encoding GODOT_single_root \
     GRIFFEL_bim_data KHR_animation_pointer KHR_audio_emitter KHR_collision_shapes KHR_implicit_shapes KHR_interactivity \
     KHR_mesh_quantization KHR_node_hoverability KHR_node_selectability KHR_physics_rigid_bodies KHR_xmp KHR_xmp_json_ld \
-    MAXAR_image_ortho MOZ_hubs_components MPEG_audio_spatial MPEG_media MSFT_lod MSFT_packing_normalRoughnessMetallic \
+    MAXAR_image_ortho MOZ_hubs_components MPEG_audio_spatial MPEG_media MSFT_packing_normalRoughnessMetallic \
     MSFT_packing_occlusionRoughnessMetallic OMI_physics_body OMI_physics_shape VRM VRMC_node_constraint VRMC_springBone \
     VRMC_springBone_extended_collider VRMC_vrm VRMC_vrm_animation";
 
