@@ -34,6 +34,15 @@ struct Frame {
     coarseness: f32,
     // By how many columns all that is drawn is moved to the right.
     shift: f32,
+    // The kind of the numbers that colours stand for: CURVATURE_*, or under texel density 1 for texels along an object unit and
+    // 0 for those in a px.
+    kind: u32,
+    // The unit direction along the zebra's stripes, to the right and up in the view.
+    zebra_axis: vec2<f32>,
+    // Stripes over half a turn of the normal.
+    zebra_stripes: f32,
+    // Squares of the checker in one unit of u or v.
+    checker_squares: f32,
 }
 
 // Images of a material beside that of the base colour.

@@ -200,7 +200,6 @@ impl App {
         ui.end_row();
     }
 
-    /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     /// A choice of material variants, which is there only if the file has some. Another variant loads the mesh again.
     fn variant_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = self.document.as_ref().filter(|document| !document.loaded.variants.is_empty()) else {
@@ -240,6 +239,7 @@ impl App {
         }
     }
 
+    /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;
@@ -273,7 +273,16 @@ impl App {
     }
 
     fn look_rows(&mut self, ui: &mut egui::Ui) {
-        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
+        for option in [
+            &options::CURVATURE_KIND,
+            &options::CURVATURE_SCALE,
+            &options::ZEBRA_STRIPES,
+            &options::ZEBRA_DIRECTION,
+            &options::CHECKER_SQUARES,
+            &options::TEXEL_DENSITY_PER,
+        ] {
+            shown_option_row(ui, option, &mut self.settings);
+        }
         self.matcap_row(ui);
         self.light_rows(ui);
         self.background_row(ui);

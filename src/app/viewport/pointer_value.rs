@@ -3,16 +3,16 @@
 use std::time::{Duration, Instant};
 
 use egui::{PopupAnchor, Response};
-use glam::{Vec3, vec2};
+use glam::{Mat4, Vec2, Vec3, vec2};
 
 use crate::app::App;
 use crate::app::text::{factor, short};
-use geometry::tessellate::factor_side;
+use geometry::tessellate::{CurvatureKind, FIXED_ONE, LodView, Vertex, factor_side, patch_curvature, patch_net};
 use geometry::view::{ScreenView, seen_on_plane};
 use gpu::GpuError;
 use inspect::measure::size_px;
-use inspect::render::{Picked, Picking, Pixel};
-use inspect::settings::{Colors, DeviationUnit, SplitSide};
+use inspect::render::{Picked, PickedTriangle, Picking, Pixel, texel_density};
+use inspect::settings::{Colors, DensityPer, DeviationUnit, SplitSide};
 
 /// How long the pointer rests before the place under it is looked up.
 const REST: Duration = Duration::from_millis(120);
@@ -70,7 +70,12 @@ impl App {
     fn place_under(&self, response: &Response) -> Option<PointerValue> {
         let has_numbers = matches!(
             self.settings.overlays.colors,
-            Colors::Factors | Colors::LowFactors | Colors::TriangleSize | Colors::Deviation
+            Colors::Factors
+                | Colors::LowFactors
+                | Colors::TriangleSize
+                | Colors::Deviation
+                | Colors::Curvature
+                | Colors::TexelDensity
         );
         let pointer = response
             .hover_pos()
@@ -101,7 +106,9 @@ impl App {
     fn value_at(&self, place: &PointerValue, found: &Picked) -> Option<String> {
         let Pixel { clip_from_object, size, at, .. } = place.pixel;
         let view = ScreenView { clip_from_object, viewport: vec2(size[0] as f32, size[1] as f32) };
-        let corners = found.triangle?.vertices.map(|vertex| Vec3::from(vertex.position));
+        let triangle = found.triangle?;
+        let corners = triangle.vertices.map(|vertex| Vec3::from(vertex.position));
+        let middle = vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5);
         match self.settings.overlays.colors {
             Colors::TriangleSize => {
                 let size = size_px(corners.map(|corner| view.clip_from_object * corner.extend(1.0)), view.viewport)?;
@@ -112,8 +119,25 @@ impl App {
                     return None;
                 }
                 let reference = self.yardstick().1?;
-                let point = seen_on_plane(&view, vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5), corners)?;
+                let point = seen_on_plane(&view, middle, corners)?;
                 Some(format!("{} units", short(reference.closest(point.as_dvec3()).distance)))
+            }
+            Colors::Curvature => self.curvature_at(place.half, found.patch, &Seen::new(&view, middle, &triangle)?),
+            Colors::TexelDensity => {
+                let scene = self.document.as_ref()?.scene.half(place.half)?;
+                let material = scene.tessellator.topology().material_of(found.patch);
+                let material = &scene.tessellator.mesh().materials[material];
+                let (density, unit) = match self.settings.texel_density_per {
+                    DensityPer::Unit => {
+                        (texel_density(material, triangle.vertices.map(|own| own.uv.into()), corners), "unit")
+                    }
+                    DensityPer::Px => {
+                        let seen = |aside| Some(Seen::new(&view, middle + aside, &triangle)?.mean(|own| own.uv));
+                        let uvs = [seen(Vec2::ZERO)?, seen(Vec2::X)?, seen(Vec2::Y)?];
+                        (texel_density(material, uvs, [Vec3::ZERO, Vec3::X, Vec3::Y]), "px")
+                    }
+                };
+                Some(format!("{} texels / {unit}", short(density?.into())))
             }
             _ => {
                 let scene = self.document.as_ref()?.scene.half(place.half)?;
@@ -123,6 +147,51 @@ impl App {
                 Some(format!("Factors {}", factors.join(", ")))
             }
         }
+    }
+}
+
+/// A place of a triangle: how much each of its vertices counts there.
+struct Seen<'a> {
+    weights: [f32; 3],
+    vertices: &'a [Vertex; 3],
+}
+
+impl<'a> Seen<'a> {
+    /// The place of the triangle's plane that is seen at a place of the picture, in px.
+    fn new(view: &ScreenView, px: Vec2, triangle: &'a PickedTriangle) -> Option<Self> {
+        let corners = triangle.vertices.map(|vertex| Vec3::from(vertex.position));
+        let point = seen_on_plane(view, px, corners)?;
+        let [a, b, c] = corners.map(|corner| (corner - point).as_dvec3());
+        let whole = (b - a).cross(c - a);
+        let weight = |area: glam::DVec3| (area.dot(whole) / whole.length_squared()) as f32;
+        let weights = [b.cross(c), c.cross(a), a.cross(b)].map(weight);
+        weights.iter().all(|weight| weight.is_finite()).then_some(Self { weights, vertices: &triangle.vertices })
+    }
+
+    /// The mean of something that vertices have.
+    fn mean(&self, of: impl Fn(&Vertex) -> [f32; 2]) -> Vec2 {
+        self.weights.iter().zip(self.vertices).map(|(weight, vertex)| *weight * Vec2::from(of(vertex))).sum()
+    }
+}
+
+impl App {
+    /// The curvature of a patch in a half at a place of one of its triangles; none of a shader's surface, and in a pose as long as
+    /// that isn't known on the CPU.
+    fn curvature_at(&self, half: SplitSide, patch: u32, seen: &Seen) -> Option<String> {
+        if half == SplitSide::Right && self.uses_surface_shader() {
+            return None;
+        }
+        let scene = self.document.as_ref()?.scene.half(half)?;
+        let (mesh, topology) = scene.tessellator.posed().deformed_if_quick()?;
+        let inputs = self.settings.half(half)?.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        // A pixel at a border may have its middle beside the triangle.
+        let at = seen.mean(|vertex| vertex.domain().map(|weight| weight as f32)).max(Vec2::ZERO);
+        let u = (at.x as u32).min(FIXED_ONE);
+        let v = (at.y as u32).min(FIXED_ONE - u);
+        let (kind, net) = (self.settings.curvature_kind, patch_net(&mesh, &topology, &inputs, patch));
+        let curvature = patch_curvature(kind, inputs.tessellation.surface, &net, u, v);
+        let unit = if kind == CurvatureKind::Gaussian { "unit²" } else { "unit" };
+        Some(format!("{} / {unit}", short(curvature.into())))
     }
 }
 

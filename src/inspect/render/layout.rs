@@ -41,7 +41,15 @@ pub struct Frame {
     pub coarseness: f32,
     /// By how many columns all that is drawn is moved to the right.
     pub shift: f32,
-    pub _pad: f32,
+    /// The kind of the numbers that colours stand for: a [`geometry::tessellate::CurvatureKind`], or under texel density a
+    /// [`crate::settings::DensityPer`].
+    pub kind: u32,
+    /// The unit direction along the zebra's stripes, to the right and up in the view.
+    pub zebra_axis: [f32; 2],
+    /// Stripes over half a turn of the normal.
+    pub zebra_stripes: f32,
+    /// Squares of the checker in one unit of u or v.
+    pub checker_squares: f32,
 }
 
 /// A material's constants.

@@ -1,10 +1,12 @@
 //! What a legend says about the surface's colours.
 
+use super::deviation::scale_of;
 use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, TEXELS_WITHOUT_IMAGE, srgb};
 use super::outlines_picture::SILHOUETTE_COLORS;
-use super::{DENSITY_SCALE, DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
+use super::{DEVIATION_PX_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, Usual};
 use crate::measure::{OutlineDistance, OutlineDistances, OutlineOf};
-use crate::settings::{Colors, DeviationUnit, Settings};
+use crate::settings::{Choice, Colors, DensityPer, DeviationUnit, Settings};
+use geometry::tessellate::CurvatureKind;
 
 /// The contents of a legend.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,8 +65,8 @@ pub struct Distances {
     pub outlines: Option<OutlineDistances>,
 }
 
-/// The legend of a picture's colours, if they have one. `radius` is the mesh's bounding radius in object units.
-pub fn legend_of(settings: &Settings, radius: f32, distances: &Distances) -> Option<Legend> {
+/// The legend of a picture's colours, if they have one, of a mesh on which these numbers are `usual`.
+pub fn legend_of(settings: &Settings, usual: &Usual, distances: &Distances) -> Option<Legend> {
     let legend = |title: &str, meaning: &str, shown: Shown| {
         Some(Legend { title: title.to_owned(), meaning: meaning.to_owned(), shown })
     };
@@ -96,32 +98,51 @@ pub fn legend_of(settings: &Settings, radius: f32, distances: &Distances) -> Opt
             Shown::Colors(normal_colors()),
         ),
         Colors::Curvature => {
-            let own = curvature_scale(settings.curvature_scale, radius);
+            let (kind, own) = (settings.curvature_kind, scale_of(settings, None, usual));
+            let unit = if kind == CurvatureKind::Gaussian { "1/unit²" } else { "1/unit" };
             legend(
-                "Mean curvature, 1/unit",
-                "Colours of the mean curvature of the curved patches themselves, without displacement, in 1 / object unit: a \
-                 sphere of radius r has 1 / r. It is above 0 where the surface bulges towards the side that it faces, below 0 \
-                 where it is hollow, and 0 where it is flat or a saddle. Curvature up to, in the section View, sets the \
-                 scale's ends.",
+                &format!("{} curvature, {unit}", kind.label()),
+                &format!(
+                    "Colours of a curvature of the curved patches themselves, without displacement, in {unit} for object units: a \
+                     sphere of radius r has 1 / r, and the Gaussian curvature 1 / r². {} Curvature up to, in the section Look, sets \
+                     the scale's ends.",
+                    kind.text()
+                ),
                 scale(own, &[own.least, 0.0, own.most], false),
             )
         }
         Colors::UvChecker => legend(
-            "UV: a square is 1/8 of a unit",
+            &format!("UV: a square is 1/{} of a unit", tick_text(settings.checker_squares.round())),
             "A checker over texture coordinates. Red grows with u and green with v up to the next whole number, where there \
-             is a line. Triangles without texture coordinates are plain grey, and so are squares smaller than a px.",
+             is a line. Each square has an F, which is mirrored where the image would be, and the numbers of its column, from the \
+             left, and of its row, from the top. Triangles without texture coordinates are plain grey, and so are squares smaller \
+             than a px.",
             Shown::Colors(checker_colors()),
         ),
-        Colors::TexelDensity => legend(
-            "Texels per px",
-            &format!(
-                "Colours of how many texels of the base colour's image lie side by side in a px of the picture, 1/8 to 8. Below 1 \
-                 the image is magnified and looks blurred; above 1 it has more detail than the picture shows. A material without \
-                 an image counts as if it had one of {TEXELS_WITHOUT_IMAGE} x {TEXELS_WITHOUT_IMAGE} px. Triangles without \
-                 texture coordinates are plain grey."
-            ),
-            scale(DENSITY_SCALE, &[0.125, 0.5, 1.0, 2.0, 8.0], false),
-        ),
+        Colors::TexelDensity => {
+            let own = scale_of(settings, None, usual);
+            let (unit, meaning) = match settings.texel_density_per {
+                DensityPer::Px => (
+                    "px",
+                    "in a px of the picture. Below 1 the image is magnified and looks blurred; above 1 it has more detail than the \
+                     picture shows.",
+                ),
+                DensityPer::Unit => (
+                    "unit",
+                    "along an object unit. In the middle of the scale is the power of two that is nearest to what half of the \
+                     mesh's triangles have at most.",
+                ),
+            };
+            legend(
+                &format!("Texels per {unit}"),
+                &format!(
+                    "Colours of how many texels of the base colour's image lie side by side {meaning} A material without an image \
+                     counts as if it had one of {TEXELS_WITHOUT_IMAGE} x {TEXELS_WITHOUT_IMAGE} px. Triangles without texture \
+                     coordinates are plain grey."
+                ),
+                scale(own, &[1.0, 4.0, 8.0, 16.0, 64.0].map(|times| times * own.least), false),
+            )
+        }
         Colors::Factors => legend(
             "Factor",
             "Colours of tessellation factors, 1 to 64. Each patch shows its inside factor, and along an edge the edge's factor.",

@@ -54,6 +54,7 @@ mod surface_draws;
 pub mod target;
 mod textures;
 pub mod tone;
+mod usual;
 pub mod view_projection;
 mod window;
 
@@ -70,8 +71,9 @@ pub use outlines_picture::{lay_over, outlines_picture};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::{DraftPipelines, Renderer};
 pub(crate) use scale::SIZE_SCALE;
-pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale, curvature_scale};
+pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale};
 pub use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
 pub use target::{Target, samples};
+pub use usual::{Usual, texel_density};
 pub use window::WindowPipelines;

@@ -6,7 +6,6 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
-use super::Scale;
 use super::coverage::Coverage;
 use super::deviation::Deviations;
 use super::environment::Environment;
@@ -14,6 +13,7 @@ use super::layout::linear;
 use super::matcap::MatcapPicture;
 use super::materials::{Materials, UploadedMaterial};
 use super::punctual::upload_lights;
+use super::{Scale, Usual};
 use crate::measure::DeviationField;
 use crate::settings::{Settings, SplitSide};
 use geometry::mesh::{Bounds, Mesh, Moment, Topology};
@@ -29,6 +29,8 @@ pub struct Scene {
     pub bounds: Bounds,
     /// See [`ulp`].
     pub(super) ulp: f32,
+    /// At rest.
+    usual: Usual,
     pub(super) materials: Vec<UploadedMaterial>,
     /// The lights of the file, if it has some.
     pub(super) lights: Option<wgpu::Buffer>,
@@ -87,22 +89,31 @@ impl Scene {
         let materials = materials.upload(gpu, &mesh.materials)?;
         let ulp = ulp(tessellator.topology()) as f32;
         let lights = (!mesh.lights.is_empty()).then(|| upload_lights(gpu, &mesh.lights));
-        Ok(Self { lights, ..Self::at_rest(tessellator, mesh.bounds(), ulp, materials) })
+        let bounds = mesh.bounds();
+        let usual = Usual::new(&mesh, tessellator.topology(), bounds.radius());
+        Ok(Self { lights, ..Self::at_rest(tessellator, bounds, ulp, usual, materials) })
     }
 
     /// Makes a scene of the same mesh for [`Self::set_left`], on any thread. It shares the mesh, topology and images.
     pub fn sibling(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let tessellator = self.tessellator.sibling(arena_bytes);
-        let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
+        let (bounds, ulp, usual, materials) = (self.bounds, self.ulp, self.usual, self.materials.clone());
         let (lights, environment) = (self.lights.clone(), self.environment.clone());
-        move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, materials) })
+        move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, usual, materials) })
     }
 
-    fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
+    fn at_rest(
+        tessellator: Tessellator,
+        bounds: Bounds,
+        ulp: f32,
+        usual: Usual,
+        materials: Vec<UploadedMaterial>,
+    ) -> Self {
         Self {
             tessellator,
             bounds,
             ulp,
+            usual,
             materials,
             lights: None,
             environment: None,
@@ -233,6 +244,11 @@ impl Scene {
 
     pub(super) fn known_deviation(&self) -> Option<&Deviations> {
         self.deviation.as_ref().filter(|known| known.of == self.tessellator.generation())
+    }
+
+    /// Numbers that are usual on the mesh, which colour scales are made for.
+    pub fn usual(&self) -> Usual {
+        Usual { radius: self.bounds.radius(), ..self.usual }
     }
 
     /// One unit in the last place of the mesh's largest coordinate, in object units.

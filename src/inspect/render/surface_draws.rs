@@ -51,7 +51,7 @@ pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Face
 pub(super) fn emitted_triangles(settings: &Settings) -> Triangles {
     // These overlays need data of whole triangles.
     let Overlays { wireframe, folds, colors, .. } = settings.overlays;
-    if wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation) {
+    if wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::TexelDensity | Colors::Deviation) {
         Triangles::Pulled
     } else if overlay_bits(&settings.overlays) != 0 {
         Triangles::Indexed

@@ -24,16 +24,18 @@ choices! {
              normals. They differ from the shading normals where shading pretends, and jump where patches meet at an \
              angle. Displacement isn't in them.";
         Curvature => "curvature", "Curvature",
-            "Colours the surface by the mean curvature of each curved patch itself, in 1 / object unit: red where it \
-             bulges, blue where it is hollow, and light grey where it is flat or a saddle. A sphere of radius r has \
-             1 / r. Displacement isn't in it.";
+            "Colours the surface by a curvature of each curved patch itself, the mean one unless another is chosen, in 1 / object \
+             unit: red above 0, where it bulges, blue below 0, where it is hollow, and light grey at 0. A sphere of radius r \
+             has 1 / r. Displacement isn't in it.";
         UvChecker => "uv-checker", "UV checker",
-            "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v and blue lines around \
-             each unit. Red grows with u and green with v, so that mirrored and turned charts are seen.";
+            "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v unless another number is chosen, and \
+             blue lines around each unit. Red grows with u and green with v. In each square are an F, which shows mirrored and \
+             turned charts, and the numbers of its column and row.";
         TexelDensity => "texel-density", "Texel density",
             "Colours the surface by how many texels of the base colour's image lie side by side in a px of the \
-             picture: orange where the image is magnified, purple where it has more detail than is seen. A material \
-             without an image counts as if it had one of 1024 x 1024 px.";
+             picture: orange where the image is magnified, purple where it has more detail than is seen. Or along an object \
+             unit: orange where the mesh has fewer than usual, purple where it has more. A material without an image counts as \
+             if it had one of 1024 x 1024 px.";
         Barycentric => "barycentric", "Barycentric",
             "Colours the surface by domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2.";
         Adjacency => "adjacency", "Adjacency edges", "Edges of the mesh's own triangles, coloured by the kind of edge.";
@@ -126,8 +128,6 @@ pub enum ColorSource {
     Nothing,
     Materials,
     TextureCoordinates,
-    /// The curvature of the patches, on a scale that can be set.
-    Curvature,
     /// A picture of a lit sphere.
     LitSphere,
     /// The fewest triangles that each patch needs.
@@ -143,7 +143,6 @@ impl Colors {
         match self {
             Self::Material => ColorSource::Materials,
             Self::UvChecker | Self::TexelDensity => ColorSource::TextureCoordinates,
-            Self::Curvature => ColorSource::Curvature,
             Self::Matcap => ColorSource::LitSphere,
             Self::Excess => ColorSource::MinimumTriangles,
             Self::Deviation => ColorSource::ReferenceSurface,
@@ -152,6 +151,7 @@ impl Colors {
             | Self::Zebra
             | Self::ShadingNormals
             | Self::SurfaceNormals
+            | Self::Curvature
             | Self::Barycentric
             | Self::Factors
             | Self::TriangleSize

@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::plot::{self, ChartError, DENSITY};
 use crate::render::layout::{WASTE_COLOR, srgb};
-use crate::render::{COLUMNS, Distances, Legend, Scale, Shown, legend_of, tick_text};
+use crate::render::{COLUMNS, Distances, Legend, Scale, Shown, Usual, legend_of, tick_text};
 use crate::settings::Settings;
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
@@ -31,18 +31,17 @@ const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
 const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
 const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 
-/// Draws the legend into the lower right corner, if the picture's colours have one. `radius` is the mesh's bounding radius in
-/// object units.
+/// Draws the legend into the lower right corner, if the picture's colours have one, of a mesh on which these numbers are `usual`.
 ///
 /// # Errors
 /// The font can't be used.
 pub(crate) fn draw_legend(
     picture: &mut RgbaImage,
     settings: &Settings,
-    radius: f32,
+    usual: &Usual,
     distances: &Distances,
 ) -> Result<(), ChartError> {
-    let Some(legend) = legend_of(settings, radius, distances) else { return Ok(()) };
+    let Some(legend) = legend_of(settings, usual, distances) else { return Ok(()) };
     let point = point_in(picture.dimensions(), inner_size(&legend), None);
     let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
     lay_in_corner(picture, &plate, Side::Right, point);

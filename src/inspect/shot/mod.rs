@@ -293,7 +293,7 @@ impl Shot {
         }
         if self.view.legend {
             self.draw_split(&mut picture)?;
-            draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
+            draw_legend(&mut picture, &self.subject.settings, &self.scene.usual(), &self.distances())?;
         }
         Ok(picture)
     }
