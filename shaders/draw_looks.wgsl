@@ -1,10 +1,10 @@
 // Colours that show how a surface is shaped, and how a texture would lie on it.
 
-// Values of LOOK. src/inspect/render/colors.rs has the same.
-const LOOK_SURFACE_NORMALS: u32 = 1u;
-const LOOK_CURVATURE: u32 = 2u;
-const LOOK_MATCAP: u32 = 3u;
-const LOOK_TEXEL_DENSITY: u32 = 4u;
+// Values of LOOK: numbers of Colors in src/inspect/settings/overlays.rs.
+const LOOK_SURFACE_NORMALS: u32 = 5u;
+const LOOK_CURVATURE: u32 = 6u;
+const LOOK_MATCAP: u32 = 2u;
+const LOOK_TEXEL_DENSITY: u32 = 8u;
 
 // How far the sphere of a matcap reaches, as a part of half of its picture.
 const MATCAP_REACH: f32 = 0.98;

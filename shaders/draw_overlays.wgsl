@@ -75,7 +75,7 @@ fn meaning(in: Varyings, change: Changes, to_edges: vec3<f32>, edge_heights: vec
     }
     if LOOK == LOOK_TEXEL_DENSITY {
         let in_px = spanned_area(change.uv_right, change.uv_below);
-        let density = texel_density(textureDimensions(base_texture), select(in.size, in_px, frame.kind == 0u));
+        let density = texel_density(textureDimensions(base_texture), select(in.size, in_px, frame.kind != 0u));
         return vec4<f32>(scale_color(max(density, frame.scale_least)), f32(density > 0.0));
     }
     if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {

@@ -11,8 +11,8 @@ use geometry::tessellate::{CurvatureKind, FIXED_ONE, LodView, Vertex, factor_sid
 use geometry::view::{ScreenView, seen_on_plane};
 use gpu::GpuError;
 use inspect::measure::size_px;
-use inspect::render::{Picked, PickedTriangle, Picking, Pixel, texel_density};
-use inspect::settings::{Colors, DensityPer, DeviationUnit, SplitSide};
+use inspect::render::{Picked, Picking, Pixel, texel_density};
+use inspect::settings::{Colors, SplitSide, SurfaceUnit};
 
 /// How long the pointer rests before the place under it is looked up.
 const REST: Duration = Duration::from_millis(120);
@@ -106,8 +106,8 @@ impl App {
     fn value_at(&self, place: &PointerValue, found: &Picked) -> Option<String> {
         let Pixel { clip_from_object, size, at, .. } = place.pixel;
         let view = ScreenView { clip_from_object, viewport: vec2(size[0] as f32, size[1] as f32) };
-        let triangle = found.triangle?;
-        let corners = triangle.vertices.map(|vertex| Vec3::from(vertex.position));
+        let vertices = found.triangle?.vertices;
+        let corners = vertices.map(|vertex| Vec3::from(vertex.position));
         let middle = vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5);
         match self.settings.overlays.colors {
             Colors::TriangleSize => {
@@ -115,24 +115,25 @@ impl App {
                 Some(format!("{} px", short(size)))
             }
             Colors::Deviation => {
-                if self.settings.deviation_in == DeviationUnit::Px {
+                if self.settings.deviation_in == SurfaceUnit::Px {
                     return None;
                 }
                 let reference = self.yardstick().1?;
                 let point = seen_on_plane(&view, middle, corners)?;
                 Some(format!("{} units", short(reference.closest(point.as_dvec3()).distance)))
             }
-            Colors::Curvature => self.curvature_at(place.half, found.patch, &Seen::new(&view, middle, &triangle)?),
+            Colors::Curvature => {
+                let domain = |vertex: &Vertex| vertex.domain().map(|weight| weight as f32);
+                self.curvature_at(place.half, found.patch, mean_at(&view, middle, &vertices, domain)?)
+            }
             Colors::TexelDensity => {
                 let scene = self.document.as_ref()?.scene.half(place.half)?;
                 let material = scene.tessellator.topology().material_of(found.patch);
                 let material = &scene.tessellator.mesh().materials[material];
                 let (density, unit) = match self.settings.texel_density_per {
-                    DensityPer::Unit => {
-                        (texel_density(material, triangle.vertices.map(|own| own.uv.into()), corners), "unit")
-                    }
-                    DensityPer::Px => {
-                        let seen = |aside| Some(Seen::new(&view, middle + aside, &triangle)?.mean(|own| own.uv));
+                    SurfaceUnit::Units => (texel_density(material, vertices.map(|own| own.uv.into()), corners), "unit"),
+                    SurfaceUnit::Px => {
+                        let seen = |aside| mean_at(&view, middle + aside, &vertices, |own| own.uv);
                         let uvs = [seen(Vec2::ZERO)?, seen(Vec2::X)?, seen(Vec2::Y)?];
                         (texel_density(material, uvs, [Vec3::ZERO, Vec3::X, Vec3::Y]), "px")
                     }
@@ -150,34 +151,21 @@ impl App {
     }
 }
 
-/// A place of a triangle: how much each of its vertices counts there.
-struct Seen<'a> {
-    weights: [f32; 3],
-    vertices: &'a [Vertex; 3],
-}
-
-impl<'a> Seen<'a> {
-    /// The place of the triangle's plane that is seen at a place of the picture, in px.
-    fn new(view: &ScreenView, px: Vec2, triangle: &'a PickedTriangle) -> Option<Self> {
-        let corners = triangle.vertices.map(|vertex| Vec3::from(vertex.position));
-        let point = seen_on_plane(view, px, corners)?;
-        let [a, b, c] = corners.map(|corner| (corner - point).as_dvec3());
-        let whole = (b - a).cross(c - a);
-        let weight = |area: glam::DVec3| (area.dot(whole) / whole.length_squared()) as f32;
-        let weights = [b.cross(c), c.cross(a), a.cross(b)].map(weight);
-        weights.iter().all(|weight| weight.is_finite()).then_some(Self { weights, vertices: &triangle.vertices })
-    }
-
-    /// The mean of something that vertices have.
-    fn mean(&self, of: impl Fn(&Vertex) -> [f32; 2]) -> Vec2 {
-        self.weights.iter().zip(self.vertices).map(|(weight, vertex)| *weight * Vec2::from(of(vertex))).sum()
-    }
+/// The mean of something that a triangle's vertices have, as it is at the place of its plane that is seen at `px` of the picture.
+fn mean_at(view: &ScreenView, px: Vec2, vertices: &[Vertex; 3], of: impl Fn(&Vertex) -> [f32; 2]) -> Option<Vec2> {
+    let corners = vertices.map(|vertex| Vec3::from(vertex.position));
+    let point = seen_on_plane(view, px, corners)?;
+    let [a, b, c] = corners.map(|corner| (corner - point).as_dvec3());
+    let whole = (b - a).cross(c - a);
+    let shares = [b.cross(c), c.cross(a), a.cross(b)].map(|part| part.dot(whole) / whole.length_squared());
+    let mean: Vec2 = shares.iter().zip(vertices).map(|(share, vertex)| *share as f32 * Vec2::from(of(vertex))).sum();
+    mean.is_finite().then_some(mean)
 }
 
 impl App {
-    /// The curvature of a patch in a half at a place of one of its triangles; none of a shader's surface, and in a pose as long as
-    /// that isn't known on the CPU.
-    fn curvature_at(&self, half: SplitSide, patch: u32, seen: &Seen) -> Option<String> {
+    /// The curvature of a patch in a half at domain coordinates `at`, in fixed point; none of a shader's surface, and in a pose as
+    /// long as that isn't known on the CPU.
+    fn curvature_at(&self, half: SplitSide, patch: u32, at: Vec2) -> Option<String> {
         if half == SplitSide::Right && self.uses_surface_shader() {
             return None;
         }
@@ -185,9 +173,8 @@ impl App {
         let (mesh, topology) = scene.tessellator.posed().deformed_if_quick()?;
         let inputs = self.settings.half(half)?.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
         // A pixel at a border may have its middle beside the triangle.
-        let at = seen.mean(|vertex| vertex.domain().map(|weight| weight as f32)).max(Vec2::ZERO);
-        let u = (at.x as u32).min(FIXED_ONE);
-        let v = (at.y as u32).min(FIXED_ONE - u);
+        let u = (at.x.max(0.0) as u32).min(FIXED_ONE);
+        let v = (at.y.max(0.0) as u32).min(FIXED_ONE - u);
         let (kind, net) = (self.settings.curvature_kind, patch_net(&mesh, &topology, &inputs, patch));
         let curvature = patch_curvature(kind, inputs.tessellation.surface, &net, u, v);
         let unit = if kind == CurvatureKind::Gaussian { "unit²" } else { "unit" };

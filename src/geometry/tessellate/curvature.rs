@@ -40,7 +40,7 @@ pub fn patch_curvature(kind: CurvatureKind, surface: Surface, net: &ControlNet, 
 /// Returns the second derivatives of a patch's position at weights `u` and `v` (16.16 fixed point; w = 1 - u - v), in
 /// object units: twice by u, by u and v, and twice by v. They are linear Bézier triangles of second differences of
 /// control points, times 6 (Farin, Triangular Bernstein-Bézier patches, 1986, section 1.4).
-pub fn patch_second_derivatives(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 3] {
+fn patch_second_derivatives(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 3] {
     if surface.is_flat() {
         return [Vec3::ZERO; 3];
     }

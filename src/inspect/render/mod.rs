@@ -3,7 +3,6 @@
 mod adding;
 pub mod blur_levels;
 pub mod camera;
-mod colors;
 mod coverage;
 mod covered_area;
 pub mod cube_map;
@@ -64,8 +63,8 @@ pub use ground::{Ground, axis_lines};
 pub use halves::{HalfPlace, framed_size, half_at, half_places};
 pub(crate) use leaks::LeakCounter;
 pub use leaks::{Leak, LeakCount, Leaks, leaks_in};
-pub(crate) use legend::{COLUMNS, Shown, tick_text};
 pub use legend::{Distances, Legend, legend_of};
+pub(crate) use legend::{Shown, tick_text};
 pub use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
 pub use outlines_picture::{lay_over, outlines_picture};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};

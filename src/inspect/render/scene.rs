@@ -89,31 +89,23 @@ impl Scene {
         let materials = materials.upload(gpu, &mesh.materials)?;
         let ulp = ulp(tessellator.topology()) as f32;
         let lights = (!mesh.lights.is_empty()).then(|| upload_lights(gpu, &mesh.lights));
-        let bounds = mesh.bounds();
-        let usual = Usual::new(&mesh, tessellator.topology(), bounds.radius());
-        Ok(Self { lights, ..Self::at_rest(tessellator, bounds, ulp, usual, materials) })
+        Ok(Self { lights, ..Self::at_rest(tessellator, mesh.bounds(), ulp, materials) })
     }
 
     /// Makes a scene of the same mesh for [`Self::set_left`], on any thread. It shares the mesh, topology and images.
     pub fn sibling(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let tessellator = self.tessellator.sibling(arena_bytes);
-        let (bounds, ulp, usual, materials) = (self.bounds, self.ulp, self.usual, self.materials.clone());
+        let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
         let (lights, environment) = (self.lights.clone(), self.environment.clone());
-        move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, usual, materials) })
+        move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, materials) })
     }
 
-    fn at_rest(
-        tessellator: Tessellator,
-        bounds: Bounds,
-        ulp: f32,
-        usual: Usual,
-        materials: Vec<UploadedMaterial>,
-    ) -> Self {
+    fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
         Self {
+            usual: Usual::new(tessellator.mesh(), tessellator.topology(), bounds.radius()),
             tessellator,
             bounds,
             ulp,
-            usual,
             materials,
             lights: None,
             environment: None,

@@ -2,9 +2,10 @@
 
 use glam::{Vec2, Vec3};
 
+use super::deviation::DEVIATION_PX_SCALE;
 use super::layout::TEXELS_WITHOUT_IMAGE;
-use super::scale::{DENSITY_SCALE, Scale, curvature_scale};
-use crate::settings::{Colors, DensityPer, Settings};
+use super::scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale, curvature_scale};
+use crate::settings::{Colors, Settings, SurfaceUnit};
 use geometry::mesh::{Material, Mesh, Topology};
 use geometry::tessellate::CurvatureKind;
 
@@ -38,34 +39,38 @@ impl Usual {
         let step = topology.patches.len().div_ceil(MOST_PATCHES).max(1);
         for patch in (0..topology.patches.len() as u32).step_by(step) {
             let corners = topology.patch_corners(patch).map(|corner| &mesh.corners[corner as usize]);
-            let sides = [(0, 1), (1, 2), (2, 0)].map(|(a, b)| [corners[a], corners[b]]);
-            let bent = sides.map(|[a, b]| a.normal.distance(b.normal) / a.position.distance(b.position));
+            let (uvs, places) = (corners.map(|corner| corner.uv), corners.map(|corner| corner.position));
+            let bent = [(0, 1), (1, 2), (2, 0)]
+                .map(|(a, b)| corners[a].normal.distance(corners[b].normal) / places[a].distance(places[b]));
             curvatures.extend(bent.iter().filter(|bent| bent.is_finite() && **bent * radius > LEAST_CURVATURE));
-            let material = &mesh.materials[topology.material_of(patch)];
-            densities.extend(texel_density(
-                material,
-                corners.map(|corner| corner.uv),
-                corners.map(|corner| corner.position),
-            ));
+            densities.extend(texel_density(&mesh.materials[topology.material_of(patch)], uvs, places));
         }
         let curvature = quantile(curvatures, CURVED_PART).map_or(FLAT_CURVATURE / radius, |bent| BEYOND * bent);
         let texels = quantile(densities, 0.5).map_or(1.0, |density| density.log2().round().exp2());
         Self { radius, curvature, texels }
     }
 
-    /// The scale for the numbers that colours stand for, if it depends on the mesh.
-    pub fn scale(&self, settings: &Settings) -> Option<Scale> {
-        match (settings.overlays.colors, settings.texel_density_per) {
-            (Colors::Curvature, _) => {
+    /// The scale for the numbers that a picture's colours stand for; any scale if they stand for none. `known` is that of distances in
+    /// object units, once they are known.
+    pub fn scale(&self, settings: &Settings, known: Option<Scale>) -> Scale {
+        match settings.overlays.colors {
+            Colors::Deviation => match settings.deviation_in {
+                SurfaceUnit::Units => known.unwrap_or(DEVIATION_PX_SCALE),
+                SurfaceUnit::Px => DEVIATION_PX_SCALE,
+            },
+            Colors::Curvature => {
                 let ends = settings.curvature_scale.map_or(self.curvature, |ends| ends / self.radius);
                 let power = if settings.curvature_kind == CurvatureKind::Gaussian { 2 } else { 1 };
-                Some(curvature_scale(f64::from(ends).powi(power)))
+                curvature_scale(f64::from(ends).powi(power))
             }
-            (Colors::TexelDensity, DensityPer::Unit) => {
-                let [least, most] = [DENSITY_SCALE.least, DENSITY_SCALE.most].map(|end| end * self.texels);
-                Some(Scale { least, most, ..DENSITY_SCALE })
+            Colors::TexelDensity => {
+                let middle = if settings.texel_density_per == SurfaceUnit::Units { self.texels } else { 1.0 };
+                let [least, most] = [DENSITY_SCALE.least, DENSITY_SCALE.most].map(|end| end * middle);
+                Scale { least, most, ..DENSITY_SCALE }
             }
-            _ => None,
+            Colors::TriangleSize => SIZE_SCALE,
+            Colors::Excess => EXCESS_SCALE,
+            _ => FACTOR_SCALE,
         }
     }
 }
@@ -126,16 +131,16 @@ mod tests {
         let usual = Usual { radius: 2.0, curvature: 3.0, texels: 256.0 };
         let mut settings = Settings::default();
         settings.overlays.colors = Colors::Curvature;
-        let most = |settings: &Settings| usual.scale(settings).expect("a scale").most;
+        let most = |settings: &Settings| usual.scale(settings, None).most;
         assert_eq!(most(&settings), 3.0);
         settings.curvature_scale = Some(4.0);
         assert_eq!(most(&settings), 2.0);
         settings.curvature_kind = CurvatureKind::Gaussian;
         assert_eq!(most(&settings), 4.0);
         settings.overlays.colors = Colors::TexelDensity;
-        assert_eq!(usual.scale(&settings), None);
-        settings.texel_density_per = DensityPer::Unit;
-        let Scale { least, most, .. } = usual.scale(&settings).expect("a scale");
+        assert_eq!(usual.scale(&settings, None), DENSITY_SCALE);
+        settings.texel_density_per = SurfaceUnit::Units;
+        let Scale { least, most, .. } = usual.scale(&settings, None);
         assert_eq!((least, most), (32.0, 2048.0));
     }
 

@@ -57,7 +57,7 @@ pub struct Settings {
     /// How far the light is turned about the vertical axis, in degrees.
     pub light_rotation: f32,
     /// The unit of the distances that the deviation overlay colours.
-    pub deviation_in: DeviationUnit,
+    pub deviation_in: SurfaceUnit,
     /// Which curvature the curvature overlay shows.
     pub curvature_kind: CurvatureKind,
     /// The curvature at the ends of that overlay's scale, in 1 / bounding radius; none for what suits the mesh. That of Gaussian
@@ -69,8 +69,8 @@ pub struct Settings {
     pub zebra_direction: f32,
     /// How many squares the checker has in one unit of u and v.
     pub checker_squares: f32,
-    /// What texel density is counted along.
-    pub texel_density_per: DensityPer,
+    /// The unit along which texel density is counted.
+    pub texel_density_per: SurfaceUnit,
     /// The lit sphere that the matcap overlay shows.
     pub matcap: Matcap,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
@@ -103,14 +103,14 @@ impl Default for Settings {
             exposure: 0.0,
             tone_curve: ToneCurve::default(),
             light_rotation: 0.0,
-            deviation_in: DeviationUnit::Units,
+            deviation_in: SurfaceUnit::Units,
             curvature_kind: CurvatureKind::default(),
             curvature_scale: None,
             zebra_stripes: 24.0,
             // Askew, since most meshes have edges that lie level or upright: on stripes along an edge one wouldn't see a kink.
             zebra_direction: 36.87,
             checker_squares: 8.0,
-            texel_density_per: DensityPer::default(),
+            texel_density_per: SurfaceUnit::Px,
             matcap: Matcap::default(),
             split: None,
             split_view: SplitView::default(),
@@ -197,23 +197,12 @@ impl SectionAxis {
 }
 
 choices! {
-    /// The unit of distances on the surface.
+    /// The unit of lengths on the surface.
     #[derive(Default)]
-    pub enum DeviationUnit {
+    pub enum SurfaceUnit {
         #[default]
         Units => "units", "Object units", "Object units, which don't depend on the view.";
-        Px => "px", "Px", "The length of the distance on screen, in px, if it lay across the view.";
-    }
-}
-
-choices! {
-    /// What texel density is counted along.
-    #[derive(Default)]
-    pub enum DensityPer {
-        #[default]
-        Px => "px", "Px", "Texels in a px of the picture, which say how sharp the image looks from here.";
-        Unit => "unit", "Object unit",
-            "Texels along an object unit, which is a metre if the file says what its unit is. They don't depend on the view.";
+        Px => "px", "Px", "The length on screen, in px, of what lies across the view.";
     }
 }
 

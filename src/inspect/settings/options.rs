@@ -5,8 +5,8 @@
 
 use super::value::Field;
 use super::{
-    Access, ColorSource, Colors, Declaration, DensityPer, Description, DeviationUnit, FileLights, Kind, Lighting,
-    Matcap, NormalMaps, NormalsAt, Overlay, Range, SectionAxis, Settings, SplitView, ToneCurve, Value, descriptions,
+    Access, Colors, Declaration, Description, FileLights, Kind, Lighting, Matcap, NormalMaps, NormalsAt, Overlay,
+    Range, SectionAxis, Settings, SplitView, SurfaceUnit, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
 use geometry::tessellate::{
@@ -211,9 +211,7 @@ options! {
         label: "Segment length",
         placeholder: "P",
         text: "Length of a segment on screen under LOD by edge length and the white paper's LOD.",
-        no_effect: |settings| {
-            only_if(reads(settings).pixels, "Only LOD by edge length and the white paper's LOD have a segment length.")
-        },
+        no_effect: |settings| only_if(reads(settings).pixels, "Only LOD by edge length and the white paper's LOD have a segment length."),
     }
 
     TOLERANCE: field!(tessellation.tolerance), Kind::Number(TOLERANCE_RANGE) => {
@@ -223,7 +221,7 @@ options! {
         text: "Largest distance on screen between the triangles and the surface under LOD by error. The overlay of excess \
                triangles and the gate above-tolerance compare with it under any LOD.",
         no_effect: |settings| {
-            let is_used = reads(settings).tolerance || settings.overlays.colors.source() == ColorSource::MinimumTriangles;
+            let is_used = reads(settings).tolerance || settings.overlays.colors == Colors::Excess;
             only_if(is_used, "Only LOD by error and the overlay of excess triangles have a tolerance.")
         },
     }
@@ -319,10 +317,7 @@ options! {
         label: "Lighting",
         placeholder: "LIGHT",
         text: "The light that the mesh's own materials are seen in.",
-        no_effect: |settings| {
-            let is_used = settings.overlays.colors.source() == ColorSource::Materials;
-            only_if(is_used, "The overlay that colours the surface has a light of its own.")
-        },
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::Material, "The overlay's colours have a light of their own."),
     }
 
     LIGHTS: field!(lights), Kind::Choice(descriptions::<FileLights>) => {
@@ -375,15 +370,12 @@ options! {
         no_effect: not_in_studio,
     }
 
-    DEVIATION_IN: field!(deviation_in), Kind::Choice(descriptions::<DeviationUnit>) => {
+    DEVIATION_IN: field!(deviation_in), Kind::Choice(descriptions::<SurfaceUnit>) => {
         name: "deviation-in",
         label: "Distances in",
         placeholder: "UNIT",
         text: "The unit of the distances that the deviation overlay colours.",
-        no_effect: |settings| {
-            let is_used = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
-            only_if(is_used, "Only the deviation overlay colours distances.")
-        },
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::Deviation, "Only the deviation overlay colours distances."),
     }
 
     CURVATURE_KIND: field!(curvature_kind), Kind::Choice(descriptions::<CurvatureKind>) => {
@@ -432,14 +424,12 @@ options! {
         no_effect: |settings| only_if(settings.overlays.colors == Colors::UvChecker, "Only the UV checker has squares."),
     }
 
-    TEXEL_DENSITY_PER: field!(texel_density_per), Kind::Choice(descriptions::<DensityPer>) => {
+    TEXEL_DENSITY_PER: field!(texel_density_per), Kind::Choice(descriptions::<SurfaceUnit>) => {
         name: "texel-density-per",
         label: "Texels per",
         placeholder: "UNIT",
         text: "What the texel density overlay counts texels along.",
-        no_effect: |settings| {
-            only_if(settings.overlays.colors == Colors::TexelDensity, "Only the texel density overlay counts texels.")
-        },
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::TexelDensity, "Only texel density counts texels."),
     }
 
     MATCAP: field!(matcap), Kind::Choice(descriptions::<Matcap>) => {
@@ -447,9 +437,7 @@ options! {
         label: "Matcap",
         placeholder: "NAME",
         text: "The lit sphere whose colours the matcap overlay shows.",
-        no_effect: |settings| {
-            only_if(settings.overlays.colors.source() == ColorSource::LitSphere, "Only the matcap overlay shows a lit sphere.")
-        },
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::Matcap, "Only the matcap overlay shows a lit sphere."),
     }
 
     SPLIT: field!(split), Kind::Number(Range::new(0.0, 1.0, "")) => {

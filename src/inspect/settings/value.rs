@@ -3,8 +3,8 @@
 use std::fmt;
 
 use super::{
-    Choice, DensityPer, Description, DeviationUnit, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay,
-    Overlays, SectionAxis, Settings, SplitView, ToneCurve,
+    Choice, Description, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays, SectionAxis, Settings,
+    SplitView, SurfaceUnit, ToneCurve,
 };
 use geometry::mesh::UpAxis;
 use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
@@ -332,8 +332,8 @@ macro_rules! named_fields {
 }
 
 named_fields! {
-    Clip, Convention, CurvatureKind, DensityPer, DeviationUnit, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals, NormalsAt,
-    Partitioning, SectionAxis, SplitView, Subdivide, Surface, ToneCurve, UpAxis,
+    Clip, Convention, CurvatureKind, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals,
+    NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {
