@@ -133,7 +133,7 @@ impl App {
                 let (density, unit) = match self.settings.texel_density_per {
                     SurfaceUnit::Units => (texel_density(material, vertices.map(|own| own.uv.into()), corners), "unit"),
                     SurfaceUnit::Px => {
-                        let seen = |aside| mean_at(&view, middle + aside, &vertices, |own| own.uv);
+                        let seen = |aside: Vec2| mean_at(&view, middle + aside, &vertices, |own| own.uv);
                         let uvs = [seen(Vec2::ZERO)?, seen(Vec2::X)?, seen(Vec2::Y)?];
                         (texel_density(material, uvs, [Vec3::ZERO, Vec3::X, Vec3::Y]), "px")
                     }

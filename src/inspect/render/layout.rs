@@ -125,7 +125,7 @@ pub(crate) const FOUND_EMITTED: u32 = 1;
 pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
     let Overlays { colors, wireframe, patches, adjacency, folds, back_faces, .. } = *overlays;
     // Colours have a bit each above those, but for the mesh's own, which are the first.
-    let colors = (1 << colors as u32) & !1;
+    let colors = (1_u32 << colors as u32) & !1;
     let switches = [wireframe, patches, adjacency, folds, back_faces];
     (0..).zip(switches).fold(colors << (switches.len() - 1), |bits, (bit, is_on)| bits | u32::from(is_on) << bit)
 }

@@ -103,7 +103,7 @@ pub fn legend_of(settings: &Settings, usual: &Usual, distances: &Distances) -> O
 /// The colours of normals along the axes.
 fn normal_colors() -> Shown {
     let all = [("+x", 0, 255), ("+y", 1, 255), ("+z", 2, 255), ("-x", 0, 0), ("-y", 1, 0), ("-z", 2, 0)];
-    let color = |(name, axis, byte)| {
+    let color = |(name, axis, byte): (&str, usize, u8)| {
         let mut color = [128; 3];
         color[axis] = byte;
         (color, name.to_owned())

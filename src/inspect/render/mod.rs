@@ -69,7 +69,6 @@ pub use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_ju
 pub use outlines_picture::{lay_over, outlines_picture};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::{DraftPipelines, Renderer};
-pub(crate) use scale::SIZE_SCALE;
 pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale};
 pub use scene::{LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};

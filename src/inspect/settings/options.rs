@@ -211,7 +211,9 @@ options! {
         label: "Segment length",
         placeholder: "P",
         text: "Length of a segment on screen under LOD by edge length and the white paper's LOD.",
-        no_effect: |settings| only_if(reads(settings).pixels, "Only LOD by edge length and the white paper's LOD have a segment length."),
+        no_effect: |settings| {
+            only_if(reads(settings).pixels, "Only LOD by edge length and the white paper's LOD have a segment length.")
+        },
     }
 
     TOLERANCE: field!(tessellation.tolerance), Kind::Number(TOLERANCE_RANGE) => {
@@ -317,7 +319,10 @@ options! {
         label: "Lighting",
         placeholder: "LIGHT",
         text: "The light that the mesh's own materials are seen in.",
-        no_effect: |settings| only_if(settings.overlays.colors == Colors::Material, "The overlay's colours have a light of their own."),
+        no_effect: |settings| {
+            let is_used = settings.overlays.colors == Colors::Material;
+            only_if(is_used, "The overlay that colours the surface has a light of its own.")
+        },
     }
 
     LIGHTS: field!(lights), Kind::Choice(descriptions::<FileLights>) => {

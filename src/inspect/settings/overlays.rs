@@ -37,8 +37,8 @@ choices! {
             "Colours the surface by how many texels of the base colour's image lie side by side in a px of the \
              picture: orange where the image is magnified and looks blurred, purple where it has more detail than is seen. Or \
              along an object unit: orange where the mesh has fewer than the power of two that is nearest to what half of its \
-             triangles have at most, purple where it has more. A material without an \
-             image counts as if it had one of 1024 x 1024 px. Triangles without texture coordinates are plain grey.";
+             triangles have at most, purple where it has more. A material without an image counts as if it had one of \
+             1024 x 1024 px. Triangles without texture coordinates are plain grey.";
         Barycentric => "barycentric", "Barycentric",
             "Colours the surface by domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2. A corner, \
              where its weight is 1 and the others are 0, has one pure colour; along an edge the colour of the opposite corner is \

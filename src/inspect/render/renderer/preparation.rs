@@ -39,9 +39,7 @@ impl Renderer {
         if settings.overlays.normals {
             draws.extend(Occluded::BOTH.map(Draw::Normals));
         }
-        if scene.lines.is_some() {
-            draws.extend(Occluded::BOTH.map(Draw::Lines));
-        }
+        draws.extend(scene.lines.iter().flat_map(|_| Occluded::BOTH.map(Draw::Lines)));
         each(&Vec::from_iter(HashSet::<Draw>::from_iter(draws)), |&draw| self.get(draw).map(drop))
     }
 
