@@ -458,7 +458,8 @@ fn a_unit_of_texture_coordinates_has_as_many_squares_as_are_asked_for() {
 
 #[test]
 fn squares_have_an_f_that_shows_mirrored_coordinates_and_their_numbers() {
-    // One light square, 22 cells wide. The F has cells of twice the size; the last digits of column and row are at the right.
+    // One light square, 22 cells wide, and the dark one beside it. The F has cells of twice the size; the last digits of column and
+    // row are at the right.
     let settings = Settings { checker_squares: 1.0, ..flat(Colors::UvChecker) };
     let [own, mirrored] = [1.0, -1.0].map(|u| drawn(&square(Vec3::Z, vec2(u, 1.0)), &settings, 0.0));
     let f = ["###", "#..", "##.", "#..", "#.."];
@@ -471,11 +472,12 @@ fn squares_have_an_f_that_shows_mirrored_coordinates_and_their_numbers() {
             for (x, cell) in (0_u8..).zip(row.chars()) {
                 let px = |from: f32, step: u8| ((from + size * (f32::from(step) + 0.5)) / 22.0 * SIDE as f32) as u32;
                 let at = [px(left, x), px(top, y)];
-                for (picture, across) in [(&own, at[0]), (&mirrored, SIDE - 1 - at[0])] {
+                let brightness = |picture: &RgbaImage, across: u32| {
                     let [r, g, b, _] = picture.get_pixel(across, at[1]).0;
-                    let brightness = linear([r, g, b]).iter().sum::<f32>() / 3.0;
-                    assert_eq!(brightness < ink, cell == '#', "{glyph:?} {x} {y}: {brightness}");
-                }
+                    linear([r, g, b]).iter().sum::<f32>() / 3.0
+                };
+                let [light, dark] = [brightness(&own, at[0]), brightness(&mirrored, SIDE - 1 - at[0])];
+                assert_eq!([light < ink, dark > 0.26], [cell == '#'; 2], "{glyph:?} {x} {y}: {light} {dark}");
             }
         }
     }
