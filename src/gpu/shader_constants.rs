@@ -4,7 +4,7 @@ use std::fmt::Debug;
 
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{EdgeKind, Slot};
-use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// All values of an enum, with their numbers.
 macro_rules! numbered {
@@ -17,6 +17,7 @@ macro_rules! numbered {
 pub fn enum_constants(file: &str) -> String {
     match file {
         "convention" => constants("CONVENTION", numbered!(Convention)),
+        "curvature" => constants("CURVATURE", numbered!(CurvatureKind)),
         "cull" => constants("CLIP", numbered!(Clip)),
         "displace" => constants("DISPLACEMENT", numbered!(Displacement)),
         "draw_material" => constants("SLOT", numbered!(Slot)),

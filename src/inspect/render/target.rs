@@ -61,19 +61,17 @@ impl Target {
             whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count, ..own }))
         });
         let depth = depth_view(gpu, "target.depth", [width, height]);
-        let (size, layer_depths, kept) = ([width, height], Lazy::default(), Lazy::default());
-        let (is_transparent, is_draft, coarseness) = (false, false, 1);
         Ok(Self {
-            size,
+            size: [width, height],
             resolved,
             resolved_srgb,
             multisampled,
             depth,
-            layer_depths,
-            kept,
-            is_transparent,
-            is_draft,
-            coarseness,
+            layer_depths: Lazy::default(),
+            kept: Lazy::default(),
+            is_transparent: false,
+            is_draft: false,
+            coarseness: 1,
         })
     }
 
@@ -131,12 +129,7 @@ impl Target {
         };
         let background = if self.is_transparent { wgpu::Color::TRANSPARENT } else { background };
         let load = if first { wgpu::LoadOp::Clear(background) } else { wgpu::LoadOp::Load };
-        wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        }
+        wgpu::RenderPassColorAttachment { resolve_target, ..color_attachment(view, load) }
     }
 
     /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
@@ -207,6 +200,15 @@ fn depth_view(gpu: &Gpu, label: &str, size: [u32; 2]) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
     let descriptor = flat_texture(label, size, DEPTH_FORMAT, usage);
     whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples(gpu), ..descriptor }))
+}
+
+/// A colour attachment whose picture is stored.
+pub(super) fn color_attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
 /// A depth attachment that is first cleared to a depth, or keeps what it has.

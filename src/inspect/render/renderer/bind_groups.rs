@@ -31,7 +31,13 @@ impl Renderer {
             Some(environment) if settings.lighting == Lighting::Environment => environment.clone(),
             _ => self.studio()?.clone(),
         };
-        let surroundings = environment.surroundings(&self.gpu, &light_view(settings));
+        let view = LightView {
+            brightness: settings.environment_brightness,
+            rotation: settings.light_rotation,
+            exposure: settings.exposure,
+            tone_curve: settings.tone_curve,
+        };
+        let surroundings = environment.surroundings(&self.gpu, &view);
         Ok(Some(PictureLight { environment, surroundings }))
     }
 
@@ -84,15 +90,5 @@ impl Renderer {
     pub(super) fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {
         let bound = [chunk.slab, chunk.patch_factors].map(wgpu::Buffer::as_entire_binding);
         bind_group(&self.gpu, "chunk", &self.pipelines.chunk_layout, (0..).zip(bound))
-    }
-}
-
-/// How settings turn and show the light.
-fn light_view(settings: &Settings) -> LightView {
-    LightView {
-        brightness: settings.environment_brightness,
-        rotation: settings.light_rotation,
-        exposure: settings.exposure,
-        tone_curve: settings.tone_curve,
     }
 }

@@ -59,8 +59,7 @@ impl Renderer {
         let places = half_places(target.size, settings);
         let half_frame = |half| {
             let (drawn, settings) = scene.half(half).zip(settings.half(half))?;
-            let radius = scene.bounds.radius();
-            Some(frame(&self.gpu, drawn, radius, target, camera, &settings, &places[half as usize]))
+            Some(frame(&self.gpu, drawn, &scene.usual(), target, camera, &settings, &places[half as usize]))
         };
         let steps = steps(scene, settings);
         let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());

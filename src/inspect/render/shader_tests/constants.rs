@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use super::modules;
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::camera::FIELD_OF_VIEW;
-use crate::render::colors::Look;
 use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::draws::LayerDraw;
@@ -102,12 +101,12 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &[
             "CLAY_COLOR",
             "CLAY_UNDER_OUTLINES",
-            "ZEBRA_STRIPES",
-            "ZEBRA_AXIS",
             "ZEBRA_DARK",
             "ZEBRA_LIGHT",
-            "CHECKER_SQUARES",
             "CHECKER_DARK",
+            "GLYPHS",
+            "GLYPH_F",
+            "SQUARE_CELLS",
         ],
         "how the surface looks",
     ),
@@ -191,10 +190,10 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_SHADING_NORMALS", colors(Colors::ShadingNormals)),
         ("OVERLAY_UV_CHECKER", colors(Colors::UvChecker)),
         ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
-        ("LOOK_SURFACE_NORMALS", number(Look::SurfaceNormals as u32)),
-        ("LOOK_CURVATURE", number(Look::Curvature as u32)),
-        ("LOOK_MATCAP", number(Look::Matcap as u32)),
-        ("LOOK_TEXEL_DENSITY", number(Look::TexelDensity as u32)),
+        ("LOOK_SURFACE_NORMALS", number(Colors::SurfaceNormals as u32)),
+        ("LOOK_CURVATURE", number(Colors::Curvature as u32)),
+        ("LOOK_MATCAP", number(Colors::Matcap as u32)),
+        ("LOOK_TEXEL_DENSITY", number(Colors::TexelDensity as u32)),
         ("TEXELS_WITHOUT_IMAGE", number(TEXELS_WITHOUT_IMAGE)),
         ("MATCAP_REACH", number(MATCAP_REACH)),
         ("FOLD_COLOR", color(FOLD_COLOR)),

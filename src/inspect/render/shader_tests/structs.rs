@@ -112,6 +112,10 @@ fn shared_structs_have_the_same_layout() {
         left,
         coarseness,
         shift,
+        kind,
+        zebra_axis,
+        zebra_stripes,
+        checker_squares,
     });
     same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
     same!(PunctualLight { origin, intensity, inverse_range, direction, cone_scale, cone_offset });
