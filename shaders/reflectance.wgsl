@@ -1,6 +1,6 @@
 // How surfaces reflect light: the materials of glTF 2.0 (specification, appendix B) with the extensions KHR_materials_ior,
-// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_transmission and KHR_materials_sheen. Nothing here reads a texture or
-// a buffer. src/inspect/render/reflectance.rs has the same functions.
+// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_transmission, KHR_materials_volume, KHR_materials_sheen and
+// KHR_materials_anisotropy. Nothing here reads a texture or a buffer. src/inspect/render/reflectance.rs has the same functions.
 
 const PI: f32 = 3.14159265;
 
@@ -21,6 +21,9 @@ struct LookAt {
     // The unit normal of the coat, and how much of the surface it covers.
     coat_normal: vec3<f32>,
     coat: f32,
+    // The unit direction across the normal that highlights are longer along, and by how much, 0 to 1.
+    direction: vec3<f32>,
+    anisotropy: f32,
     // Perceptual roughness of the surface and of the coat, 0 to 1.
     roughness: f32,
     coat_roughness: f32,
@@ -84,6 +87,37 @@ fn ggx_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
     let eye_part = lit * sqrt(facing * facing * (1.0 - square) + square);
     let light_part = facing * sqrt(lit * lit * (1.0 - square) + square);
     return 0.5 / max(eye_part + light_part, 1e-7);
+}
+
+// Squares of the perceptual roughness along the direction of long highlights and across it (KHR_materials_anisotropy).
+fn stretched_alphas(look: LookAt) -> vec2<f32> {
+    let alpha = look.roughness * look.roughness;
+    return vec2<f32>(mix(alpha, 1.0, look.anisotropy * look.anisotropy), alpha);
+}
+
+// The perceptual roughness whose directional albedo is about that of a surface with long highlights: tests say how near it is.
+fn mean_roughness(look: LookAt) -> f32 {
+    let alphas = stretched_alphas(look);
+    return select(look.roughness, sqrt(sqrt(0.5 * dot(alphas, alphas))), look.anisotropy > 0.0);
+}
+
+// Round highlights that make up a long one.
+const LEANS: u32 = 16u;
+
+// The perceptual roughness of each of them: so much more than that across the long one that no gaps are left between them.
+fn leaning_roughness(look: LookAt) -> f32 {
+    let alphas = stretched_alphas(look);
+    let apart = (alphas.x * alphas.x - alphas.y * alphas.y) / f32(LEANS * LEANS);
+    return sqrt(sqrt(max(apart, 0.0) + alphas.y * alphas.y));
+}
+
+// The unit normal of the microfacets in the middle of one of them. All stand for the same part of the microfacets: the slopes of GGX
+// along a direction are those of directions whose sines are spread evenly (from Walter et al. 2007, equation 33).
+fn leaning_normal(look: LookAt, normal: vec3<f32>, index: u32) -> vec3<f32> {
+    let alphas = stretched_alphas(look);
+    let sine = (2.0 * f32(index) + 1.0) / f32(LEANS) - 1.0;
+    let slope = sqrt(max(alphas.x * alphas.x - alphas.y * alphas.y, 0.0)) * sine * inverseSqrt(1.0 - sine * sine);
+    return normalize(normal - slope * look.direction);
 }
 
 // The part of an even light from all around that microfacets reflect at once: the split sum (Karis 2013).
@@ -168,6 +202,23 @@ fn transmitted(look: LookAt, dfg: vec2<f32>, coat_dfg: vec2<f32>) -> vec3<f32> {
     return through * (sheen_scaling(look) * (1.0 - coat_albedo(look, coat_dfg)));
 }
 
+// The unit direction in which light that reaches the eye comes through a body: what Snell's law makes of it at the surface.
+fn refracted_direction(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    // An index of 0 stands for an infinite one.
+    let ratio = select(1.0 / look.ior, 0.0, look.ior < 1.0);
+    return refract(-to_eye, normal, ratio);
+}
+
+// How much the surface of a body blurs what is behind, 0 to 1: not at all where it doesn't refract.
+fn blur_in_body(look: LookAt) -> f32 {
+    return look.roughness * clamp(2.0 * look.ior - 2.0, 0.0, 1.0);
+}
+
+// What is left of light after a distance in a body that absorbs so much of it (Beer and Lambert).
+fn left_by_absorption(absorption: vec3<f32>, distance: f32) -> vec3<f32> {
+    return exp(-absorption * distance);
+}
+
 // Radiance towards the eye per irradiance that a surface across the light would get, for light from a single direction. All
 // directions are of unit length.
 fn direct_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>) -> vec3<f32> {
@@ -199,6 +250,24 @@ fn direct_lobe(
     return ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit;
 }
 
+// The same where highlights are longer along a direction (KHR_materials_anisotropy; Heitz 2014, equations 85 and 99).
+fn direct_long_lobe(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>, half_way: vec3<f32>) -> f32 {
+    let lit = dot(normal, to_light);
+    let facing = dot(normal, to_eye);
+    if lit <= 0.0 || facing <= 0.0 {
+        return 0.0;
+    }
+    let alphas = max(stretched_alphas(look), vec2<f32>(LEAST_ALPHA));
+    let from_object = transpose(mat3x3<f32>(look.direction, cross(normal, look.direction), normal));
+    let product = alphas.x * alphas.y;
+    let spread = from_object * half_way * vec3<f32>(alphas.yx, product);
+    let squared = dot(spread, spread) / product;
+    let scale = vec3<f32>(alphas, 1.0);
+    let eye_part = lit * length(from_object * to_eye * scale);
+    let light_part = facing * length(from_object * to_light * scale);
+    return lit * 0.5 / (PI * squared * squared * max(eye_part + light_part, 1e-7)) * product;
+}
+
 // Reflection by a white sheen. Where it would reflect more of an even light than there is, which smooth ones do that are seen from
 // the side, it is scaled down to all of it.
 fn direct_sheen(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>, half_way: vec3<f32>) -> f32 {
@@ -222,7 +291,9 @@ fn direct_base_reflection(
     half_way: vec3<f32>,
     schlick: f32,
 ) -> vec3<f32> {
-    let lobe = direct_lobe(normal, to_eye, to_light, half_way, look.roughness);
+    let round = direct_lobe(normal, to_eye, to_light, half_way, look.roughness);
+    let long = direct_long_lobe(look, normal, to_eye, to_light, half_way);
+    let lobe = select(round, long, look.anisotropy > 0.0);
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (vec3<f32>(look.specular) - f0) * schlick;
     let lit = select(0.0, max(dot(normal, to_light), 0.0), dot(normal, to_eye) > 0.0);

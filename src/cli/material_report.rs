@@ -76,6 +76,13 @@ impl MaterialInfo {
         add(look.transmission > 0.0, format!("transmission {}", look.transmission));
         let sheen = numbers(&look.sheen_color);
         add(look.sheen_color != usual.sheen_color, format!("sheen {sheen} of roughness {}", look.sheen_roughness));
+        let (stretch, angle) = (look.anisotropy, look.anisotropy_rotation.to_degrees());
+        add(stretch > 0.0, format!("highlights longer by {stretch} at {angle} degrees from the tangent"));
+        let color = numbers(&look.attenuation_color);
+        let absorbs = look.attenuation_color != usual.attenuation_color && look.attenuation_distance.is_finite();
+        let left = format!(", which leaves {color} of light in {} object units", look.attenuation_distance);
+        let left = if absorbs { left } else { String::new() };
+        add(look.thickness > 0.0, format!("{} object units thick{left}", look.thickness));
         add(self.alpha == "blend", "blended".to_owned());
         let cutoff = self.alpha_cutoff;
         add(cutoff.is_some(), format!("cut out below alpha {}", cutoff.unwrap_or_default()));
@@ -98,7 +105,9 @@ fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
         | Slot::Clearcoat
         | Slot::ClearcoatRoughness
         | Slot::Specular
-        | Slot::SpecularColor => None,
+        | Slot::SpecularColor
+        | Slot::Anisotropy
+        | Slot::Thickness => None,
     };
     let uv_set = match map.uv {
         MapUv::Own => None,

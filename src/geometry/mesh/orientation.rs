@@ -67,6 +67,9 @@ pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
     if let Some(rig) = &mut mesh.rig {
         reorient_rig(Arc::make_mut(rig), DMat4::from_mat3(up.matrix() * scale));
     }
+    for look in mesh.materials.iter_mut().map(|material| &mut material.look) {
+        (look.thickness, look.attenuation_distance) = (length(look.thickness), length(look.attenuation_distance));
+    }
     for light in &mut mesh.lights {
         (light.place, light.direction) = (place(light.place), up.turn(light.direction));
         if let LightKind::Point { range } | LightKind::Spot { range, .. } = &mut light.kind {

@@ -24,11 +24,11 @@ impl Attributes {
                 sets[set] = true;
             }
         }
-        let has_normal_map = looks().any(|look| look.tangent_map().is_some());
+        let needs_tangents = looks().any(|look| look.tangent_uv().is_some());
         Self {
             sets,
             colors: details.iter().any(|detail| detail.color != Vec4::ONE),
-            tangents: has_normal_map && details.iter().any(|detail| detail.tangent != glam::Vec3::ZERO),
+            tangents: needs_tangents && details.iter().any(|detail| detail.tangent != glam::Vec3::ZERO),
         }
     }
 

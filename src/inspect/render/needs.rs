@@ -1,12 +1,16 @@
 //! What the shader that lights a mesh's materials must have.
 
 use crate::settings::{ColorSource, FileLights, Settings};
-use geometry::mesh::{Alpha, MOST_LIGHTS, Material, Mesh, Slot};
+use geometry::mesh::{Alpha, Look, MOST_LIGHTS, Material, Mesh, Slot};
+
+/// The bit of [`Needs::maps`] for the picture of what is behind a body; the same in `shaders/draw_material.wgsl`.
+pub(super) const BEHIND: usize = Slot::COUNT;
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Needs {
-    /// Bits of the images beside that of the base colour, by [`Slot`].
+    /// Bits of the images beside that of the base colour, by [`Slot`]; and [`BEHIND`] for what is behind a body that refracts light. The
+    /// shader has a place for each of them, in this order.
     pub maps: u32,
     /// Details of corners: colours, tangents, or further texture coordinates.
     pub details: bool,
@@ -18,6 +22,8 @@ pub(super) struct Needs {
     pub transmission: bool,
     /// A sheen.
     pub sheen: bool,
+    /// Highlights that are longer along a direction than across it.
+    pub anisotropy: bool,
     /// How many lights of the file shine.
     pub lights: usize,
     /// Whether a pixel's samples are masked one by one: see [`Self::own`].
@@ -29,12 +35,13 @@ pub(super) struct Needs {
 impl Needs {
     /// Everything that any mesh needs.
     pub(super) const ALL: Self = Self {
-        maps: (1 << Slot::COUNT) - 1,
+        maps: (1 << Look::MOST_IMAGES) - 1,
         details: true,
         coat: true,
         mask: true,
         transmission: true,
         sheen: true,
+        anisotropy: true,
         lights: MOST_LIGHTS,
         masked_samples: false,
         draft: false,
@@ -43,21 +50,39 @@ impl Needs {
     /// What a material of a mesh needs of its shader with these settings; or, where materials share a shader, what all of the mesh's
     /// materials need together.
     pub(super) fn new(mesh: &Mesh, material: &Material, settings: &Settings, kind: PictureKind) -> Self {
-        let own = if kind.shares_shaders { &mesh.materials } else { std::slice::from_ref(material) };
+        let of = |materials: &[Material]| Self::together(materials, mesh, settings);
+        let shared = Some(of(&mesh.materials)).filter(|shared| kind.shares_shaders && shared.has_places());
+        let mut needs = shared.unwrap_or_else(|| of(std::slice::from_ref(material)));
+        if !settings.draws_normal_map(mesh, material) {
+            needs.maps &= !(1 << Slot::Normal as u32);
+        }
+        while !needs.has_places() {
+            let of_slots = needs.maps & !(1 << BEHIND);
+            needs.maps &= !(1 << of_slots.ilog2());
+        }
+        needs
+    }
+
+    /// Whether a shader has places for all of the images.
+    fn has_places(&self) -> bool {
+        self.maps.count_ones() as usize <= Look::MOST_IMAGES
+    }
+
+    /// What some of a mesh's materials need together.
+    fn together(materials: &[Material], mesh: &Mesh, settings: &Settings) -> Self {
         let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
         let details = mesh.details.is_some();
-        let nothing = Self { maps: 0, coat: false, mask: false, transmission: false, sheen: false, ..Self::ALL };
-        let mut needs = Self { details, lights, ..nothing };
-        for look in own.iter().map(|material| &material.look) {
+        let nothing = Self { maps: 0, coat: false, mask: false, transmission: false, ..Self::ALL };
+        let mut needs = Self { details, lights, sheen: false, anisotropy: false, ..nothing };
+        for look in materials.iter().map(|material| &material.look) {
             let maps = Slot::ALL.into_iter().filter(|slot| look.maps[*slot as usize].is_some());
             needs.maps |= maps.map(|slot| 1 << slot as u32).sum::<u32>();
+            needs.maps |= u32::from(look.refracts()) << BEHIND;
             needs.coat |= look.clearcoat > 0.0;
             needs.mask |= look.alpha != Alpha::Opaque;
             needs.transmission |= look.transmits();
             needs.sheen |= look.has_sheen();
-        }
-        if !settings.draws_normal_map(mesh, material) {
-            needs.maps &= !(1 << Slot::Normal as u32);
+            needs.anisotropy |= look.has_anisotropy();
         }
         needs
     }
@@ -71,7 +96,7 @@ impl Needs {
     }
 
     /// The values of the constants of `shaders/draw_material.wgsl`.
-    pub(super) fn constants(self) -> [(&'static str, f64); 8] {
+    pub(super) fn constants(self) -> [(&'static str, f64); 9] {
         let switch = |is_needed| f64::from(u8::from(is_needed));
         [
             ("MAPS", f64::from(self.maps)),
@@ -80,6 +105,7 @@ impl Needs {
             ("HAS_MASK", switch(self.mask)),
             ("HAS_TRANSMISSION", switch(self.transmission)),
             ("HAS_SHEEN", switch(self.sheen)),
+            ("HAS_ANISOTROPY", switch(self.anisotropy)),
             ("IS_DRAFT", switch(self.draft)),
             ("LIGHT_COUNT", self.lights as f64),
         ]
@@ -130,7 +156,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use geometry::mesh::{Light, LightKind, Look, Shape};
+    use geometry::mesh::{Light, LightKind, Shape};
 
     const NOTHING: Needs = Needs {
         maps: 0,

@@ -4,7 +4,7 @@
 use std::f32::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3};
+use glam::{Mat3, Vec2, Vec3, vec2, vec3};
 
 use super::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_visibility};
 
@@ -24,6 +24,8 @@ pub struct LookAt {
     pub specular: f32,
     pub coat_normal: Vec3,
     pub coat: f32,
+    pub direction: Vec3,
+    pub anisotropy: f32,
     pub roughness: f32,
     pub coat_roughness: f32,
     pub ior: f32,
@@ -44,6 +46,8 @@ impl Default for LookAt {
             specular: 1.0,
             coat_normal: Vec3::Z,
             coat: 0.0,
+            direction: Vec3::X,
+            anisotropy: 0.0,
             roughness: 0.5,
             coat_roughness: 0.0,
             ior: 1.5,
@@ -94,6 +98,33 @@ pub(crate) fn ggx_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
     let eye_part = lit * (facing * facing * (1.0 - square) + square).sqrt();
     let light_part = facing * (lit * lit * (1.0 - square) + square).sqrt();
     0.5 / (eye_part + light_part).max(1e-7)
+}
+
+pub fn stretched_alphas(look: &LookAt) -> Vec2 {
+    let alpha = look.roughness * look.roughness;
+    vec2(alpha + (1.0 - alpha) * look.anisotropy * look.anisotropy, alpha)
+}
+
+pub fn mean_roughness(look: &LookAt) -> f32 {
+    if look.anisotropy <= 0.0 {
+        return look.roughness;
+    }
+    (0.5 * stretched_alphas(look).length_squared()).sqrt().sqrt()
+}
+
+pub const LEANS: u32 = 16;
+
+pub fn leaning_roughness(look: &LookAt) -> f32 {
+    let alphas = stretched_alphas(look);
+    let apart = (alphas.x * alphas.x - alphas.y * alphas.y) / (LEANS * LEANS) as f32;
+    (apart.max(0.0) + alphas.y * alphas.y).sqrt().sqrt()
+}
+
+pub fn leaning_normal(look: &LookAt, normal: Vec3, index: u32) -> Vec3 {
+    let alphas = stretched_alphas(look);
+    let sine = (2 * index + 1) as f32 / LEANS as f32 - 1.0;
+    let slope = (alphas.x * alphas.x - alphas.y * alphas.y).max(0.0).sqrt() * sine / (1.0 - sine * sine).sqrt();
+    (normal - slope * look.direction).normalize()
 }
 
 pub(crate) fn albedo_at_once(f0: Vec3, f90: f32, dfg: Vec2) -> Vec3 {
@@ -170,6 +201,19 @@ pub fn transmitted(look: &LookAt, dfg: Vec2, coat_dfg: Vec2) -> Vec3 {
     through * (sheen_scaling(look) * (1.0 - coat_albedo(look, coat_dfg)))
 }
 
+pub fn refracted_direction(look: &LookAt, normal: Vec3, to_eye: Vec3) -> Vec3 {
+    let ratio = if look.ior < 1.0 { 0.0 } else { 1.0 / look.ior };
+    (-to_eye).refract(normal, ratio)
+}
+
+pub fn blur_in_body(look: &LookAt) -> f32 {
+    look.roughness * (2.0 * look.ior - 2.0).clamp(0.0, 1.0)
+}
+
+pub fn left_by_absorption(absorption: Vec3, distance: f32) -> Vec3 {
+    (-absorption * distance).exp()
+}
+
 pub fn direct_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
     let half_way = (to_eye + to_light).normalize();
     let schlick = fifth_power(1.0 - half_way.dot(to_eye).clamp(0.0, 1.0));
@@ -194,6 +238,22 @@ pub(crate) fn direct_lobe(normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: 
     ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit
 }
 
+pub(crate) fn direct_long_lobe(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3) -> f32 {
+    let (lit, facing) = (normal.dot(to_light), normal.dot(to_eye));
+    if lit <= 0.0 || facing <= 0.0 {
+        return 0.0;
+    }
+    let alphas = stretched_alphas(look).max(Vec2::splat(LEAST_ALPHA));
+    let from_object = Mat3::from_cols(look.direction, normal.cross(look.direction), normal).transpose();
+    let product = alphas.x * alphas.y;
+    let spread = from_object * half_way * vec3(alphas.y, alphas.x, product);
+    let squared = spread.length_squared() / product;
+    let scale = alphas.extend(1.0);
+    let eye_part = lit * (from_object * to_eye * scale).length();
+    let light_part = facing * (from_object * to_light * scale).length();
+    lit * 0.5 / (PI * squared * squared * (eye_part + light_part).max(1e-7)) * product
+}
+
 pub(crate) fn direct_sheen(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3) -> f32 {
     let (lit, facing) = (normal.dot(to_light), normal.dot(to_eye));
     if lit <= 0.0 || facing <= 0.0 {
@@ -213,7 +273,11 @@ pub(crate) fn direct_base_reflection(
     half_way: Vec3,
     schlick: f32,
 ) -> Vec3 {
-    let lobe = direct_lobe(normal, to_eye, to_light, half_way, look.roughness);
+    let lobe = if look.anisotropy > 0.0 {
+        direct_long_lobe(look, normal, to_eye, to_light, half_way)
+    } else {
+        direct_lobe(normal, to_eye, to_light, half_way, look.roughness)
+    };
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (look.specular - f0) * schlick;
     let lit = if normal.dot(to_eye) > 0.0 { normal.dot(to_light).max(0.0) } else { 0.0 };

@@ -166,7 +166,7 @@ pub(super) fn upload(
 }
 
 /// Whether the adapter's textures can be so large, in px, and its buffers hold their levels.
-fn fits(gpu: &Gpu, size: [u32; 2]) -> bool {
+pub(super) fn fits(gpu: &Gpu, size: [u32; 2]) -> bool {
     let limits = gpu.device.limits();
     let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     size.iter().all(|side| *side <= limits.max_texture_dimension_2d) && level_bytes(size) <= most

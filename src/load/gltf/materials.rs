@@ -28,10 +28,15 @@ use geometry::progress::Progress;
 /// How many materials a sentence names.
 const NAMED: usize = 3;
 
+/// By how large a part scales may differ that count as the same.
+const SAME_SCALE: f32 = 0.01;
+
 /// A material's index in the builder, and what its corners need.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Resolved {
     pub index: usize,
+    /// The scale of the node that it was made for; NaN once a warning said that other nodes have another.
+    scale: f32,
     pub uvs: Uvs,
     pub needs: DetailNeeds,
 }
@@ -192,17 +197,26 @@ impl<'a> Materials<'a> {
         self.images.insert(image, ReadImage { texture, scaled });
     }
 
-    /// Finds a material of what is shown, or adds it to the builder. A texture that is missing or broken causes a warning.
-    pub(super) fn resolve(&mut self, material: &::gltf::Material, builder: &mut MeshBuilder) -> Resolved {
+    /// Finds a material of what is shown, or adds it to the builder. `scale` is that of the node which shows it. A texture that is
+    /// missing or broken causes a warning.
+    pub(super) fn resolve(&mut self, material: &::gltf::Material, scale: f32, builder: &mut MeshBuilder) -> Resolved {
         let key = material.index();
-        if let Some(&resolved) = self.resolved.get(&key) {
-            return resolved;
+        if let Some(resolved) = self.resolved.get_mut(&key) {
+            if (scale / resolved.scale - 1.0).abs() > SAME_SCALE && self.sources[&key].look.refracts() {
+                resolved.scale = f32::NAN;
+                let name = name(&self.sources[&key], key);
+                let said = "is that in the first node which shows it, and other nodes have another scale";
+                self.notes.get_mut().push(format!("the thickness of material \"{name}\" {said}."));
+            }
+            return *resolved;
         }
         let Some(source) = self.sources.get(&key).cloned() else { return Resolved::default() };
         let name = name(&source, key);
         let filter = MipFilter::from_base_color(source.look.alpha);
         let base = source.base_map.and_then(|map| self.texture(map.texture, filter, "texture", &name));
         let mut look = source.look.clone();
+        // A thickness is in the mesh's space, the distance of its attenuation in the scene's (KHR_materials_volume).
+        look.thickness *= scale;
         for slot in Slot::ALL {
             let map = source.maps[slot as usize];
             look.maps[slot as usize] = map.and_then(|map| self.map(map, slot, source.own_uvs(), &name));
@@ -216,7 +230,7 @@ impl<'a> Materials<'a> {
         let MaterialSource { base_color, double_sided, .. } = source;
         let triangles = 0..0;
         let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
-        let resolved = Resolved { index: builder.material(made), uvs, needs };
+        let resolved = Resolved { index: builder.material(made), scale, uvs, needs };
         self.resolved.insert(key, resolved);
         resolved
     }
@@ -322,7 +336,7 @@ impl<'a> Materials<'a> {
 
 impl DetailNeeds {
     fn new(look: &Look) -> Self {
-        let mut needs = Self { tangents: look.tangent_map().is_some(), ..Self::default() };
+        let mut needs = Self { tangents: look.tangent_uv().is_some(), ..Self::default() };
         for map in look.maps.iter().flatten() {
             if let MapUv::Set(set, _) = map.uv {
                 needs.sets[set] = true;

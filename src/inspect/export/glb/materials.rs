@@ -1,8 +1,7 @@
 //! Writes materials with their images, and all of their numbers.
 //!
-//! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_clearcoat, KHR_materials_emissive_strength,
-//! KHR_materials_ior, KHR_materials_sheen, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
-//! KHR_texture_transform.
+//! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_emissive_strength, KHR_materials_unlit and
+//! KHR_texture_transform, and those of [`EXTENSIONS`].
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -13,6 +12,7 @@ use super::{Writer, pushed};
 use crate::export::ExportError;
 use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
 use geometry::names;
+use load::material_members::{EXTENSIONS, MAPS, METALLIC_ROUGHNESS, Member, Members};
 
 const TRANSFORM: &str = "KHR_texture_transform";
 
@@ -81,52 +81,42 @@ impl Writer {
     /// # Errors
     /// An image can't be encoded.
     pub(super) fn material(&mut self, material: &Material, sets: &UvSets) -> Result<usize, ExportError> {
-        let look = &material.look;
-        let mut infos: [Option<Value>; Slot::COUNT] = Default::default();
-        for (map, info) in look.maps.iter().zip(&mut infos) {
+        let mut parts = LookParts { look: material.look.clone(), maps: Default::default() };
+        for (map, info) in material.look.maps.iter().zip(&mut parts.maps) {
             if let Some(map) = map {
                 *info = self.map(map, material, sets)?;
             }
         }
-        let mut of = |slot: Slot| infos[slot as usize].take();
-        let mut rough = json!({
-            "baseColorFactor": material.base_color,
-            "metallicFactor": look.metallic,
-            "roughnessFactor": look.roughness,
-        });
+        let mut rough = json!({ "baseColorFactor": material.base_color });
         if let Some(image) = &material.texture {
             let index = self.texture(image, material.sampling)?;
             rough["baseColorTexture"] = json!({ "index": index, "texCoord": sets.number(UvSet::Own) });
         }
-        set(&mut rough, "metallicRoughnessTexture", of(Slot::MetallicRoughness));
+        parts.write(METALLIC_ROUGHNESS, &mut rough);
         let mut written = json!({
             "name": material.name,
             "pbrMetallicRoughness": rough,
             "doubleSided": material.double_sided,
         });
-        set(&mut written, "normalTexture", with(of(Slot::Normal), "scale", look.normal_scale));
-        set(&mut written, "occlusionTexture", with(of(Slot::Occlusion), "strength", look.occlusion_strength));
-        set(&mut written, "emissiveTexture", of(Slot::Emissive));
-        written["alphaMode"] = json!(match look.alpha {
+        parts.write(MAPS, &mut written);
+        written["alphaMode"] = json!(match material.look.alpha {
             Alpha::Opaque => "OPAQUE",
             Alpha::Mask(_) => "MASK",
             Alpha::Blend => "BLEND",
         });
-        if let Alpha::Mask(cutoff) = look.alpha {
+        if let Alpha::Mask(cutoff) = material.look.alpha {
             written["alphaCutoff"] = json!(cutoff);
         }
-        self.emission(look, &mut written);
-        self.reflection(look, &mut written, &mut of);
-        if look.transmits() {
-            let members = json!({ "transmissionFactor": look.transmission });
-            let maps = [("transmissionTexture", of(Slot::Transmission))];
-            self.extend(&mut written, "KHR_materials_transmission", with_maps(members, maps));
+        self.emission(&material.look, &mut written);
+        if material.look.unlit {
+            self.extend(&mut written, "KHR_materials_unlit", json!({}));
         }
-        if look.has_sheen() {
-            let members = json!({ "sheenColorFactor": look.sheen_color, "sheenRoughnessFactor": look.sheen_roughness });
-            let [color, roughness] = [Slot::SheenColor, Slot::SheenRoughness].map(&mut of);
-            let maps = [("sheenColorTexture", color), ("sheenRoughnessTexture", roughness)];
-            self.extend(&mut written, "KHR_materials_sheen", with_maps(members, maps));
+        for extension in EXTENSIONS {
+            if (extension.matters)(&material.look) && parts.differ(extension.members) {
+                let mut members = json!({});
+                parts.write(extension.members, &mut members);
+                self.extend(&mut written, extension.name, members);
+            }
         }
         Ok(pushed(&mut self.materials, written))
     }
@@ -138,34 +128,6 @@ impl Writer {
         if brightest > 1.0 {
             let members = json!({ "emissiveStrength": brightest });
             self.extend(written, "KHR_materials_emissive_strength", members);
-        }
-    }
-
-    /// Adds how a material reflects light, where it is not as glTF has it without extensions.
-    fn reflection(&mut self, look: &Look, written: &mut Value, map: &mut impl FnMut(Slot) -> Option<Value>) {
-        let usual = Look::default();
-        if look.unlit {
-            self.extend(written, "KHR_materials_unlit", json!({}));
-        }
-        if look.ior != usual.ior {
-            self.extend(written, "KHR_materials_ior", json!({ "ior": look.ior }));
-        }
-        let (strength, color) = (map(Slot::Specular), map(Slot::SpecularColor));
-        let has_numbers = look.specular != usual.specular || look.specular_color != usual.specular_color;
-        if has_numbers || strength.is_some() || color.is_some() {
-            let members = json!({ "specularFactor": look.specular, "specularColorFactor": look.specular_color });
-            let maps = [("specularTexture", strength), ("specularColorTexture", color)];
-            self.extend(written, "KHR_materials_specular", with_maps(members, maps));
-        }
-        if look.clearcoat > 0.0 {
-            let members =
-                json!({ "clearcoatFactor": look.clearcoat, "clearcoatRoughnessFactor": look.clearcoat_roughness });
-            let maps = [
-                ("clearcoatTexture", map(Slot::Clearcoat)),
-                ("clearcoatRoughnessTexture", map(Slot::ClearcoatRoughness)),
-                ("clearcoatNormalTexture", with(map(Slot::ClearcoatNormal), "scale", look.clearcoat_normal_scale)),
-            ];
-            self.extend(written, "KHR_materials_clearcoat", with_maps(members, maps));
         }
     }
 
@@ -214,24 +176,43 @@ impl Writer {
     }
 }
 
-/// Sets a member that there is.
-fn set(object: &mut Value, name: &str, value: Option<Value>) {
-    if let Some(value) = value {
-        object[name] = value;
+/// A look that is being written.
+struct LookParts {
+    look: Look,
+    /// Where its maps are, and how they are placed. Each is taken when it is written.
+    maps: [Option<Value>; Slot::COUNT],
+}
+
+impl LookParts {
+    /// Whether any of these members has a value that says something.
+    fn differ(&mut self, members: &Members) -> bool {
+        let usual = &mut Look::default();
+        members.iter().any(|(_, member)| match member {
+            Member::Number(number, _) => number(&mut self.look) != number(usual),
+            Member::Color(color, _) => color(&mut self.look) != color(usual),
+            Member::Map(slot) | Member::ScaledMap(slot, ..) => self.maps[*slot as usize].is_some(),
+        })
     }
-}
 
-/// The same info with one more number.
-fn with(info: Option<Value>, name: &str, number: f32) -> Option<Value> {
-    let mut info = info?;
-    info[name] = json!(number);
-    Some(info)
-}
-
-/// The members of an extension, with the maps that there are.
-fn with_maps<const N: usize>(mut members: Value, maps: [(&str, Option<Value>); N]) -> Value {
-    maps.into_iter().for_each(|(name, map)| set(&mut members, name, map));
-    members
+    /// Sets members of an object: all numbers that are finite, and the maps that there are.
+    fn write(&mut self, members: &Members, object: &mut Value) {
+        for (name, member) in members {
+            match member {
+                Member::Number(number, _) => {
+                    let own = Some(*number(&mut self.look)).filter(|own| own.is_finite());
+                    own.into_iter().for_each(|own| object[*name] = json!(own));
+                }
+                Member::Color(color, _) => object[*name] = json!(*color(&mut self.look)),
+                Member::Map(slot) | Member::ScaledMap(slot, ..) => {
+                    let Some(mut info) = self.maps[*slot as usize].take() else { continue };
+                    if let Member::ScaledMap(_, factor, number, _) = member {
+                        info[*factor] = json!(*number(&mut self.look));
+                    }
+                    object[*name] = info;
+                }
+            }
+        }
+    }
 }
 
 /// The place of what a list has each once, and whether it is new there.
