@@ -81,17 +81,17 @@ fn material_seen(place: SurfacePlace, frame_of_place: Frame) -> Seen {
 // What is seen of the picture behind a body, where the refracted ray leaves it (KHR_materials_volume, section "Implementation"); and how
 // much of it is covered. Roughness blurs by mip levels.
 fn seen_in_body(place: SurfacePlace, detail: PlaceDetail, look: LookAt, normal: vec3<f32>, at: Frame) -> vec4<f32> {
-    var thickness = material.thickness;
-    if has_map(SLOT_THICKNESS) {
-        thickness *= map_texel(place, detail, SLOT_THICKNESS).g;
-    }
-    let exit = place.position + thickness * refracted_direction(look, normal, place.to_eye);
-    let clip = at.clip_from_object * vec4<f32>(exit, 1.0);
+    let thickness = material.thickness * map_texel(place, detail, SLOT_THICKNESS).g;
+    // An index of refraction of 0 stands for an infinite one.
+    let ray = refract(-place.to_eye, normal, select(1.0 / look.ior, 0.0, look.ior < 1.0));
+    let clip = at.clip_from_object * vec4<f32>(place.position + thickness * ray, 1.0);
     let moved = vec2<f32>(at.shift / at.viewport.x, 0.0);
     let on_picture = vec2<f32>(0.5, -0.5) * clip.xy / clip.w + 0.5 + moved;
-    // The blurriest level is one texel.
-    let texel_size = pow(at.viewport.x, blur_in_body(look)) / at.viewport;
+    // The blurriest level is one texel. A surface that doesn't refract doesn't blur.
+    let roughness = look.roughness * clamp(2.0 * look.ior - 2.0, 0.0, 1.0);
+    let texel_size = pow(at.viewport.x, roughness) / at.viewport;
     let blurred = ImagePlace(on_picture, vec2<f32>(texel_size.x, 0.0), vec2<f32>(0.0, texel_size.y));
     let seen = slot_texel(BEHIND, blurred);
-    return vec4<f32>(seen.rgb * left_by_absorption(material.absorption, thickness), seen.a);
+    // Beer and Lambert.
+    return vec4<f32>(seen.rgb * exp(-material.absorption * thickness), seen.a);
 }

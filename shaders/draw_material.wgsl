@@ -19,31 +19,6 @@ override LIGHT_COUNT: u32 = MOST_LIGHTS;
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
 @group(1) @binding(2) var base_sampler: sampler;
-// Of the maps in MAPS, in order.
-@group(1) @binding(3) var image_0: texture_2d<f32>;
-@group(1) @binding(4) var sampler_0: sampler;
-@group(1) @binding(5) var image_1: texture_2d<f32>;
-@group(1) @binding(6) var sampler_1: sampler;
-@group(1) @binding(7) var image_2: texture_2d<f32>;
-@group(1) @binding(8) var sampler_2: sampler;
-@group(1) @binding(9) var image_3: texture_2d<f32>;
-@group(1) @binding(10) var sampler_3: sampler;
-@group(1) @binding(11) var image_4: texture_2d<f32>;
-@group(1) @binding(12) var sampler_4: sampler;
-@group(1) @binding(21) var image_5: texture_2d<f32>;
-@group(1) @binding(22) var sampler_5: sampler;
-@group(1) @binding(23) var image_6: texture_2d<f32>;
-@group(1) @binding(24) var sampler_6: sampler;
-@group(1) @binding(25) var image_7: texture_2d<f32>;
-@group(1) @binding(26) var sampler_7: sampler;
-@group(1) @binding(27) var image_8: texture_2d<f32>;
-@group(1) @binding(28) var sampler_8: sampler;
-@group(1) @binding(29) var image_9: texture_2d<f32>;
-@group(1) @binding(30) var sampler_9: sampler;
-@group(1) @binding(31) var image_10: texture_2d<f32>;
-@group(1) @binding(32) var sampler_10: sampler;
-@group(1) @binding(33) var image_11: texture_2d<f32>;
-@group(1) @binding(34) var sampler_11: sampler;
 @group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
 // The bit in MAPS of the picture of what is behind a body that refracts light.
@@ -174,23 +149,14 @@ fn image_texel(image: texture_2d<f32>, image_sampler: sampler, at: ImagePlace) -
 
 // What the image of a bit in MAPS says.
 fn slot_texel(slot: u32, at: ImagePlace) -> vec4<f32> {
-    switch countOneBits(MAPS & ((1u << slot) - 1u)) {
-        case 0u: { return image_texel(image_0, sampler_0, at); }
-        case 1u: { return image_texel(image_1, sampler_1, at); }
-        case 2u: { return image_texel(image_2, sampler_2, at); }
-        case 3u: { return image_texel(image_3, sampler_3, at); }
-        case 4u: { return image_texel(image_4, sampler_4, at); }
-        case 5u: { return image_texel(image_5, sampler_5, at); }
-        case 6u: { return image_texel(image_6, sampler_6, at); }
-        case 7u: { return image_texel(image_7, sampler_7, at); }
-        case 8u: { return image_texel(image_8, sampler_8, at); }
-        case 9u: { return image_texel(image_9, sampler_9, at); }
-        case 10u: { return image_texel(image_10, sampler_10, at); }
-        default: { return image_texel(image_11, sampler_11, at); }
-    }
+    return placed_texel(countOneBits(MAPS & ((1u << slot) - 1u)), at);
 }
 
+// What a map says at a place; 1 without the map.
 fn map_texel(place: SurfacePlace, detail: PlaceDetail, slot: u32) -> vec4<f32> {
+    if !has_map(slot) {
+        return vec4<f32>(1.0);
+    }
     return slot_texel(slot, map_place(place, detail, slot));
 }
 
@@ -215,38 +181,18 @@ fn map_direction(texel: vec3<f32>, scale: f32) -> vec3<f32> {
 fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: vec3<f32>) -> LookAt {
     var look: LookAt;
     look.base_color = base;
-    look.metallic = material.metallic;
-    look.roughness = material.roughness;
-    look.specular_color = material.specular_color;
-    look.specular = material.specular;
+    let metal_and_rough = map_texel(place, detail, SLOT_METALLIC_ROUGHNESS);
+    look.metallic = material.metallic * metal_and_rough.b;
+    look.roughness = material.roughness * metal_and_rough.g;
+    look.specular_color = material.specular_color * map_texel(place, detail, SLOT_SPECULAR_COLOR).rgb;
+    look.specular = material.specular * map_texel(place, detail, SLOT_SPECULAR).a;
     look.ior = material.ior;
-    look.occlusion = 1.0;
-    if has_map(SLOT_METALLIC_ROUGHNESS) {
-        let numbers = map_texel(place, detail, SLOT_METALLIC_ROUGHNESS);
-        look.roughness *= numbers.g;
-        look.metallic *= numbers.b;
-    }
-    if has_map(SLOT_SPECULAR) {
-        look.specular *= map_texel(place, detail, SLOT_SPECULAR).a;
-    }
-    if has_map(SLOT_SPECULAR_COLOR) {
-        look.specular_color *= map_texel(place, detail, SLOT_SPECULAR_COLOR).rgb;
-    }
-    if has_map(SLOT_OCCLUSION) {
-        let occlusion = map_texel(place, detail, SLOT_OCCLUSION).r;
-        look.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
-    }
+    look.occlusion = 1.0 + material.occlusion_strength * (map_texel(place, detail, SLOT_OCCLUSION).r - 1.0);
     // The surface's map of normals doesn't change the coat's, which has one of its own (KHR_materials_clearcoat).
     var coat_normal = place.normal;
     if HAS_COAT {
-        look.coat = material.coat;
-        look.coat_roughness = material.coat_roughness;
-        if has_map(SLOT_CLEARCOAT) {
-            look.coat *= map_texel(place, detail, SLOT_CLEARCOAT).r;
-        }
-        if has_map(SLOT_CLEARCOAT_ROUGHNESS) {
-            look.coat_roughness *= map_texel(place, detail, SLOT_CLEARCOAT_ROUGHNESS).g;
-        }
+        look.coat = material.coat * map_texel(place, detail, SLOT_CLEARCOAT).r;
+        look.coat_roughness = material.coat_roughness * map_texel(place, detail, SLOT_CLEARCOAT_ROUGHNESS).g;
         if has_map(SLOT_CLEARCOAT_NORMAL) && HAS_DETAILS && !IS_DRAFT {
             let direction = map_direction(map_texel(place, detail, SLOT_CLEARCOAT_NORMAL).rgb, material.coat_normal_scale);
             coat_normal = mapped_normal(coat_normal, detail.tangent, detail.bitangent_sign, direction);
@@ -254,14 +200,8 @@ fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: ve
     }
     look.coat_normal = facing_normal(place, coat_normal);
     if HAS_SHEEN {
-        look.sheen_color = material.sheen_color;
-        look.sheen_roughness = material.sheen_roughness;
-        if has_map(SLOT_SHEEN_COLOR) {
-            look.sheen_color *= map_texel(place, detail, SLOT_SHEEN_COLOR).rgb;
-        }
-        if has_map(SLOT_SHEEN_ROUGHNESS) {
-            look.sheen_roughness *= map_texel(place, detail, SLOT_SHEEN_ROUGHNESS).a;
-        }
+        look.sheen_color = material.sheen_color * map_texel(place, detail, SLOT_SHEEN_COLOR).rgb;
+        look.sheen_roughness = material.sheen_roughness * map_texel(place, detail, SLOT_SHEEN_ROUGHNESS).a;
         look.sheen_albedo = environment_sheen(clamp(dot(normal, place.to_eye), 0.0, 1.0), look.sheen_roughness);
     }
     if HAS_ANISOTROPY {
@@ -306,11 +246,7 @@ fn transmission_at(place: SurfacePlace, detail: PlaceDetail) -> f32 {
     if !HAS_TRANSMISSION {
         return 0.0;
     }
-    var transmission = material.transmission;
-    if has_map(SLOT_TRANSMISSION) {
-        transmission *= map_texel(place, detail, SLOT_TRANSMISSION).r;
-    }
-    return transmission;
+    return material.transmission * map_texel(place, detail, SLOT_TRANSMISSION).r;
 }
 
 // Whether the surface is there, but doesn't hide all that is behind it. Such places are drawn in layers, and all others before.
@@ -351,10 +287,7 @@ fn surface_radiance(
     look: LookAt,
     normal: vec3<f32>,
 ) -> vec3<f32> {
-    var emitted = material.emissive;
-    if has_map(SLOT_EMISSIVE) {
-        emitted *= map_texel(place, detail, SLOT_EMISSIVE).rgb;
-    }
+    let emitted = material.emissive * map_texel(place, detail, SLOT_EMISSIVE).rgb;
     var radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
     if LIGHT_COUNT > 0u {
         radiance += lights_reflection(look, normal, place);

@@ -66,12 +66,20 @@ fn environment_sheen(facing: f32, roughness: f32) -> f32 {
     return dfg_texel(facing, roughness).b;
 }
 
-// Radiance that a surface with long highlights reflects: the mean of round ones.
+// Round highlights that make up a long one.
+const LEANS: u32 = 16u;
+
+// Radiance that a surface with long highlights reflects: the mean of round ones, of microfacets that lean along the direction. Each
+// stands for the same part of them: the slopes of GGX along a direction are those of angles whose sines are spread evenly. Each is so
+// much rougher that no gaps are left.
 fn long_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
-    let roughness = leaning_roughness(look);
+    let squares = stretched_alphas(look) * stretched_alphas(look);
+    let more = max(squares.x - squares.y, 0.0);
+    let roughness = sqrt(sqrt(squares.y + more / f32(LEANS * LEANS)));
     var sum = vec4<f32>(0.0);
     for (var index = 0u; index < LEANS; index++) {
-        let leaning = leaning_normal(look, normal, index);
+        let sine = (2.0 * f32(index) + 1.0) / f32(LEANS) - 1.0;
+        let leaning = normalize(normal - sqrt(more) * sine * inverseSqrt(1.0 - sine * sine) * look.direction);
         let direction = dominant_direction(leaning, to_eye, roughness);
         // At least a little, so that there is a mean where all lean away.
         let weight = max(dot(normal, direction), 1e-4);

@@ -72,20 +72,25 @@ fn largest_component(color: vec3<f32>) -> f32 {
     return max(color.x, max(color.y, color.z));
 }
 
-// Density of microfacets whose normal is `half_way` (Trowbridge and Reitz; Walter et al. 2007, equation 33). The sine comes from a
-// cross product: 1 - cos^2 would cancel where surfaces are smooth.
-fn ggx_distribution(normal: vec3<f32>, half_way: vec3<f32>, alpha: f32) -> f32 {
+// Density of microfacets whose normal is `half_way` (Trowbridge and Reitz; Walter et al. 2007, equation 33). `alphas` are squares of the
+// perceptual roughness along a unit direction across the normal, and across both (Heitz 2014, equation 85). The sine comes from a cross
+// product: 1 - cos^2 would cancel where surfaces are smooth.
+fn ggx_distribution(normal: vec3<f32>, half_way: vec3<f32>, alphas: vec2<f32>, direction: vec3<f32>) -> f32 {
     let cosine = max(dot(normal, half_way), 0.0);
     let across = cross(normal, half_way);
-    let spread = cosine * cosine * alpha * alpha + dot(across, across);
-    return alpha * alpha / (PI * spread * spread);
+    let aside = dot(across, direction);
+    let ratio = alphas.x / alphas.y;
+    let spread = cosine * cosine * alphas.x * alphas.x + dot(across, across) + (ratio * ratio - 1.0) * aside * aside;
+    return ratio * alphas.x * alphas.x / (PI * spread * spread);
 }
 
-// Smith's masking and shadowing, correlated by height, divided by 4 times both cosines (Heitz 2014, equation 99).
-fn ggx_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
-    let square = alpha * alpha;
-    let eye_part = lit * sqrt(facing * facing * (1.0 - square) + square);
-    let light_part = facing * sqrt(lit * lit * (1.0 - square) + square);
+// Smith's masking and shadowing, correlated by height, divided by 4 times both cosines (Heitz 2014, equation 99). `along` are the
+// cosines of the angles of light and eye to the direction.
+fn ggx_visibility(lit: f32, facing: f32, alphas: vec2<f32>, along: vec2<f32>) -> f32 {
+    let square = alphas.y * alphas.y;
+    let more = (alphas.x * alphas.x - square) * along * along;
+    let eye_part = lit * sqrt(facing * facing * (1.0 - square) + square + more.y);
+    let light_part = facing * sqrt(lit * lit * (1.0 - square) + square + more.x);
     return 0.5 / max(eye_part + light_part, 1e-7);
 }
 
@@ -99,25 +104,6 @@ fn stretched_alphas(look: LookAt) -> vec2<f32> {
 fn mean_roughness(look: LookAt) -> f32 {
     let alphas = stretched_alphas(look);
     return select(look.roughness, sqrt(sqrt(0.5 * dot(alphas, alphas))), look.anisotropy > 0.0);
-}
-
-// Round highlights that make up a long one.
-const LEANS: u32 = 16u;
-
-// The perceptual roughness of each of them: so much more than that across the long one that no gaps are left between them.
-fn leaning_roughness(look: LookAt) -> f32 {
-    let alphas = stretched_alphas(look);
-    let apart = (alphas.x * alphas.x - alphas.y * alphas.y) / f32(LEANS * LEANS);
-    return sqrt(sqrt(max(apart, 0.0) + alphas.y * alphas.y));
-}
-
-// The unit normal of the microfacets in the middle of one of them. All stand for the same part of the microfacets: the slopes of GGX
-// along a direction are those of directions whose sines are spread evenly (from Walter et al. 2007, equation 33).
-fn leaning_normal(look: LookAt, normal: vec3<f32>, index: u32) -> vec3<f32> {
-    let alphas = stretched_alphas(look);
-    let sine = (2.0 * f32(index) + 1.0) / f32(LEANS) - 1.0;
-    let slope = sqrt(max(alphas.x * alphas.x - alphas.y * alphas.y, 0.0)) * sine * inverseSqrt(1.0 - sine * sine);
-    return normalize(normal - slope * look.direction);
 }
 
 // The part of an even light from all around that microfacets reflect at once: the split sum (Karis 2013).
@@ -202,23 +188,6 @@ fn transmitted(look: LookAt, dfg: vec2<f32>, coat_dfg: vec2<f32>) -> vec3<f32> {
     return through * (sheen_scaling(look) * (1.0 - coat_albedo(look, coat_dfg)));
 }
 
-// The unit direction in which light that reaches the eye comes through a body: what Snell's law makes of it at the surface.
-fn refracted_direction(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
-    // An index of 0 stands for an infinite one.
-    let ratio = select(1.0 / look.ior, 0.0, look.ior < 1.0);
-    return refract(-to_eye, normal, ratio);
-}
-
-// How much the surface of a body blurs what is behind, 0 to 1: not at all where it doesn't refract.
-fn blur_in_body(look: LookAt) -> f32 {
-    return look.roughness * clamp(2.0 * look.ior - 2.0, 0.0, 1.0);
-}
-
-// What is left of light after a distance in a body that absorbs so much of it (Beer and Lambert).
-fn left_by_absorption(absorption: vec3<f32>, distance: f32) -> vec3<f32> {
-    return exp(-absorption * distance);
-}
-
 // Radiance towards the eye per irradiance that a surface across the light would get, for light from a single direction. All
 // directions are of unit length.
 fn direct_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>) -> vec3<f32> {
@@ -229,7 +198,8 @@ fn direct_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_ligh
     base = select(base, base * sheen_scaling(look) + sheen, has_sheen(look));
     let coat_fresnel = COAT_F0 + (1.0 - COAT_F0) * fifth_power(1.0 - abs(dot(look.coat_normal, to_eye)));
     let coat = look.coat * coat_fresnel;
-    let coat_lobe = direct_lobe(look.coat_normal, to_eye, to_light, half_way, look.coat_roughness);
+    let coat_alphas = vec2<f32>(look.coat_roughness * look.coat_roughness);
+    let coat_lobe = direct_lobe(look.coat_normal, to_eye, to_light, half_way, coat_alphas, look.direction);
     return select(base, base * (1.0 - coat) + coat * coat_lobe, look.coat > 0.0);
 }
 
@@ -239,33 +209,17 @@ fn direct_lobe(
     to_eye: vec3<f32>,
     to_light: vec3<f32>,
     half_way: vec3<f32>,
-    roughness: f32,
+    alphas: vec2<f32>,
+    direction: vec3<f32>,
 ) -> f32 {
     let lit = dot(normal, to_light);
     let facing = dot(normal, to_eye);
     if lit <= 0.0 || facing <= 0.0 {
         return 0.0;
     }
-    let alpha = max(roughness * roughness, LEAST_ALPHA);
-    return ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit;
-}
-
-// The same where highlights are longer along a direction (KHR_materials_anisotropy; Heitz 2014, equations 85 and 99).
-fn direct_long_lobe(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_light: vec3<f32>, half_way: vec3<f32>) -> f32 {
-    let lit = dot(normal, to_light);
-    let facing = dot(normal, to_eye);
-    if lit <= 0.0 || facing <= 0.0 {
-        return 0.0;
-    }
-    let alphas = max(stretched_alphas(look), vec2<f32>(LEAST_ALPHA));
-    let from_object = transpose(mat3x3<f32>(look.direction, cross(normal, look.direction), normal));
-    let product = alphas.x * alphas.y;
-    let spread = from_object * half_way * vec3<f32>(alphas.yx, product);
-    let squared = dot(spread, spread) / product;
-    let scale = vec3<f32>(alphas, 1.0);
-    let eye_part = lit * length(from_object * to_eye * scale);
-    let light_part = facing * length(from_object * to_light * scale);
-    return lit * 0.5 / (PI * squared * squared * max(eye_part + light_part, 1e-7)) * product;
+    let rough = max(alphas, vec2<f32>(LEAST_ALPHA));
+    let along = vec2<f32>(dot(direction, to_light), dot(direction, to_eye));
+    return ggx_distribution(normal, half_way, rough, direction) * ggx_visibility(lit, facing, rough, along) * lit;
 }
 
 // Reflection by a white sheen. Where it would reflect more of an even light than there is, which smooth ones do that are seen from
@@ -291,9 +245,7 @@ fn direct_base_reflection(
     half_way: vec3<f32>,
     schlick: f32,
 ) -> vec3<f32> {
-    let round = direct_lobe(normal, to_eye, to_light, half_way, look.roughness);
-    let long = direct_long_lobe(look, normal, to_eye, to_light, half_way);
-    let lobe = select(round, long, look.anisotropy > 0.0);
+    let lobe = direct_lobe(normal, to_eye, to_light, half_way, stretched_alphas(look), look.direction);
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (vec3<f32>(look.specular) - f0) * schlick;
     let lit = select(0.0, max(dot(normal, to_light), 0.0), dot(normal, to_eye) > 0.0);

@@ -93,22 +93,12 @@ impl MaterialInfo {
 }
 
 fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
-    let strength = match slot {
-        Slot::Normal => Some(look.normal_scale),
-        Slot::Occlusion => Some(look.occlusion_strength),
-        Slot::ClearcoatNormal => Some(look.clearcoat_normal_scale),
-        Slot::MetallicRoughness
-        | Slot::Emissive
-        | Slot::Transmission
-        | Slot::SheenColor
-        | Slot::SheenRoughness
-        | Slot::Clearcoat
-        | Slot::ClearcoatRoughness
-        | Slot::Specular
-        | Slot::SpecularColor
-        | Slot::Anisotropy
-        | Slot::Thickness => None,
-    };
+    let own_numbers = [
+        (Slot::Normal, look.normal_scale),
+        (Slot::Occlusion, look.occlusion_strength),
+        (Slot::ClearcoatNormal, look.clearcoat_normal_scale),
+    ];
+    let strength = own_numbers.into_iter().find(|(own, _)| *own == slot).map(|(_, number)| number);
     let uv_set = match map.uv {
         MapUv::Own => None,
         MapUv::Set(set, _) => Some(set),

@@ -156,6 +156,12 @@ impl Look {
         map.map(|map| map.uv).or_else(|| self.has_anisotropy().then_some(MapUv::Own))
     }
 
+    /// Which of the file's sets of texture coordinates its maps use: see [`MapUv::Set`].
+    pub fn uv_sets(&self) -> [bool; 2] {
+        let uses = |set| self.maps.iter().flatten().any(|map| matches!(map.uv, MapUv::Set(own, _) if own == set));
+        [uses(0), uses(1)]
+    }
+
     /// Whether light goes through it. None does where it is unlit.
     pub fn transmits(&self) -> bool {
         self.transmission > 0.0 && !self.unlit

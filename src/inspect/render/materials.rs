@@ -9,6 +9,7 @@ use super::punctual::upload_lights;
 use super::textures::{ImageUse, Samplers, Textures, white};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Wrap};
+use gpu::shader_constants::image_binding;
 use gpu::{Gpu, GpuError, bind_group, uniform_buffer};
 
 /// Where the bindings of the light from all around begin in the group of a lit material; the same in `shaders/environment.wgsl`.
@@ -16,17 +17,12 @@ const LIGHT_BINDING: u32 = 16;
 /// The binding of the lights of the file; the same in `shaders/draw_material.wgsl`.
 const FILE_LIGHTS_BINDING: u32 = 20;
 
-/// Where the bindings of the images go on that have no room below the light's; the same in `shaders/draw_material.wgsl`.
-const LATER_IMAGES_BINDING: u32 = 21;
-
 /// The binding of the depths of what hides everything behind it, where layers are found; the same in `shaders/layers_single.wgsl` and
 /// `shaders/layers_multisampled.wgsl`.
 const HIDING_DEPTHS_BINDING: u32 = 35;
 
 /// Images of a shader: that of the base colour, and the places for others.
 const IMAGES: usize = 1 + Look::MOST_IMAGES;
-/// How many of them have their bindings below the light's.
-const EARLY_IMAGES: usize = 6;
 
 /// What the materials of all scenes share: layouts, samplers and a white texture.
 pub struct Materials {
@@ -208,23 +204,20 @@ fn map_place(map: Option<&Map>) -> MapPlace {
 
 /// The constants, and a texture and a sampler for each of so many images.
 fn user_bindings(images: usize) -> Vec<Binding> {
-    let both = (0..images).map(image_binding);
+    let both = (0..images).map(binding_of);
     let both = both.flat_map(|binding| [(binding, FRAGMENT, IMAGE), (binding + 1, FRAGMENT, SAMPLER)]);
     std::iter::once((0, FRAGMENT, UNIFORM)).chain(both).collect()
 }
 
-/// The binding of an image. That of its sampler comes next.
-fn image_binding(image: usize) -> u32 {
-    match image.checked_sub(EARLY_IMAGES) {
-        Some(later) => LATER_IMAGES_BINDING + 2 * later as u32,
-        None => 1 + 2 * image as u32,
-    }
+/// The binding of an image: the first is that of the base colour. That of its sampler comes next.
+fn binding_of(image: usize) -> u32 {
+    image.checked_sub(1).map_or(1, image_binding)
 }
 
 /// What is bound at [`user_bindings`].
 fn own_bound<'a>(constants: &'a wgpu::Buffer, images: &'a [Image]) -> Vec<(u32, wgpu::BindingResource<'a>)> {
     let both = images.iter().enumerate().flat_map(|(image, (view, sampler))| {
-        let binding = image_binding(image);
+        let binding = binding_of(image);
         let view = wgpu::BindingResource::TextureView(view);
         [(binding, view), (binding + 1, wgpu::BindingResource::Sampler(sampler))]
     });

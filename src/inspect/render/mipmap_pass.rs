@@ -49,29 +49,12 @@ impl Mipmaps {
         Self { average: pass("mip_main"), tested: ["mip_count", "mip_choose", "mip_cover"].map(pass) }
     }
 
-    /// Fills all levels of an image of 8-bit RGBA but the first, which must be there already. `first` is a view of that, without
-    /// a transfer function. The result is the same every time.
+    /// Records passes that fill all levels of an image of 8-bit RGBA but the first, which must be there before. `first` is a view of
+    /// that, without a transfer function. The result is the same every time.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn fill(
-        &self,
-        gpu: &Gpu,
-        image: &wgpu::Texture,
-        first: &wgpu::TextureView,
-        filter: MipFilter,
-        test: Option<AlphaTest>,
-    ) -> Result<(), GpuError> {
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mipmap") });
-        self.record(gpu, &mut encoder, image, first, filter, test)?;
-        gpu.attempt(|| gpu.queue.submit([encoder.finish()])).map(|_| ())
-    }
-
-    /// Records that.
-    ///
-    /// # Errors
-    /// The same.
-    pub(super) fn record(
         &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,

@@ -51,21 +51,16 @@ impl Needs {
     /// materials need together.
     pub(super) fn new(mesh: &Mesh, material: &Material, settings: &Settings, kind: PictureKind) -> Self {
         let of = |materials: &[Material]| Self::together(materials, mesh, settings);
-        let shared = Some(of(&mesh.materials)).filter(|shared| kind.shares_shaders && shared.has_places());
+        let has_places = |needs: &Self| needs.maps.count_ones() as usize <= Look::MOST_IMAGES;
+        let shared = Some(of(&mesh.materials)).filter(|shared| kind.shares_shaders && has_places(shared));
         let mut needs = shared.unwrap_or_else(|| of(std::slice::from_ref(material)));
         if !settings.draws_normal_map(mesh, material) {
             needs.maps &= !(1 << Slot::Normal as u32);
         }
-        while !needs.has_places() {
-            let of_slots = needs.maps & !(1 << BEHIND);
-            needs.maps &= !(1 << of_slots.ilog2());
+        while !has_places(&needs) {
+            needs.maps &= !(1 << (needs.maps & !(1 << BEHIND)).ilog2());
         }
         needs
-    }
-
-    /// Whether a shader has places for all of the images.
-    fn has_places(&self) -> bool {
-        self.maps.count_ones() as usize <= Look::MOST_IMAGES
     }
 
     /// What some of a mesh's materials need together.

@@ -4,7 +4,7 @@
 use std::f32::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat3, Vec2, Vec3, vec2, vec3};
+use glam::{Vec2, Vec3, vec2};
 
 use super::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_visibility};
 
@@ -87,16 +87,20 @@ pub fn largest_component(color: Vec3) -> f32 {
     color.max_element()
 }
 
-pub(crate) fn ggx_distribution(normal: Vec3, half_way: Vec3, alpha: f32) -> f32 {
+pub(crate) fn ggx_distribution(normal: Vec3, half_way: Vec3, alphas: Vec2, direction: Vec3) -> f32 {
     let cosine = normal.dot(half_way).max(0.0);
-    let spread = cosine * cosine * alpha * alpha + normal.cross(half_way).length_squared();
-    alpha * alpha / (PI * spread * spread)
+    let across = normal.cross(half_way);
+    let (aside, ratio) = (across.dot(direction), alphas.x / alphas.y);
+    let spread =
+        cosine * cosine * alphas.x * alphas.x + across.length_squared() + (ratio * ratio - 1.0) * aside * aside;
+    ratio * alphas.x * alphas.x / (PI * spread * spread)
 }
 
-pub(crate) fn ggx_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
-    let square = alpha * alpha;
-    let eye_part = lit * (facing * facing * (1.0 - square) + square).sqrt();
-    let light_part = facing * (lit * lit * (1.0 - square) + square).sqrt();
+pub(crate) fn ggx_visibility(lit: f32, facing: f32, alphas: Vec2, along: Vec2) -> f32 {
+    let square = alphas.y * alphas.y;
+    let more = (alphas.x * alphas.x - square) * along * along;
+    let eye_part = lit * (facing * facing * (1.0 - square) + square + more.y).sqrt();
+    let light_part = facing * (lit * lit * (1.0 - square) + square + more.x).sqrt();
     0.5 / (eye_part + light_part).max(1e-7)
 }
 
@@ -110,21 +114,6 @@ pub fn mean_roughness(look: &LookAt) -> f32 {
         return look.roughness;
     }
     (0.5 * stretched_alphas(look).length_squared()).sqrt().sqrt()
-}
-
-pub const LEANS: u32 = 16;
-
-pub fn leaning_roughness(look: &LookAt) -> f32 {
-    let alphas = stretched_alphas(look);
-    let apart = (alphas.x * alphas.x - alphas.y * alphas.y) / (LEANS * LEANS) as f32;
-    (apart.max(0.0) + alphas.y * alphas.y).sqrt().sqrt()
-}
-
-pub fn leaning_normal(look: &LookAt, normal: Vec3, index: u32) -> Vec3 {
-    let alphas = stretched_alphas(look);
-    let sine = (2 * index + 1) as f32 / LEANS as f32 - 1.0;
-    let slope = (alphas.x * alphas.x - alphas.y * alphas.y).max(0.0).sqrt() * sine / (1.0 - sine * sine).sqrt();
-    (normal - slope * look.direction).normalize()
 }
 
 pub(crate) fn albedo_at_once(f0: Vec3, f90: f32, dfg: Vec2) -> Vec3 {
@@ -201,19 +190,6 @@ pub fn transmitted(look: &LookAt, dfg: Vec2, coat_dfg: Vec2) -> Vec3 {
     through * (sheen_scaling(look) * (1.0 - coat_albedo(look, coat_dfg)))
 }
 
-pub fn refracted_direction(look: &LookAt, normal: Vec3, to_eye: Vec3) -> Vec3 {
-    let ratio = if look.ior < 1.0 { 0.0 } else { 1.0 / look.ior };
-    (-to_eye).refract(normal, ratio)
-}
-
-pub fn blur_in_body(look: &LookAt) -> f32 {
-    look.roughness * (2.0 * look.ior - 2.0).clamp(0.0, 1.0)
-}
-
-pub fn left_by_absorption(absorption: Vec3, distance: f32) -> Vec3 {
-    (-absorption * distance).exp()
-}
-
 pub fn direct_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3) -> Vec3 {
     let half_way = (to_eye + to_light).normalize();
     let schlick = fifth_power(1.0 - half_way.dot(to_eye).clamp(0.0, 1.0));
@@ -226,32 +202,25 @@ pub fn direct_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Ve
     }
     let coat_fresnel = COAT_F0 + (1.0 - COAT_F0) * fifth_power(1.0 - look.coat_normal.dot(to_eye).abs());
     let coat = look.coat * coat_fresnel;
-    base * (1.0 - coat) + coat * direct_lobe(look.coat_normal, to_eye, to_light, half_way, look.coat_roughness)
+    let coat_alphas = Vec2::splat(look.coat_roughness * look.coat_roughness);
+    base * (1.0 - coat) + coat * direct_lobe(look.coat_normal, to_eye, to_light, half_way, coat_alphas, look.direction)
 }
 
-pub(crate) fn direct_lobe(normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3, roughness: f32) -> f32 {
+pub(crate) fn direct_lobe(
+    normal: Vec3,
+    to_eye: Vec3,
+    to_light: Vec3,
+    half_way: Vec3,
+    alphas: Vec2,
+    direction: Vec3,
+) -> f32 {
     let (lit, facing) = (normal.dot(to_light), normal.dot(to_eye));
     if lit <= 0.0 || facing <= 0.0 {
         return 0.0;
     }
-    let alpha = (roughness * roughness).max(LEAST_ALPHA);
-    ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit
-}
-
-pub(crate) fn direct_long_lobe(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3) -> f32 {
-    let (lit, facing) = (normal.dot(to_light), normal.dot(to_eye));
-    if lit <= 0.0 || facing <= 0.0 {
-        return 0.0;
-    }
-    let alphas = stretched_alphas(look).max(Vec2::splat(LEAST_ALPHA));
-    let from_object = Mat3::from_cols(look.direction, normal.cross(look.direction), normal).transpose();
-    let product = alphas.x * alphas.y;
-    let spread = from_object * half_way * vec3(alphas.y, alphas.x, product);
-    let squared = spread.length_squared() / product;
-    let scale = alphas.extend(1.0);
-    let eye_part = lit * (from_object * to_eye * scale).length();
-    let light_part = facing * (from_object * to_light * scale).length();
-    lit * 0.5 / (PI * squared * squared * (eye_part + light_part).max(1e-7)) * product
+    let rough = alphas.max(Vec2::splat(LEAST_ALPHA));
+    let along = vec2(direction.dot(to_light), direction.dot(to_eye));
+    ggx_distribution(normal, half_way, rough, direction) * ggx_visibility(lit, facing, rough, along) * lit
 }
 
 pub(crate) fn direct_sheen(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3) -> f32 {
@@ -273,11 +242,7 @@ pub(crate) fn direct_base_reflection(
     half_way: Vec3,
     schlick: f32,
 ) -> Vec3 {
-    let lobe = if look.anisotropy > 0.0 {
-        direct_long_lobe(look, normal, to_eye, to_light, half_way)
-    } else {
-        direct_lobe(normal, to_eye, to_light, half_way, look.roughness)
-    };
+    let lobe = direct_lobe(normal, to_eye, to_light, half_way, stretched_alphas(look), look.direction);
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (look.specular - f0) * schlick;
     let lit = if normal.dot(to_eye) > 0.0 { normal.dot(to_light).max(0.0) } else { 0.0 };

@@ -206,7 +206,7 @@ impl Target {
         recorder.encoder().copy_texture_to_texture(from, to, self.resolved.size());
         let first =
             wgpu::TextureViewDescriptor { format: Some(SHOWN_FORMAT), mip_level_count: Some(1), ..Default::default() };
-        mipmaps.record(gpu, recorder.encoder(), behind, &behind.create_view(&first), MipFilter::Colors, None)
+        mipmaps.fill(gpu, recorder.encoder(), behind, &behind.create_view(&first), MipFilter::Colors, None)
     }
 
     /// The size of all its textures in bytes.

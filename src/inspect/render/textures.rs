@@ -161,7 +161,9 @@ pub(super) fn upload(
         ..Default::default()
     });
     let test = image_use.least_alpha.map(|least| AlphaTest { least, covered: covered(texture, least) });
-    mipmaps.fill(gpu, &on_device, &first, image_use.filter, test)?;
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mipmap") });
+    mipmaps.fill(gpu, &mut encoder, &on_device, &first, image_use.filter, test)?;
+    gpu.attempt(|| gpu.queue.submit([encoder.finish()]))?;
     Ok(view(&on_device, image_use.format()))
 }
 

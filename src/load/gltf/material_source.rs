@@ -123,9 +123,9 @@ impl MaterialSource {
             self.look.emissive = self.look.emissive.map(|factor| factor * strength);
         }
         self.look.unlit = extensions.has(UNLIT);
-        for extension in EXTENSIONS {
-            if let Some(object) = extensions.inside(extension.name) {
-                self.read(&object, extension.members, extension.matters, textures);
+        for (name, matters, members) in EXTENSIONS {
+            if let Some(object) = extensions.inside(name) {
+                self.read(&object, members, matters, textures);
                 self.correct(&object);
             }
         }
@@ -168,7 +168,7 @@ impl MaterialSource {
     /// Notes extensions that aren't drawn, where they would change something, and other parts of the material that aren't.
     fn note_undrawn(&mut self, extensions: &Members) {
         let is_drawn = |name| {
-            [UNLIT, EMISSIVE_STRENGTH, GLOSSINESS].contains(&name) || EXTENSIONS.iter().any(|own| own.name == name)
+            [UNLIT, EMISSIVE_STRENGTH, GLOSSINESS].contains(&name) || EXTENSIONS.iter().any(|(own, ..)| *own == name)
         };
         for name in extensions.names().filter(|name| !is_drawn(name)) {
             let strength = STRENGTHS.iter().find(|(extension, _)| *extension == name);

@@ -226,7 +226,8 @@ impl<'a> Materials<'a> {
         }
         let (texture, sampling) =
             base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
-        let (uvs, needs) = (source.own_uvs(), DetailNeeds::new(&look));
+        let (uvs, tangents) = (source.own_uvs(), look.tangent_uv().is_some());
+        let needs = DetailNeeds { sets: look.uv_sets(), tangents };
         let MaterialSource { base_color, double_sided, .. } = source;
         let triangles = 0..0;
         let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
@@ -331,18 +332,6 @@ impl<'a> Materials<'a> {
             });
         }
         notes
-    }
-}
-
-impl DetailNeeds {
-    fn new(look: &Look) -> Self {
-        let mut needs = Self { tangents: look.tangent_uv().is_some(), ..Self::default() };
-        for map in look.maps.iter().flatten() {
-            if let MapUv::Set(set, _) = map.uv {
-                needs.sets[set] = true;
-            }
-        }
-        needs
     }
 }
 

@@ -10,9 +10,9 @@ use serde_json::{Value, json};
 
 use super::{Writer, pushed};
 use crate::export::ExportError;
-use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
+use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture};
 use geometry::names;
-use load::material_members::{EXTENSIONS, MAPS, METALLIC_ROUGHNESS, Member, Members};
+use load::material_members::{EXTENSIONS, MAGNIFY, MAPS, METALLIC_ROUGHNESS, MINIFY, Member, Members, WRAPS};
 
 const TRANSFORM: &str = "KHR_texture_transform";
 
@@ -49,11 +49,8 @@ impl UvSets {
     pub(super) fn new(material: &Material) -> Self {
         // Without an image of the base colour, corners have the first set themselves.
         let own_is_first = material.texture.is_none();
-        let uses = |set: usize| {
-            let mut maps = material.look.maps.iter().flatten();
-            !(own_is_first && set == 0) && maps.any(|map| matches!(map.uv, MapUv::Set(own, _) if own == set))
-        };
-        let sets = match [uses(0), uses(1)] {
+        let [first, second] = material.look.uv_sets();
+        let sets = match [first && !own_is_first, second] {
             [false, false] => vec![UvSet::Own],
             [true, false] => vec![UvSet::Own, UvSet::File(0)],
             [false, true] => vec![UvSet::Own, UvSet::File(1)],
@@ -111,11 +108,11 @@ impl Writer {
         if material.look.unlit {
             self.extend(&mut written, "KHR_materials_unlit", json!({}));
         }
-        for extension in EXTENSIONS {
-            if (extension.matters)(&material.look) && parts.differ(extension.members) {
-                let mut members = json!({});
-                parts.write(extension.members, &mut members);
-                self.extend(&mut written, extension.name, members);
+        for (name, matters, members) in EXTENSIONS {
+            if matters(&material.look) && parts.differ(members) {
+                let mut object = json!({});
+                parts.write(members, &mut object);
+                self.extend(&mut written, name, object);
             }
         }
         Ok(pushed(&mut self.materials, written))
@@ -248,21 +245,17 @@ fn transform([a, b, c, d, e, f]: [f32; 6]) -> Option<Option<Value>> {
 }
 
 fn sampler(sampling: Sampling) -> Value {
-    let wrap = sampling.wrap.map(|wrap| match wrap {
-        Wrap::Repeat => 10497,
-        Wrap::Mirror => 33648,
-        Wrap::Clamp => 33071,
-    });
-    let minify = match (sampling.minify_linear, sampling.mip_linear) {
-        (false, None) => 9728,
-        (true, None) => 9729,
-        (false, Some(false)) => 9984,
-        (true, Some(false)) => 9985,
-        (false, Some(true)) => 9986,
-        (true, Some(true)) => 9987,
-    };
-    let magnify = if sampling.magnify_linear { 9729 } else { 9728 };
-    json!({ "magFilter": magnify, "minFilter": minify, "wrapS": wrap[0], "wrapT": wrap[1] })
+    json!({
+        "magFilter": code(&MAGNIFY, sampling.magnify_linear),
+        "minFilter": code(&MINIFY, (sampling.minify_linear, sampling.mip_linear)),
+        "wrapS": code(&WRAPS, sampling.wrap[0]),
+        "wrapT": code(&WRAPS, sampling.wrap[1]),
+    })
+}
+
+/// The code of a value, of which each has one.
+fn code<T: PartialEq>(codes: &[(u64, T)], value: T) -> Option<u64> {
+    codes.iter().find(|(_, own)| *own == value).map(|(code, _)| *code)
 }
 
 #[cfg(test)]

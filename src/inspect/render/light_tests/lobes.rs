@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 
-use glam::{Vec3, vec3};
+use glam::{Vec2, Vec3, vec3};
 
 use super::{cosines, dfg, eye_at, facets, roughnesses, white_light};
 use crate::render::prefilter::hammersley;
@@ -15,6 +15,7 @@ use crate::render::reflectance::{
 fn lobe_integral(to_eye: Vec3, roughness: f32) -> ([f32; 2], f32) {
     const COUNT: u32 = 4096;
     let alpha = roughness * roughness;
+    let alphas = Vec2::splat(alpha);
     let (mut sums, mut squares) = ([0.0_f64; 2], 0.0_f64);
     for half_way in facets(Vec3::Z, alpha, COUNT) {
         let across = to_eye.dot(half_way);
@@ -22,8 +23,8 @@ fn lobe_integral(to_eye: Vec3, roughness: f32) -> ([f32; 2], f32) {
         if across <= 0.0 || to_light.z <= 0.0 {
             continue;
         }
-        let density = ggx_distribution(Vec3::Z, half_way, alpha) * half_way.z / (4.0 * across);
-        let value = f64::from(direct_lobe(Vec3::Z, to_eye, to_light, half_way, roughness) / density);
+        let density = ggx_distribution(Vec3::Z, half_way, alphas, Vec3::ZERO) * half_way.z / (4.0 * across);
+        let value = f64::from(direct_lobe(Vec3::Z, to_eye, to_light, half_way, alphas, Vec3::ZERO) / density);
         sums[0] += value;
         sums[1] += value * f64::from(fifth_power(1.0 - across));
         squares += value * value;
@@ -68,7 +69,9 @@ fn microfacets_seen_from_above_have_the_area_of_the_surface() {
     const COUNT: u32 = 65_536;
     for roughness in [0.3, 0.5, 0.8, 1.0] {
         let sum: f64 = hemisphere(COUNT)
-            .map(|facet| f64::from(ggx_distribution(Vec3::Z, facet, roughness * roughness) * facet.z))
+            .map(|facet| {
+                f64::from(ggx_distribution(Vec3::Z, facet, Vec2::splat(roughness * roughness), Vec3::ZERO) * facet.z)
+            })
             .sum();
         let area = sum * 2.0 * std::f64::consts::PI / f64::from(COUNT);
         assert!((area - 1.0).abs() < 0.01, "{roughness}: {area}");

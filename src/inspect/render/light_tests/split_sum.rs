@@ -48,9 +48,10 @@ impl Studio {
             let across = to_eye.dot(half_way);
             let to_light = 2.0 * across * half_way - to_eye;
             if across > 0.0 && to_light.dot(normal) > 0.0 {
-                let density = ggx_distribution(normal, half_way, alpha) * normal.dot(half_way) / (4.0 * across);
+                let density = ggx_distribution(normal, half_way, Vec2::splat(alpha), Vec3::ZERO) * normal.dot(half_way)
+                    / (4.0 * across);
                 let level = sample_level((4.0 * density).sqrt(), COUNT, self.source.size as f32);
-                let lobe = direct_lobe(normal, to_eye, to_light, half_way, roughness);
+                let lobe = direct_lobe(normal, to_eye, to_light, half_way, Vec2::splat(alpha), Vec3::ZERO);
                 sum += self.source.sample(to_light, level) * (lobe / density);
             }
         }
