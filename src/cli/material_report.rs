@@ -150,9 +150,11 @@ mod tests {
         (look.normal_scale, look.clearcoat, look.alpha, look.unlit) = (0.5, 1.0, Alpha::Mask(0.25), true);
         look.transmission = 0.75;
         (look.sheen_color, look.sheen_roughness) = ([0.5, 0.0, 1.0], 0.25);
+        (look.anisotropy, look.anisotropy_rotation) = (0.5, std::f32::consts::PI);
+        (look.thickness, look.attenuation_distance, look.attenuation_color) = (2.0, 0.5, [1.0, 0.5, 0.25]);
         let info = MaterialInfo::new(&material);
         let text = info.to_string();
-        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, sheen 0.5 0 1 of roughness 0.25, cut out below alpha 0.25, unlit";
+        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, sheen 0.5 0 1 of roughness 0.25, highlights longer by 0.5 at 180 degrees from the tangent, 2 object units thick, which leaves 1 0.5 0.25 of light in 0.5 object units, cut out below alpha 0.25, unlit";
         assert!(text.contains(&format!("\n  look          {look}\n")), "{text}");
         assert!(text.ends_with("\n  map           normal 2 x 1 px, on TEXCOORD_1, strength 0.5\n"), "{text}");
         let json = serde_json::to_value(&info).unwrap();

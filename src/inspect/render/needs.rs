@@ -148,10 +148,12 @@ pub(super) fn has_layers(mesh: &Mesh) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::Vec3;
 
     use super::*;
-    use geometry::mesh::{Light, LightKind, Shape};
+    use geometry::mesh::{Light, LightKind, Map, MapUv, Sampling, Shape, Texture};
 
     const NOTHING: Needs = Needs {
         maps: 0,
@@ -160,6 +162,7 @@ mod tests {
         mask: false,
         transmission: false,
         sheen: false,
+        anisotropy: false,
         lights: 0,
         masked_samples: false,
         draft: false,
@@ -208,11 +211,53 @@ mod tests {
         velvet.look.unlit = true;
         mesh.materials = vec![velvet];
         assert_eq!(needs(&mesh, &settings), NOTHING);
+        let mut brushed = Material::plain("brushed", [1.0; 4]);
+        brushed.look.anisotropy = 0.5;
+        let mut gem = Material::plain("gem", [1.0; 4]);
+        gem.look.thickness = 1.0;
+        mesh.materials = vec![brushed, gem];
+        assert_eq!((needs(&mesh, &settings), has_layers(&mesh)), (Needs { anisotropy: true, ..NOTHING }, false));
+        mesh.materials[1].look.transmission = 1.0;
+        let both = Needs { maps: 1 << BEHIND, transmission: true, anisotropy: true, ..NOTHING };
+        assert_eq!(needs(&mesh, &settings), both);
         let sun =
             Light { kind: LightKind::Directional, intensity: Vec3::ONE, place: Vec3::ZERO, direction: Vec3::NEG_Y };
         mesh.lights = vec![sun; 3];
         assert_eq!(needs(&mesh, &settings).lights, 3);
         assert_eq!(needs(&mesh, &Settings { lights: FileLights::Off, ..settings }).lights, 0);
+    }
+
+    /// A material with these maps.
+    fn mapped(slots: &[Slot]) -> Material {
+        let mut material = Material::plain("mapped", [1.0; 4]);
+        for &slot in slots {
+            let texture = Arc::new(Texture { size: [1; 2], rgba: vec![255; 4] });
+            let map = Map { texture, uv: MapUv::Own, sampling: Sampling::default() };
+            material.look.maps[slot as usize] = Some(map);
+        }
+        material
+    }
+
+    #[test]
+    fn shaders_are_shared_while_they_have_places_for_all_images() {
+        let bits = |slots: &[Slot]| slots.iter().map(|slot| 1_u32 << *slot as u32).sum::<u32>();
+        let mut mesh = Shape::CubeSplit.build();
+        let (first, rest) = Slot::ALL.split_at(6);
+        mesh.materials = vec![mapped(first), mapped(&rest[..6])];
+        let maps = |mesh: &Mesh| {
+            let of = |own: &Material| Needs::new(mesh, own, &Settings::default(), kind(4, false)).maps;
+            mesh.materials.iter().map(of).collect::<Vec<_>>()
+        };
+        assert_eq!(maps(&mesh), [bits(&Slot::ALL[..12]); 2]);
+        mesh.materials[1] = mapped(rest);
+        assert_eq!(maps(&mesh), [bits(first), bits(rest)]);
+        // What is behind a body has a place whatever else there is.
+        let mut all = mapped(&Slot::ALL);
+        mesh.materials = vec![all.clone()];
+        assert_eq!(maps(&mesh), [bits(&Slot::ALL[..12])]);
+        (all.look.transmission, all.look.thickness) = (1.0, 1.0);
+        mesh.materials = vec![all];
+        assert_eq!(maps(&mesh), [bits(&Slot::ALL[..11]) | 1 << BEHIND]);
     }
 
     #[test]

@@ -182,9 +182,9 @@ impl MaterialSource {
         if self.look.transmits() && !self.look.refracts() && self.look.roughness > 0.0 && !is_metal {
             self.undrawn.push("blur of what is behind rough thin surfaces (KHR_materials_transmission)".to_owned());
         }
-        let images = self.maps.iter().flatten().count() + usize::from(self.look.refracts());
-        if images > Look::MOST_IMAGES {
-            self.undrawn.push(format!("a map beyond the {} that are drawn at a time", Look::MOST_IMAGES));
+        let most_maps = Look::MOST_IMAGES - usize::from(self.look.refracts());
+        if self.maps.iter().flatten().count() > most_maps {
+            self.undrawn.push(format!("a map beyond the first {most_maps}"));
         }
     }
 
