@@ -130,6 +130,19 @@ mod tests {
         }
     }
 
+    #[test]
+    fn what_is_in_a_body_is_scaled_with_it() {
+        let mut material = crate::mesh::Material::plain("body", [1.0; 4]);
+        material.look.thickness = 4.0;
+        let mut mesh = Mesh { materials: vec![material], ..Mesh::default() };
+        for distance in [2.0, f32::INFINITY] {
+            mesh.materials[0].look.attenuation_distance = distance;
+            reorient(&mut mesh, UpAxis::Z, 0.5);
+            assert_eq!(mesh.materials[0].look.attenuation_distance, 0.5 * distance);
+        }
+        assert_eq!(mesh.materials[0].look.thickness, 1.0);
+    }
+
     proptest! {
         #[test]
         fn the_turn_and_its_matrix_are_the_same_and_keep_lengths(v in prop::array::uniform3(-1e6_f32..1e6), up in 0..6_usize) {
