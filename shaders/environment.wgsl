@@ -69,9 +69,9 @@ fn environment_sheen(facing: f32, roughness: f32) -> f32 {
 // Round highlights that make up a long one.
 const LEANS: u32 = 16u;
 
-// Radiance that a surface with long highlights reflects: the mean of round ones, of microfacets that lean along the direction. Each
-// stands for the same part of them: the slopes of GGX along a direction are those of angles whose sines are spread evenly. Each is so
-// much rougher that no gaps are left.
+// Radiance that a surface with long highlights reflects: the mean of round ones, of microfacets that lean along the direction.
+// Each stands for the same part of them: the slopes of GGX along a direction are those of angles whose sines are spread evenly.
+// Each is so much rougher that no gaps are left.
 fn long_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let squares = stretched_alphas(look) * stretched_alphas(look);
     let more = max(squares.x - squares.y, 0.0);

@@ -72,9 +72,9 @@ fn largest_component(color: vec3<f32>) -> f32 {
     return max(color.x, max(color.y, color.z));
 }
 
-// Density of microfacets whose normal is `half_way` (Trowbridge and Reitz; Walter et al. 2007, equation 33). `alphas` are squares of the
-// perceptual roughness along a unit direction across the normal, and across both (Heitz 2014, equation 85). The sine comes from a cross
-// product: 1 - cos^2 would cancel where surfaces are smooth.
+// Density of microfacets whose normal is `half_way` (Trowbridge and Reitz; Walter et al. 2007, equation 33). `alphas` are
+// squares of the perceptual roughness along a unit direction across the normal, and across both (Heitz 2014, equation 85). The
+// sine comes from a cross product: 1 - cos^2 would cancel where surfaces are smooth.
 fn ggx_distribution(normal: vec3<f32>, half_way: vec3<f32>, alphas: vec2<f32>, direction: vec3<f32>) -> f32 {
     let cosine = max(dot(normal, half_way), 0.0);
     let across = cross(normal, half_way);

@@ -31,8 +31,8 @@ pub fn enum_constants(file: &str) -> String {
     }
 }
 
-/// The binding of the image in one of the places that shaders have for those of a material beside that of the base colour. That of
-/// its sampler comes next.
+/// The binding of the image in one of the places that shaders have for those of a material beside that of the base colour. That
+/// of its sampler comes next.
 pub fn image_binding(place: usize) -> u32 {
     36 + 2 * place as u32
 }

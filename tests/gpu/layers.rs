@@ -355,7 +355,8 @@ fn a_body_absorbs_as_much_as_its_thickness_says() {
     }
 }
 
-/// What is seen at these places of two walls, red on the left and green on the right, through a sheet before them with this slope.
+/// What is seen at these places of two walls, red on the left and green on the right, through a sheet before them with this
+/// slope.
 fn before_two_walls(own: Material, slope: f32, places: &[[f32; 2]]) -> Vec<[u8; 3]> {
     let mut builder = MeshBuilder::new();
     let walls = [(-0.2, painted([1.0, 0.0, 0.0])), (0.2, painted([0.0, 1.0, 0.0]))];

@@ -142,8 +142,8 @@ impl Default for Look {
 }
 
 impl Look {
-    /// How many images pictures show of a material beside that of the base colour. Where more are needed, the last slots' are left
-    /// out. A body that refracts light needs one more, of what is behind it.
+    /// How many images pictures show of a material beside that of the base colour. Where more are needed, the last slots' are
+    /// left out. A body that refracts light needs one more, of what is behind it.
     pub const MOST_IMAGES: usize = 12;
 
     /// The maps whose texture coordinates tangents go along: those of the first one that there is.

@@ -49,8 +49,8 @@ impl Mipmaps {
         Self { average: pass("mip_main"), tested: ["mip_count", "mip_choose", "mip_cover"].map(pass) }
     }
 
-    /// Records passes that fill all levels of an image of 8-bit RGBA but the first, which must be there before. `first` is a view of
-    /// that, without a transfer function. The result is the same every time.
+    /// Records passes that fill all levels of an image of 8-bit RGBA but the first, which must be there before. `first` is a
+    /// view of that, without a transfer function. The result is the same every time.
     ///
     /// # Errors
     /// Out of memory, or a lost device.

@@ -38,9 +38,9 @@ fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, 
     (DrawnColors::new(settings.overlays.colors).look().map_or(Shading::Textured, Shading::Look), faces)
 }
 
-/// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice, so that
-/// single-sided materials that show what is behind them have none, as glTF 2.0 says (specification, section 3.9.5), nor have bodies
-/// that refract light, whose thickness stands for their other side. Two overlays show faces from behind.
+/// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice,
+/// so that single-sided materials that show what is behind them have none, as glTF 2.0 says (specification, section 3.9.5), nor
+/// have bodies that refract light, whose thickness stands for their other side. Two overlays show faces from behind.
 pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Faces> {
     let Overlays { folds, back_faces, .. } = settings.overlays;
     let is_single = !material.double_sided || material.look.refracts();

@@ -48,8 +48,8 @@ pub const METALLIC_ROUGHNESS: &Members = &[
     ("metallicRoughnessTexture", Map(Slot::MetallicRoughness)),
 ];
 
-/// Extensions whose members are numbers and maps of a look. They have the values of [`Look::default`] unless they say otherwise. Images
-/// of a coat that isn't there needn't be read.
+/// Extensions whose members are numbers and maps of a look. They have the values of [`Look::default`] unless they say
+/// otherwise. Images of a coat that isn't there needn't be read.
 pub const EXTENSIONS: [Extension; 7] = [
     ("KHR_materials_ior", |_| true, &[("ior", One(|look| &mut look.ior, POSITIVE))]),
     ("KHR_materials_specular", |_| true, SPECULAR),

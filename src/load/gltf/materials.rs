@@ -28,9 +28,6 @@ use geometry::progress::Progress;
 /// How many materials a sentence names.
 const NAMED: usize = 3;
 
-/// By how large a part scales may differ that count as the same.
-const SAME_SCALE: f32 = 0.01;
-
 /// A material's index in the builder, and what its corners need.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Resolved {
@@ -197,12 +194,12 @@ impl<'a> Materials<'a> {
         self.images.insert(image, ReadImage { texture, scaled });
     }
 
-    /// Finds a material of what is shown, or adds it to the builder. `scale` is that of the node which shows it. A texture that is
-    /// missing or broken causes a warning.
+    /// Finds a material of what is shown, or adds it to the builder. `scale` is that of the node which shows it. A texture that
+    /// is missing or broken causes a warning.
     pub(super) fn resolve(&mut self, material: &::gltf::Material, scale: f32, builder: &mut MeshBuilder) -> Resolved {
         let key = material.index();
         if let Some(resolved) = self.resolved.get_mut(&key) {
-            if (scale / resolved.scale - 1.0).abs() > SAME_SCALE && self.sources[&key].look.refracts() {
+            if (scale / resolved.scale - 1.0).abs() > 0.01 && self.sources[&key].look.refracts() {
                 resolved.scale = f32::NAN;
                 let name = name(&self.sources[&key], key);
                 let said = "is that in the first node which shows it, and other nodes have another scale";

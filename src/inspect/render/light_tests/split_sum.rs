@@ -91,8 +91,8 @@ pub(super) fn normals() -> impl Iterator<Item = Vec3> {
     })
 }
 
-/// The mean difference of a white metal sphere, relative to its mean brightness. Long highlights go around the vertical axis. What
-/// meets several microfacets is the same in both.
+/// The mean difference of a white metal sphere, relative to its mean brightness. Long highlights go around the vertical axis.
+/// What meets several microfacets is the same in both.
 fn difference(studio: &Studio, roughness: f32, anisotropy: f32) -> f32 {
     let to_eye = Vec3::Z;
     let (mut off, mut sum) = (0.0, 0.0);

@@ -44,8 +44,8 @@ impl Renderer {
         drawn.materials.iter().zip(mesh.materials.iter().map(maps)).collect()
     }
 
-    /// The bind groups of a half's materials for a picture of a scene with these settings, in this light; and what is behind bodies
-    /// that refract it.
+    /// The bind groups of a half's materials for a picture of a scene with these settings, in this light; and what is behind
+    /// bodies that refract it.
     pub(super) fn material_groups(
         &self,
         scene: &Scene,
