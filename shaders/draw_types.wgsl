@@ -46,7 +46,7 @@ struct Frame {
 }
 
 // Images of a material beside that of the base colour.
-const MAP_COUNT: u32 = 12u;
+const MAP_COUNT: u32 = 14u;
 
 struct Material {
     // Linear RGBA.
@@ -76,9 +76,16 @@ struct Material {
     transmission: f32,
     // 0 without a normal map of the coat.
     coat_normal_scale: f32,
+    // How much longer highlights are along a direction than across it.
+    anisotropy: f32,
     // Linear RGB of the sheen; 0 without one.
     sheen_color: vec3<f32>,
     sheen_roughness: f32,
+    // What the body behind the surface absorbs in an object unit, and how far light goes through it.
+    absorption: vec3<f32>,
+    thickness: f32,
+    // The direction of long highlights: along the tangent, and along the bitangent.
+    anisotropy_direction: vec2<f32>,
     maps: array<MapPlace, MAP_COUNT>,
 }
 

@@ -82,10 +82,18 @@ pub struct Material {
     pub transmission: f32,
     /// 0 without a normal map of the coat.
     pub coat_normal_scale: f32,
-    pub _pad: f32,
+    /// How much longer highlights are along a direction than across it.
+    pub anisotropy: f32,
     /// Linear RGB of the sheen; 0 without one.
     pub sheen_color: [f32; 3],
     pub sheen_roughness: f32,
+    /// What the body behind the surface absorbs in an object unit.
+    pub absorption: [f32; 3],
+    /// How far light goes through that body, in object units.
+    pub thickness: f32,
+    /// The direction of long highlights: along the tangent, and along the bitangent.
+    pub anisotropy_direction: [f32; 2],
+    pub _pad: [f32; 2],
     /// In the order of [`Slot::ALL`].
     pub maps: [MapPlace; Slot::COUNT],
 }

@@ -38,12 +38,13 @@ fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, 
     (if LOOKS.contains(&colors) { Shading::Look(colors) } else { Shading::Textured }, faces)
 }
 
-/// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice, so that
-/// single-sided materials that show what is behind them have none, as glTF 2.0 says (specification, section 3.9.5). Two overlays show
-/// faces from behind.
+/// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice,
+/// so that single-sided materials that show what is behind them have none, as glTF 2.0 says (specification, section 3.9.5), nor
+/// have bodies that refract light, whose thickness stands for their other side. Two overlays show faces from behind.
 pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Faces> {
     let Overlays { folds, back_faces, .. } = settings.overlays;
-    let has_fronts_only = material.shows_behind() && !material.double_sided && !folds && !back_faces;
+    let is_single = !material.double_sided || material.look.refracts();
+    let has_fronts_only = material.shows_behind() && is_single && !folds && !back_faces;
     has_fronts_only.then_some(Faces::Fronts)
 }
 

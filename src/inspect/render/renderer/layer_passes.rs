@@ -174,7 +174,8 @@ fn draws(
         LayerPass::Away { .. } => &[LayerDraw::Away],
         LayerPass::Back { composites: false, .. } => &[LayerDraw::Toward],
         LayerPass::Back { finds, .. } => {
-            let all: &[_] = if material.look.transmits() {
+            // The picture of what is behind a body that refracts light has its colours from elsewhere.
+            let all: &[_] = if material.look.transmits() && !material.look.refracts() {
                 &[LayerDraw::Filter, LayerDraw::Add, LayerDraw::Toward]
             } else {
                 &[LayerDraw::Over, LayerDraw::Toward]

@@ -16,6 +16,7 @@ use crate::render::layout::{
 };
 use crate::render::matcap::MATCAP_REACH;
 use crate::render::mipmap_pass::ALPHAS;
+use crate::render::needs::BEHIND;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::sheen::LEAST_SHEEN_ALPHA;
@@ -77,6 +78,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &["WORK_PIECE", "MOST_WORK", "MOST_WORK_OF_ALL"],
         "how much work functions of the user's own may be, which only the device counts",
     ),
+    (&["LEANS"], "how an integral is divided; tests compare it with the integral"),
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
     (
         &[
@@ -150,6 +152,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("LAYER_FILTER", number(LayerDraw::Filter as u32)),
         ("LAYER_ADD", number(LayerDraw::Add as u32)),
         ("MAP_COUNT", number(Slot::COUNT as u32)),
+        ("BEHIND", number(BEHIND as u32)),
         ("MAX_MAPS", number(MAX_MAPS as u32)),
         ("WORKGROUP", number(WORKGROUP)),
         ("GRID_WIDTH", number(GRID_WIDTH)),

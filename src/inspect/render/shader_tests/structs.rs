@@ -126,6 +126,8 @@ fn shared_structs_have_the_same_layout() {
         specular,
         coat_normal,
         coat,
+        direction,
+        anisotropy,
         roughness,
         coat_roughness,
         ior,
@@ -166,8 +168,12 @@ fn shared_structs_have_the_same_layout() {
         blends,
         transmission,
         coat_normal_scale,
+        anisotropy,
         sheen_color,
         sheen_roughness,
+        absorption,
+        thickness,
+        anisotropy_direction,
         maps,
     });
     same!(MapPlace { u, v });
