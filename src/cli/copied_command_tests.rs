@@ -92,7 +92,11 @@ fn options_with_other_values_are_written() {
         heights,
         variant: Some("-matte".to_owned()),
         scene: Some("Night sky".to_owned()),
-        parts: ShownParts { hidden: vec!["-left door".to_owned(), "b, c".to_owned()], only: vec!["d".to_owned()] },
+        parts: ShownParts {
+            hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
+            only: vec!["d".to_owned()],
+            morphs: [("-a = b".to_owned(), -0.1), ("Smile".to_owned(), 0.7)].into(),
+        },
         import: Import::default(),
         limits,
     };

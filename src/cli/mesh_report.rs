@@ -14,6 +14,7 @@ use geometry::names::{on_one_line, shown};
 use geometry::numbers::exact;
 use geometry::progress::{Cancelled, Progress};
 use inspect::engine::Loaded;
+use load::Contents;
 use load::parts::Part;
 
 /// How many T-junctions the text lists.
@@ -37,14 +38,8 @@ pub(super) struct Info {
     pub materials: Vec<MaterialInfo>,
     pub lights: Vec<LightInfo>,
     pub cameras: Vec<CameraInfo>,
-    /// The names of the file's material variants.
-    pub variants: Vec<String>,
-    /// The names of the file's scenes.
-    pub scenes: Vec<String>,
-    /// Which of them this is; none if the file has no scenes.
-    pub scene: Option<usize>,
-    /// The parts that the file has; empty for formats without any.
-    pub parts: Vec<Part>,
+    #[serde(flatten)]
+    pub contents: Contents,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
@@ -119,10 +114,7 @@ impl Info {
             materials: mesh.materials.iter().map(MaterialInfo::new).collect(),
             lights: mesh.lights.iter().map(LightInfo::new).collect(),
             cameras: mesh.cameras.iter().map(CameraInfo::new).collect(),
-            variants: loaded.variants.clone(),
-            scenes: loaded.scenes.clone(),
-            scene: loaded.scene,
-            parts: loaded.parts.to_vec(),
+            contents: Contents::clone(&loaded.contents),
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: joins?,
@@ -150,15 +142,19 @@ impl fmt::Display for Info {
         self.materials.iter().try_for_each(|material| write!(f, "{material}"))?;
         self.lights.iter().try_for_each(|light| write!(f, "{light}"))?;
         self.cameras.iter().try_for_each(|camera| write!(f, "{camera}"))?;
-        self.variants.iter().try_for_each(|variant| writeln!(f, "variant       {}", shown(variant)))?;
+        let Contents { variants, scenes, scene, parts, morph_targets } = &self.contents;
+        variants.iter().try_for_each(|variant| writeln!(f, "variant       {}", shown(variant)))?;
         // Most files have one scene, of which nothing is to be said.
-        for (i, scene) in self.scenes.iter().enumerate().filter(|_| self.scenes.len() > 1) {
-            let is_read = if Some(i) == self.scene { ", which is shown" } else { "" };
-            writeln!(f, "scene         {}{is_read}", shown(scene))?;
+        for (i, name) in scenes.iter().enumerate().filter(|_| scenes.len() > 1) {
+            let is_read = if Some(i) == *scene { ", which is shown" } else { "" };
+            writeln!(f, "scene         {}{is_read}", shown(name))?;
         }
-        for Part { name, triangles, is_hidden } in self.parts.iter().filter(|_| self.parts.len() > 1) {
+        for Part { name, triangles, is_hidden } in parts.iter().filter(|_| parts.len() > 1) {
             let left_out = if *is_hidden { ", left out" } else { "" };
             writeln!(f, "part          {}: {triangles} triangles{left_out}", shown(name))?;
+        }
+        for (name, weight) in morph_targets {
+            writeln!(f, "morph target  {}: {weight} at rest in the file", shown(name))?;
         }
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.

@@ -250,7 +250,7 @@ impl WeldOption {
     }
 }
 
-/// Which parts of a file are read.
+/// Which parts of a file are read, and in which shape.
 #[derive(Clone, Debug, Default, Args)]
 pub struct PartOptions {
     /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
@@ -259,11 +259,16 @@ pub struct PartOptions {
     /// Show only the part of the file that has this name, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
+    /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times. `info`
+    /// lists the targets
+    #[arg(long, value_name = "NAME=WEIGHT", allow_hyphen_values = true, value_parser = values::morph)]
+    morph: Vec<(String, f32)>,
 }
 
 impl PartOptions {
     pub fn shown(&self) -> ShownParts {
-        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() }
+        let morphs = self.morph.iter().cloned().collect();
+        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone(), morphs }
     }
 }
 

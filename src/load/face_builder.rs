@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::cage_faces::{CageFaces, OfFace};
 use super::import::Import;
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
 use super::notes::{Notes, counted, counts};
@@ -391,7 +391,8 @@ impl<'a> FaceBuilder<'a> {
         if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
             tangents::with_details(&mut mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
-        Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, is_refined, ..LoadedMesh::default() })
+        let (contents, warnings) = (Contents { parts, ..Contents::default() }, notes.into_warnings());
+        Ok(LoadedMesh { mesh, warnings, contents, is_refined, files: Vec::new(), file_bytes })
     }
 
     /// Builds the mesh as [`finish`](Self::finish) does, with what the reader adds to it.

@@ -22,7 +22,7 @@ mod textures;
 mod vertices;
 
 use super::face_builder::Finished;
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::Notes;
@@ -62,7 +62,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(bytes);
     let mut notes = Notes::default();
     left_out::warn(&scene, &mut notes);
-    let mut placed = Placed::new(&scene, import.show_hidden, &budget, &mut notes)?;
+    let mut placed = Placed::new(&scene, &file.selected, &budget, &mut notes)?;
     let clips = clips::read(&scene, &placed, &budget, &progress.part(0.3, 0.4), &mut notes)?;
     placed.grow(&clips);
     let mut warnings = Vec::new();
@@ -72,12 +72,13 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let mut surfaces = Surfaces::new(&scene, &placed, file, &files, binder)?;
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.4 + 0.4 * i as f32 / placed.shown.len() as f32);
-        surfaces.add(node, progress)?;
+        surfaces.add(node, &file.selected, progress)?;
     }
     let holds = left_out::holds(&scene, &placed);
     let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64);
+    let morph_targets = morphs::file_weights(&scene);
     drop(placed);
     drop(scene);
     progress.set(0.8);
@@ -85,15 +86,8 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let Finished { mut mesh, numbers, mut notes, parts, is_refined } = finished;
     RigBuilder::complete(&mut mesh, numbers, details, binder, &mut notes, &budget, progress)?;
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh {
-        mesh,
-        warnings: notes.into_warnings(),
-        parts,
-        files,
-        file_bytes,
-        is_refined,
-        ..LoadedMesh::default()
-    })
+    let contents = Contents { parts, morph_targets, ..Contents::default() };
+    Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), contents, files, file_bytes, is_refined })
 }
 
 #[cfg(test)]

@@ -29,6 +29,7 @@ mod material_lists;
 mod material_source;
 mod materials;
 mod meshopt;
+mod morph_targets;
 mod node_parts;
 mod nodes;
 mod primitive;
@@ -54,7 +55,7 @@ use std::sync::Arc;
 use ::gltf::{Document, Node, Semantic};
 use glam::DMat4;
 
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::Notes;
@@ -176,8 +177,10 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let scenes::Scenes { names: scenes, shown: scene } = parsed.scenes;
-    let (files, file_bytes, variants, parts) = (files.named(), budget.files(), parsed.variants, parsed.parts.list);
-    Ok(LoadedMesh { mesh, warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: false })
+    let (variants, parts, morph_targets) = (parsed.variants, parsed.parts.list, parsed.morph_targets);
+    let contents = Contents { variants, scenes, scene, parts, morph_targets };
+    let (files, file_bytes) = (files.named(), budget.files());
+    Ok(LoadedMesh { mesh, warnings, contents, files, file_bytes, is_refined: false })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

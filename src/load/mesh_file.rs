@@ -7,7 +7,7 @@ use super::content::{self, Content};
 use super::format::{Format, extension_of, known_extensions};
 use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::model_file::ModelFile;
 use super::read_error::ReadError;
 use super::selection::{Selection, choice};
@@ -71,7 +71,7 @@ pub enum LoadError {
     /// The shape is made in code, where Y is up.
     #[error("{shape} is made in code with Y up, in metres: omit --up and --unit")]
     Shape { shape: String },
-    /// The file doesn't have the "material variant", the "scene" or the "part" of this name, but others. `none` is said if there are no
+    /// The file doesn't have the "material variant", the "scene", the "part" or the "morph target" of this name, but others. `none` is said if there are no
     /// others.
     #[error("{} has no {what} {}; {}", shown_path(path), shown(name), choice(known, none))]
     Absent { path: PathBuf, what: &'static str, name: String, known: Vec<String>, none: &'static str },
@@ -142,32 +142,37 @@ pub fn load_selected(
         mesh.warnings.push(NOT_REFINED.to_owned());
     }
     before.check(path)?;
-    check_selected(path, selected, &mesh)?;
+    check_selected(path, selected, &mesh.contents)?;
     progress.set(1.0);
     Ok(mesh)
 }
 
-/// Checks that a mesh has the variant, the scene and the parts that were named.
+/// Checks that a file has the variant, the scene, the parts and the morph targets that were named.
 ///
 /// # Errors
 /// [`LoadError::Absent`].
-pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMesh) -> Result<(), LoadError> {
+pub(super) fn check_selected(path: &Path, selected: Selection, known: &Contents) -> Result<(), LoadError> {
     let absent = |what, name: &str, known, none| {
         Err(LoadError::Absent { path: path.to_owned(), what, name: name.to_owned(), known, none })
     };
-    if let Some(scene) = selected.scene.filter(|scene| scenes::number(&loaded.scenes, scene).is_none()) {
-        return absent("scene", scene, loaded.scenes.clone(), "it has no scenes, so omit --scene");
+    if let Some(scene) = selected.scene.filter(|scene| scenes::number(&known.scenes, scene).is_none()) {
+        return absent("scene", scene, known.scenes.clone(), "it has no scenes, so omit --scene");
     }
-    let is_unknown = |name: &&String| loaded.parts.iter().all(|part| part.name != **name);
+    let is_unknown = |name: &&String| known.parts.iter().all(|part| part.name != **name);
     if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown) {
-        let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
+        let known = known.parts.iter().map(|part| part.name.clone()).collect();
         return absent("part", part, known, "it has no named parts, so omit --hide-part and --show-part");
     }
-    match selected.variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
+    if let Some(name) = selected.morphs.and_then(|own| own.keys().find(|name| !known.morph_targets.contains_key(*name)))
+    {
+        let known = known.morph_targets.keys().cloned().collect();
+        return absent("morph target", name, known, "it has no morph targets, so omit --morph");
+    }
+    match selected.variant.filter(|variant| known.variants.iter().all(|known| known != variant)) {
         None => Ok(()),
         Some(variant) => {
             let none = "it has no variants, so omit --variant";
-            absent("material variant", variant, loaded.variants.clone(), none)
+            absent("material variant", variant, known.variants.clone(), none)
         }
     }
 }

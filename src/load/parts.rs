@@ -154,15 +154,16 @@ mod tests {
             parts.enter(name.as_bytes(), &Budget::unlimited()).expect("memory is unlimited");
             parts.is_hidden()
         };
-        let mut shown = ShownParts::alone("a");
+        let mut shown = ShownParts::default();
+        shown.show_only(vec!["a".to_owned()]);
         assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [false, true, true]);
         shown.set("b", true);
-        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![a.clone(), b.clone()] });
+        assert_eq!(shown, ShownParts { only: vec![a.clone(), b.clone()], ..ShownParts::default() });
         shown.set("a", false);
         assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true, false, true]);
         shown.set("b", false);
         assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true; 3]);
         shown.set("b", true);
-        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![b] });
+        assert_eq!(shown, ShownParts { only: vec![b], ..ShownParts::default() });
     }
 }

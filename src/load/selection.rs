@@ -1,7 +1,12 @@
 //! What of a file is read, and how.
 
+use std::collections::BTreeMap;
+
 use super::import::Import;
 use geometry::names::shown;
+
+/// Weights of morph targets (of glTF) and of channels of blend shapes (of FBX), by their names. Targets of one name have one weight.
+pub type MorphWeights = BTreeMap<String, f32>;
 
 /// Which of a file's alternatives is read, and how its geometry is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,23 +19,34 @@ pub struct Selection<'a> {
     pub hidden: &'a [String],
     /// The names of parts that alone are read; all parts if there are none.
     pub only: &'a [String],
+    /// The weights of morph targets that take the place of the file's at rest, and in clips that don't move them.
+    pub morphs: Option<&'a MorphWeights>,
     /// How the geometry is taken.
     pub import: Import,
 }
 
-/// Which parts of a file are read.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+impl Selection<'_> {
+    /// The weight that was chosen for the morph targets of a name.
+    pub(super) fn morph(&self, name: &str) -> Option<f32> {
+        self.morphs?.get(name).copied()
+    }
+}
+
+/// Which parts of a file are read, and in which shape.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShownParts {
     /// The names of parts that are left out.
     pub hidden: Vec<String>,
     /// The names of parts that alone are read; all parts if there are none.
     pub only: Vec<String>,
+    /// The weights of morph targets that take the place of the file's at rest, and in clips that don't move them.
+    pub morphs: MorphWeights,
 }
 
 impl ShownParts {
-    /// The part of this name alone.
-    pub fn alone(name: &str) -> Self {
-        Self { hidden: Vec::new(), only: vec![name.to_owned()] }
+    /// Shows the parts of these names alone, or all parts without any.
+    pub fn show_only(&mut self, names: Vec<String>) {
+        (self.hidden, self.only) = (Vec::new(), names);
     }
 
     /// Shows a part, or leaves it out.

@@ -63,7 +63,7 @@ impl Source {
             }
             Self::File(path) => return load_selected(path, selected, limits, progress),
         }?;
-        check_selected(self.to_string().as_ref(), selected, &loaded)?;
+        check_selected(self.to_string().as_ref(), selected, &loaded.contents)?;
         Ok(loaded)
     }
 

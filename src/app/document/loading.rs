@@ -18,7 +18,7 @@ use inspect::settings::Settings;
 use load::environment_file::is_environment;
 use load::files::FileError;
 use load::format::Format;
-use load::{Import, LoadError, ShownParts, Source};
+use load::{Contents, Import, LoadError, ShownParts, Source};
 
 /// Why a mesh could not be loaded.
 struct NotLoaded {
@@ -117,17 +117,24 @@ impl App {
         again.or(shown).cloned().unwrap_or_else(|| self.plain(&Source::default()))
     }
 
+    /// What the file offers to choose from.
+    pub(in crate::app) fn contents(&self) -> Arc<Contents> {
+        self.document.as_ref().map(|document| document.loaded.contents.clone()).unwrap_or_default()
+    }
+
     /// A preparation that leaves the mesh as the file has it, but for normals, axis and unit that were chosen.
     fn plain(&self, source: &Source) -> Preparation {
         let import = self.persistence.import_of(source, &self.settings);
         Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
     }
 
-    /// Loads the mesh again if its normals, its axis, its unit or its hidden parts were changed, also by undo. While something is dragged,
-    /// and while another mesh is being loaded, it waits.
+    /// Loads the mesh again if its normals, its axis, its unit, its hidden parts or the weights of its morph targets were changed, also by
+    /// undo. While something is dragged, and while another mesh is being loaded, it waits; a weight that is dragged is followed from one
+    /// load to the next.
     pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
         let opens_another = self.jobs.load().is_some_and(|load| !load.keep_view);
-        if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
+        let waits = || self.is_opening() || self.preparation().parts.morphs == self.parts.morphs;
+        if self.document.is_none() || opens_another || (context.egui_is_using_pointer() && waits()) {
             return;
         }
         let (import, parts) = (self.settings.import, self.parts.clone());
@@ -139,7 +146,7 @@ impl App {
         }
     }
 
-    /// Goes back to the normals, the axis, the unit and the hidden parts that the mesh has, after a load that came to nothing.
+    /// Goes back to the normals, the axis, the unit and the hidden parts and weights that the mesh has, after a load that came to nothing.
     pub(in crate::app) fn keep_file_choices(&mut self) {
         if let Some(document) = &self.document {
             self.settings.import = document.loaded.preparation.import;
@@ -187,7 +194,8 @@ impl App {
         self.dialogs.typed = None;
         self.jobs.stop_of_document();
         self.viewport.preview.forget();
-        let place = |document: &Document| (document.loaded.scene, document.loaded.preparation.import.placement());
+        let place =
+            |document: &Document| (document.loaded.contents.scene, document.loaded.preparation.import.placement());
         let placed = place(&document);
         let mut before = self.document.replace(document);
         if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {

@@ -16,6 +16,7 @@ mod import;
 mod leak_list;
 mod light_rows;
 mod matcap;
+mod morphs;
 mod option_rows;
 mod parts;
 mod patch_explanation;
@@ -50,6 +51,8 @@ pub(super) struct Panels {
     pub edited: SplitSide,
     /// What the names of listed parts contain.
     pub parts_filter: String,
+    /// The same of morph targets.
+    pub morphs_filter: String,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
     /// How high the section of the selected patch is, in points.

@@ -17,6 +17,7 @@ use crate::notes::{Notes, counted, counts};
 use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
 use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
+use crate::selection::Selection;
 use crate::uri::Files;
 use geometry::casts::{to_f32, to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
@@ -102,13 +103,13 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     }
 
     /// Adds the polygons of a node's mesh.
-    pub(super) fn add(&mut self, index: usize, progress: &Progress) -> Result<(), ReadError> {
+    pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<(), ReadError> {
         let node = &self.scene.nodes[index];
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
         let skin = Skin::new(node, mesh, global);
-        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), &self.faces.import, self.budget)?;
+        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
         let is_without_normals = vertices.is_without_normals();
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));

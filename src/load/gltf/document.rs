@@ -19,9 +19,9 @@ use super::reach::Reach;
 use super::repair::Settled;
 use super::scenes::Scenes;
 use super::schema_check::Faults;
-use super::{GltfError, extension_table, extensions, glb, json, repair, schema, schema_check, variants};
+use super::{GltfError, extension_table, extensions, glb, json, morph_targets, repair, schema, schema_check, variants};
 use crate::memory_budget::Budget;
-use crate::selection::Selection;
+use crate::selection::{MorphWeights, Selection};
 use geometry::mesh::{Borrowed, Light};
 use geometry::progress::Progress;
 
@@ -40,6 +40,8 @@ pub(super) struct Parsed {
     pub variants: Vec<String>,
     pub scenes: Scenes,
     pub parts: NodeParts,
+    /// The weights that the document gives morph targets at rest.
+    pub morph_targets: MorphWeights,
     /// What the scene uses.
     pub reach: Reach,
     pub faults: Faults,
@@ -68,6 +70,7 @@ pub(super) fn parse(
     let animations = take_list(root, "animations", "there are no animations", &notes);
     let variants = variants::choose(root, selected.variant, notes.get_mut());
     let scenes = Scenes::choose(root, selected.scene, notes.get_mut());
+    let morph_targets = morph_targets::choose(root, &selected);
     let lists = MaterialLists::take(root, &notes);
     let lights = lights::take(root, &notes);
     let cameras = cameras::take(root, &notes);
@@ -109,6 +112,7 @@ pub(super) fn parse(
         variants,
         scenes,
         parts,
+        morph_targets,
         reach,
         faults,
         notes: notes.into_inner(),

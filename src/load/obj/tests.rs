@@ -89,7 +89,7 @@ fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
         super::read(faces.as_bytes().to_vec(), &ModelFile { selected, ..ModelFile::from_test("", &Progress::new()) })
     };
     let parts = |loaded: &LoadedMesh| -> Vec<(String, u32, bool)> {
-        loaded.parts.iter().map(|part| (part.name.clone(), part.triangles, part.is_hidden)).collect()
+        loaded.contents.parts.iter().map(|part| (part.name.clone(), part.triangles, part.is_hidden)).collect()
     };
     let named = |hidden: bool| {
         [("default", 1, false), ("car", 2, false), ("car/wheel left", 2, hidden), ("bike", 1, false)]
@@ -271,7 +271,7 @@ fn triangles_that_are_taken_together_are_those_that_are_taken_one_by_one() {
         let [together, one_by_one] = [&together, &one_by_one].map(read);
         assert_eq!(together.mesh.triangles, one_by_one.mesh.triangles);
         assert_eq!(together.mesh.corners, one_by_one.mesh.corners);
-        assert_eq!(together.parts, one_by_one.parts);
+        assert_eq!(together.contents.parts, one_by_one.contents.parts);
         let counts = |loaded: &LoadedMesh| -> Vec<String> {
             let before = |warning: &String| warning.split(", the first").next().unwrap_or_default().to_owned();
             loaded.warnings.iter().map(before).collect()

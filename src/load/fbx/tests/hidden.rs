@@ -81,7 +81,7 @@ fn nodes_and_layers_that_are_off_are_hidden_unless_they_are_asked_for() {
     let file = ModelFile { selected, ..ModelFile::from_test("test", &progress) };
     let all = read_here(text(&layered()), &file).expect("no fault");
     assert_eq!(all.triangles.len(), 3);
-    let parts: Vec<_> = all.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+    let parts: Vec<_> = all.contents.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
     assert_eq!(parts, [("off", 1), ("in a layer that is off", 1), ("below, but shown", 1)]);
     assert_eq!([0, 1, 2].map(|triangle| all.part_of(triangle)), [Some(0), Some(1), Some(2)]);
     assert!(all.warnings.iter().all(|warning| !warning.contains("hides")), "{:?}", all.warnings);

@@ -38,11 +38,17 @@ fn named_nodes_are_parts_and_hidden_ones_are_left_out() {
         read_selected(&named(), Selection { hidden: &hidden, ..Selection::default() }).expect("triangles")
     };
     let whole = read(&[]);
-    assert_eq!((whole.triangles.len(), &whole.parts[..]), (4, &[part("left", 2, false), part("mesh", 1, false)][..]));
+    assert_eq!(
+        (whole.triangles.len(), &whole.contents.parts[..]),
+        (4, &[part("left", 2, false), part("mesh", 1, false)][..])
+    );
     let of_each: Vec<_> = (0..4).map(|triangle| whole.part_of(triangle)).collect();
     assert_eq!(of_each, [Some(0), Some(0), Some(1), None], "children follow their parents");
     let some = read(&["left"]);
-    assert_eq!((some.triangles.len(), &some.parts[..]), (2, &[part("left", 2, true), part("mesh", 1, false)][..]));
+    assert_eq!(
+        (some.triangles.len(), &some.contents.parts[..]),
+        (2, &[part("left", 2, true), part("mesh", 1, false)][..])
+    );
     assert!(some.corners.iter().all(|corner| corner.position.x > 8.0 || corner.position.y > 6.0));
     assert!(some.warnings.is_empty(), "{:?}", some.warnings);
 }
