@@ -40,6 +40,15 @@ pub(super) fn chooser<T: Copy + PartialEq>(
     ui.end_row();
 }
 
+/// The same row, disabled; `why` is its hover text.
+pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
+    let label = ui.label(name).on_hover_text(why);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown);
+    let response = ui.add_enabled_ui(false, |ui| combo.show_ui(ui, |_| {}).response).inner;
+    response.labelled_by(label.id).on_disabled_hover_text(why);
+    ui.end_row();
+}
+
 /// A row with a name and a list whose entries `show` makes.
 pub(super) fn list_row(ui: &mut egui::Ui, name: &str, shown: String, hover: &str, show: impl FnOnce(&mut egui::Ui)) {
     let label = ui.label(name).on_hover_text(hover);
@@ -54,15 +63,6 @@ pub(super) fn button_row(ui: &mut egui::Ui, text: &str, hover: &str) -> bool {
     let is_clicked = ui.button(text).on_hover_text(hover).clicked();
     ui.end_row();
     is_clicked
-}
-
-/// The same row, disabled; `why` is its hover text.
-pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
-    let label = ui.label(name).on_hover_text(why);
-    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown);
-    let response = ui.add_enabled_ui(false, |ui| combo.show_ui(ui, |_| {}).response).inner;
-    response.labelled_by(label.id).on_disabled_hover_text(why);
-    ui.end_row();
 }
 
 /// A row with a name and a right-aligned number.

@@ -259,8 +259,8 @@ pub struct PartOptions {
     /// Show only the part of the file that has this name, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
-    /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times. `info`
-    /// lists the targets
+    /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.
+    /// `info` lists the targets
     #[arg(long, value_name = "NAME=WEIGHT", allow_hyphen_values = true, value_parser = values::morph)]
     morph: Vec<(String, f32)>,
 }

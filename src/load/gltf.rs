@@ -144,7 +144,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
                 format!("KHR_node_visibility hides the {hidden} {said}")
             }
         };
-        holds += if parsed.scenes.names.len() > 1 { "; --scene shows another of its scenes" } else { "" };
+        holds += if parsed.contents.scenes.len() > 1 { "; --scene shows another of its scenes" } else { "" };
         return Err(GltfError::Empty { holds });
     }
     if parsed.parts.beyond > 0 {
@@ -176,9 +176,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     notes.append(of_cameras);
     let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
-    let scenes::Scenes { names: scenes, shown: scene } = parsed.scenes;
-    let (variants, parts, morph_targets) = (parsed.variants, parsed.parts.list, parsed.morph_targets);
-    let contents = Contents { variants, scenes, scene, parts, morph_targets };
+    let contents = Contents { parts: parsed.parts.list, ..parsed.contents };
     let (files, file_bytes) = (files.named(), budget.files());
     Ok(LoadedMesh { mesh, warnings, contents, files, file_bytes, is_refined: false })
 }

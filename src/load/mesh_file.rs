@@ -10,7 +10,7 @@ use super::heights::HeightError;
 use super::loaded_mesh::{Contents, LoadedMesh};
 use super::model_file::ModelFile;
 use super::read_error::ReadError;
-use super::selection::{Selection, choice};
+use super::selection::{Selection, ShownParts, choice};
 use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
@@ -71,8 +71,8 @@ pub enum LoadError {
     /// The shape is made in code, where Y is up.
     #[error("{shape} is made in code with Y up, in metres: omit --up and --unit")]
     Shape { shape: String },
-    /// The file doesn't have the "material variant", the "scene", the "part" or the "morph target" of this name, but others. `none` is said if there are no
-    /// others.
+    /// The file doesn't have the "material variant", "scene", "part" or "morph target" of this name, but others. `none` is said if
+    /// there are no others.
     #[error("{} has no {what} {}; {}", shown_path(path), shown(name), choice(known, none))]
     Absent { path: PathBuf, what: &'static str, name: String, known: Vec<String>, none: &'static str },
 }
@@ -158,23 +158,22 @@ pub(super) fn check_selected(path: &Path, selected: Selection, known: &Contents)
     if let Some(scene) = selected.scene.filter(|scene| scenes::number(&known.scenes, scene).is_none()) {
         return absent("scene", scene, known.scenes.clone(), "it has no scenes, so omit --scene");
     }
-    let is_unknown = |name: &&String| known.parts.iter().all(|part| part.name != **name);
-    if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown) {
-        let known = known.parts.iter().map(|part| part.name.clone()).collect();
-        return absent("part", part, known, "it has no named parts, so omit --hide-part and --show-part");
-    }
-    if let Some(name) = selected.morphs.and_then(|own| own.keys().find(|name| !known.morph_targets.contains_key(*name)))
-    {
-        let known = known.morph_targets.keys().cloned().collect();
-        return absent("morph target", name, known, "it has no morph targets, so omit --morph");
-    }
-    match selected.variant.filter(|variant| known.variants.iter().all(|known| known != variant)) {
-        None => Ok(()),
-        Some(variant) => {
-            let none = "it has no variants, so omit --variant";
-            absent("material variant", variant, known.variants.clone(), none)
+    if let Some(ShownParts { hidden, only, morphs }) = selected.parts {
+        let is_unknown = |name: &&String| known.parts.iter().all(|part| part.name != **name);
+        if let Some(part) = hidden.iter().chain(only).find(is_unknown) {
+            let known = known.parts.iter().map(|part| part.name.clone()).collect();
+            return absent("part", part, known, "it has no named parts, so omit --hide-part and --show-part");
+        }
+        if let Some(name) = morphs.keys().find(|name| !known.morph_targets.contains_key(*name)) {
+            let known = known.morph_targets.keys().cloned().collect();
+            return absent("morph target", name, known, "it has no morph targets, so omit --morph");
         }
     }
+    if let Some(variant) = selected.variant.filter(|variant| known.variants.iter().all(|known| known != variant)) {
+        let none = "it has no variants, so omit --variant";
+        return absent("material variant", variant, known.variants.clone(), none);
+    }
+    Ok(())
 }
 
 /// What a file is read as.

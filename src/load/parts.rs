@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use serde::Serialize;
 
 use super::memory_budget::Budget;
-use super::selection::{Selection, choice};
+use super::selection::{Selection, ShownParts, choice};
 use geometry::casts::to_u32;
 use geometry::mesh::MemoryRefused;
 
@@ -34,10 +34,7 @@ pub struct Part {
 /// The parts of a file that is being read.
 #[derive(Default)]
 pub(super) struct Parts {
-    /// The names of parts that are left out.
-    hidden: Vec<String>,
-    /// The names of parts that alone aren't left out, if there are any.
-    only: Vec<String>,
+    shown: ShownParts,
     found: Vec<Part>,
     numbers: HashMap<Vec<u8>, usize>,
     /// The part that the next faces belong to.
@@ -48,7 +45,7 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn new(selected: &Selection) -> Self {
-        Self { hidden: selected.hidden.to_vec(), only: selected.only.to_vec(), ..Self::default() }
+        Self { shown: selected.parts.cloned().unwrap_or_default(), ..Self::default() }
     }
 
     /// Says which part the next faces belong to, by its name.
@@ -64,9 +61,9 @@ impl Parts {
         }
         budget.hold(PER_PART + 2 * name.len() as u64)?;
         let number = self.found.len();
-        let shown = String::from_utf8_lossy(name).into_owned();
-        let is_hidden = self.hidden.contains(&shown) || !(self.only.is_empty() || self.only.contains(&shown));
-        self.found.push(Part { name: shown, triangles: 0, is_hidden });
+        let (own, ShownParts { hidden, only, .. }) = (String::from_utf8_lossy(name).into_owned(), &self.shown);
+        let is_hidden = hidden.contains(&own) || !(only.is_empty() || only.contains(&own));
+        self.found.push(Part { name: own, triangles: 0, is_hidden });
         self.numbers.insert(name.to_vec(), number);
         self.current = Some(number);
         Ok(())
@@ -122,13 +119,12 @@ impl Parts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::selection::ShownParts;
 
     #[test]
     fn a_part_may_be_entered_again_and_one_too_many_belongs_to_none() {
         let budget = Budget::unlimited();
-        let hidden = ["b".to_owned()];
-        let mut parts = Parts::new(&Selection { hidden: &hidden, ..Selection::default() });
+        let shown = ShownParts { hidden: vec!["b".to_owned()], ..ShownParts::default() };
+        let mut parts = Parts::new(&Selection { parts: Some(&shown), ..Selection::default() });
         assert!(!parts.leave_out(1), "there is none yet");
         for (name, triangles) in [("a", 2), ("b", 3), ("empty", 0), ("a", 5)] {
             parts.enter(name.as_bytes(), &budget).expect("memory is unlimited");
@@ -149,7 +145,7 @@ mod tests {
     fn parts_are_shown_alone_added_and_left_out() {
         let [a, b] = ["a", "b"].map(str::to_owned);
         let is_hidden = |shown: &ShownParts, name: &str| {
-            let selected = Selection { hidden: &shown.hidden, only: &shown.only, ..Selection::default() };
+            let selected = Selection { parts: Some(shown), ..Selection::default() };
             let mut parts = Parts::new(&selected);
             parts.enter(name.as_bytes(), &Budget::unlimited()).expect("memory is unlimited");
             parts.is_hidden()

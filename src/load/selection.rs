@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::import::Import;
 use geometry::names::shown;
 
-/// Weights of morph targets (of glTF) and of channels of blend shapes (of FBX), by their names. Targets of one name have one weight.
+/// Weights of morph targets of glTF, and of blend shapes of FBX, by their names. Targets of one name have one weight.
 pub type MorphWeights = BTreeMap<String, f32>;
 
 /// Which of a file's alternatives is read, and how its geometry is taken.
@@ -15,12 +15,8 @@ pub struct Selection<'a> {
     pub variant: Option<&'a str>,
     /// The scene, by name or by number from 0; none for the file's default scene.
     pub scene: Option<&'a str>,
-    /// The names of parts that are left out.
-    pub hidden: &'a [String],
-    /// The names of parts that alone are read; all parts if there are none.
-    pub only: &'a [String],
-    /// The weights of morph targets that take the place of the file's at rest, and in clips that don't move them.
-    pub morphs: Option<&'a MorphWeights>,
+    /// The parts; none for all of them, as the file has them.
+    pub parts: Option<&'a ShownParts>,
     /// How the geometry is taken.
     pub import: Import,
 }
@@ -28,7 +24,7 @@ pub struct Selection<'a> {
 impl Selection<'_> {
     /// The weight that was chosen for the morph targets of a name.
     pub(super) fn morph(&self, name: &str) -> Option<f32> {
-        self.morphs?.get(name).copied()
+        self.parts?.morphs.get(name).copied()
     }
 }
 

@@ -41,7 +41,8 @@ impl Writer {
 /// The whole document as a .glb file.
 pub fn moving() -> Vec<u8> {
     let mut writer = Writer::default();
-    let meshes = json!([{ "primitives": [beam(&mut writer)], "extras": { "targetNames": TARGETS } }, { "primitives": [octahedron(&mut writer)] }]);
+    let bending = json!({ "primitives": [beam(&mut writer)], "extras": { "targetNames": TARGETS } });
+    let meshes = json!([bending, { "primitives": [octahedron(&mut writer)] }]);
     let animations = animations(&mut writer);
     let root = json!({
         "asset": { "version": "2.0" },

@@ -3,7 +3,7 @@
 use documents::moving::moving;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use pnaen::app::App;
 
 use crate::{click, scroll_to, settle, uniform, uniform_of, vase};

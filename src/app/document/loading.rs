@@ -128,9 +128,8 @@ impl App {
         Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
     }
 
-    /// Loads the mesh again if its normals, its axis, its unit, its hidden parts or the weights of its morph targets were changed, also by
-    /// undo. While something is dragged, and while another mesh is being loaded, it waits; a weight that is dragged is followed from one
-    /// load to the next.
+    /// Loads the mesh again if its normals, axis, unit, hidden parts or weights of morph targets were changed, also by undo. While
+    /// something is dragged, and while another mesh is being loaded, it waits; a weight that is dragged is followed from load to load.
     pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
         let opens_another = self.jobs.load().is_some_and(|load| !load.keep_view);
         let waits = || self.is_opening() || self.preparation().parts.morphs == self.parts.morphs;
@@ -146,7 +145,7 @@ impl App {
         }
     }
 
-    /// Goes back to the normals, the axis, the unit and the hidden parts and weights that the mesh has, after a load that came to nothing.
+    /// Goes back to the normals, axis, unit, hidden parts and weights that the mesh has, after a load that came to nothing.
     pub(in crate::app) fn keep_file_choices(&mut self) {
         if let Some(document) = &self.document {
             self.settings.import = document.loaded.preparation.import;

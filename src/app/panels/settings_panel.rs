@@ -196,13 +196,11 @@ impl App {
 
     /// A choice of material variants, which is there only if the file has some. Another variant loads the mesh again.
     fn variant_row(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = self.document.as_ref().filter(|document| !document.loaded.contents.variants.is_empty())
-        else {
-            return;
-        };
+        let contents = self.contents();
+        let Some(document) = self.document.as_ref().filter(|_| !contents.variants.is_empty()) else { return };
         let own = document.loaded.preparation.variant.as_deref();
         let mut chosen = own;
-        let names = document.loaded.contents.variants.iter().map(String::as_str);
+        let names = contents.variants.iter().map(String::as_str);
         let choices: Vec<_> = [(None, "File's own", "Each primitive has its own material.")]
             .into_iter()
             .chain(names.map(|name| (Some(name), name, "Primitives have the materials of this variant.")))
@@ -241,8 +239,8 @@ impl App {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;
         let mut chosen = weld;
-        let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances are \
-                     relative to the bounding diagonal. The list says how many edges each would join.";
+        let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances \
+                     are relative to the bounding diagonal. The list says how many edges each would join.";
         list_row(ui, "Weld", tolerance(weld), hover, |ui| {
             ui.selectable_value(&mut chosen, 0.0, "Exact").on_hover_text("Only exactly equal positions are one point.");
             match document.checks.joins.get() {

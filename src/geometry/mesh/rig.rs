@@ -191,9 +191,9 @@ impl Rig {
             named(name, number.parse::<usize>().ok()?.checked_sub(1)?)
         };
         let exact = named(name, 0).or_else(of_several);
-        let alike = |clip: &Clip| clip.name.to_lowercase() == name.to_lowercase();
-        let only = || self.clips.iter().filter(|clip| alike(clip)).count() == 1;
-        exact.or_else(|| self.clips.iter().position(alike).filter(|_| only()))
+        let mut alike =
+            (0..self.clips.len()).filter(|clip| self.clips[*clip].name.to_lowercase() == name.to_lowercase());
+        exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
     }
 
     /// Returns the name by which [`Self::clip`] finds a clip.

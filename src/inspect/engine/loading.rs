@@ -81,9 +81,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let selected = Selection {
         variant: preparation.variant.as_deref(),
         scene: preparation.scene.as_deref(),
-        hidden: &preparation.parts.hidden,
-        only: &preparation.parts.only,
-        morphs: Some(&preparation.parts.morphs),
+        parts: Some(&preparation.parts),
         import: preparation.import,
     };
     let LoadedMesh { mesh: mut read, mut warnings, contents, files, file_bytes, is_refined: _ } =

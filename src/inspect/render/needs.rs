@@ -4,7 +4,7 @@ use crate::settings::{ColorSource, FileLights, Settings};
 use geometry::mesh::{Alpha, MOST_LIGHTS, Material, Mesh, Slot};
 
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(super) struct Needs {
     /// Bits of the images beside that of the base colour, by [`Slot`].
     pub maps: u32,
@@ -46,8 +46,7 @@ impl Needs {
         let own = if kind.shares_shaders { &mesh.materials } else { std::slice::from_ref(material) };
         let lights = if settings.lights == FileLights::On { mesh.lights.len().min(MOST_LIGHTS) } else { 0 };
         let details = mesh.details.is_some();
-        let nothing = Self { maps: 0, coat: false, mask: false, transmission: false, sheen: false, ..Self::ALL };
-        let mut needs = Self { details, lights, ..nothing };
+        let mut needs = Self { details, lights, ..Self::default() };
         for look in own.iter().map(|material| &material.look) {
             let maps = Slot::ALL.into_iter().filter(|slot| look.maps[*slot as usize].is_some());
             needs.maps |= maps.map(|slot| 1 << slot as u32).sum::<u32>();

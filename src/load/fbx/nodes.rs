@@ -7,9 +7,9 @@ use super::convert::placement;
 use super::morphs;
 use crate::attachment::{LocalTransform, SceneNodes};
 use crate::memory_budget::Budget;
+use crate::model_file::ModelFile;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
-use crate::selection::Selection;
 use geometry::mesh::rig::{Clip, Placement};
 
 /// How many corners, vertices, joints and shapes all nodes may have, and how many more for each byte of the file.
@@ -34,12 +34,7 @@ impl Placed {
     ///
     /// # Errors
     /// [`ReadError::TooMany`] if so many nodes have large meshes that reading them would take very long.
-    pub(super) fn new(
-        scene: &Scene,
-        selected: &Selection,
-        budget: &Budget,
-        notes: &mut Notes,
-    ) -> Result<Self, ReadError> {
+    pub(super) fn new(scene: &Scene, file: &ModelFile, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
         check_instances(scene, budget)?;
         let nodes = &scene.nodes;
         let parents: Vec<Option<usize>> =
@@ -48,7 +43,7 @@ impl Placed {
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
         let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
-        let is_hidden = hidden(scene, selected.import.show_hidden, &order, &parents, notes);
+        let is_hidden = hidden(scene, file.selected.import.show_hidden, &order, &parents, notes);
         let with_mesh = || (0..nodes.len()).filter(|&node| nodes[node].mesh.is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
@@ -58,7 +53,7 @@ impl Placed {
         let carries = carries_shown(scene, &shown, &order, &parents);
         let carries_mesh = SceneNodes::carrying(with_mesh(), &order, &parents);
         let morphed = shown.iter().filter_map(|&node| {
-            let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?, selected);
+            let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?, &file.selected);
             (!rest.is_empty()).then_some((node, rest))
         });
         let morphed = morphed.collect();

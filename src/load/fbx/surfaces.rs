@@ -16,7 +16,7 @@ use crate::model_file::ModelFile;
 use crate::notes::{Notes, counted, counts};
 use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
-use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
+use crate::rig_builder::{NodeBinder, PER_DELTA, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::selection::Selection;
 use crate::uri::Files;
 use geometry::casts::{to_f32, to_u32, to_usize};
@@ -31,8 +31,6 @@ const POLYGONS: usize = 4096;
 
 /// Memory for a corner while the mesh is built, in bytes.
 const PER_CORNER: u64 = 32;
-/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
-const PER_DELTA: u64 = 250;
 
 /// Collects polygons.
 pub(super) struct Surfaces<'s, 'a> {

@@ -10,8 +10,8 @@ use super::json::{list, objects};
 use crate::selection::{MorphWeights, Selection};
 use geometry::casts::to_f32;
 
-/// Returns the weights of all targets at rest. In the document, those that are `selected` get theirs instead. Both take much less memory
-/// than the JSON of the targets, which is counted.
+/// Returns the weights of all targets at rest. In the document, those that are `selected` get theirs instead. Both take much less
+/// memory than the JSON of the targets, which is counted.
 pub(super) fn choose(root: &mut Map<String, Value>, selected: &Selection) -> MorphWeights {
     let (mut rest, mut names_of) = (MorphWeights::new(), HashMap::new());
     for (m, mesh) in objects(root, "meshes") {

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::*;
 use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
-use crate::selection::Selection;
+use crate::selection::{Selection, ShownParts};
 use geometry::progress::Progress;
 
 fn read(text: &str) -> LoadedMesh {
@@ -84,8 +84,9 @@ fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
     let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no car\nf 1 2 3\ng wheel left\nf 1 2 3\nf 3 2 1\no car\ng\nf 2 3 1\n\
                  o empty\no bike\ng bike\nf 1 2 3\n";
     let hiding = |hidden: &[&str]| {
-        let hidden: Vec<String> = hidden.iter().map(|name| (*name).to_owned()).collect();
-        let selected = Selection { hidden: &hidden, ..Selection::default() };
+        let hidden = hidden.iter().map(|name| (*name).to_owned()).collect();
+        let shown = ShownParts { hidden, ..ShownParts::default() };
+        let selected = Selection { parts: Some(&shown), ..Selection::default() };
         super::read(faces.as_bytes().to_vec(), &ModelFile { selected, ..ModelFile::from_test("", &Progress::new()) })
     };
     let parts = |loaded: &LoadedMesh| -> Vec<(String, u32, bool)> {
@@ -261,8 +262,8 @@ fn triangles_that_are_taken_together_are_those_that_are_taken_one_by_one() {
         together += &format!("f {}\n", corners.join(" "));
         one_by_one += &format!("f {}\n", corners.join(" \\\n"));
     }
-    let hidden = ["b".to_owned()];
-    for selection in [Selection::default(), Selection { hidden: &hidden, ..Selection::default() }] {
+    let shown = ShownParts { hidden: vec!["b".to_owned()], ..ShownParts::default() };
+    for selection in [Selection::default(), Selection { parts: Some(&shown), ..Selection::default() }] {
         let read = |text: &String| {
             let bytes = text.as_bytes().to_vec();
             super::read(bytes, &ModelFile { selected: selection, ..ModelFile::from_test("", &Progress::new()) })

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::face_builder::tests::{POINTS, assert_cube, triangles};
-use crate::selection::Selection;
+use crate::selection::{Selection, ShownParts};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), &ModelFile::from_test("cube", &Progress::new())).unwrap()
@@ -70,8 +70,8 @@ fn triangles_of_a_binary_file_have_the_colours_that_programs_give_them() {
 
 #[test]
 fn solids_of_text_files_are_parts() {
-    let hidden = ["one".to_owned()];
-    let selected = Selection { hidden: &hidden, ..Selection::default() };
+    let shown = ShownParts { hidden: vec!["one".to_owned()], ..ShownParts::default() };
+    let selected = Selection { parts: Some(&shown), ..Selection::default() };
     let text = text() + FACET_WITHOUT_NAME;
     let mesh =
         super::read(text.into_bytes(), &ModelFile { selected, ..ModelFile::from_test("cube", &Progress::new()) })

@@ -8,7 +8,7 @@ use super::loaded;
 use super::tree::{Entry, object, one, properties, text};
 use crate::loaded_mesh::LoadedMesh;
 use crate::model_file::ModelFile;
-use crate::selection::{MorphWeights, Selection};
+use crate::selection::{MorphWeights, Selection, ShownParts};
 use geometry::mesh::{Moment, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::deform;
@@ -63,8 +63,8 @@ fn shapes_in_between_bend_the_path_of_a_vertex() {
 #[test]
 fn chosen_weights_of_shapes_are_those_at_rest() {
     let progress = Progress::new();
-    let chosen = MorphWeights::from([("rise".to_owned(), 0.75)]);
-    let selected = Selection { morphs: Some(&chosen), ..Selection::default() };
+    let shown = ShownParts { morphs: [("rise".to_owned(), 0.75)].into(), ..ShownParts::default() };
+    let selected = Selection { parts: Some(&shown), ..Selection::default() };
     let file = ModelFile { selected, ..ModelFile::from_test("test", &progress) };
     let loaded = read_here(text(&morphed_square()), &file).expect("a file without a fault");
     assert_eq!(loaded.contents.morph_targets, MorphWeights::from([("rise".to_owned(), 0.0)]), "those of the file");

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
-use crate::selection::MorphWeights;
+use crate::selection::{MorphWeights, ShownParts};
 use geometry::mesh::rig::AnimatedCounts;
 use geometry::mesh::{Moment, Rig};
 use geometry::tessellate::deform;
@@ -395,7 +395,8 @@ fn chosen_weights_take_the_place_of_those_at_rest() {
     let chosen = MorphWeights::from([("Up".to_owned(), 0.25)]);
     fn read_as(draft: &Draft, morphs: &MorphWeights) -> LoadedMesh {
         let (bytes, progress) = (draft.document().to_string().into_bytes(), Progress::new());
-        let selected = Selection { morphs: Some(morphs), ..Selection::default() };
+        let shown = ShownParts { morphs: morphs.clone(), ..ShownParts::default() };
+        let selected = Selection { parts: Some(&shown), ..Selection::default() };
         read(bytes, &ModelFile { selected, ..ModelFile::from_test("draft", &progress) }).expect("no fault")
     }
     let all_at = |mesh: &Mesh, height: f32| positions(mesh).iter().all(|[_, _, z]| *z == height);

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::parts::Part;
+use crate::selection::ShownParts;
 
 /// Reads what is selected of a document.
 fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfError> {
@@ -34,8 +35,9 @@ fn named() -> Draft {
 #[test]
 fn named_nodes_are_parts_and_hidden_ones_are_left_out() {
     let read = |hidden: &[&str]| {
-        let hidden: Vec<String> = hidden.iter().map(|name| (*name).to_owned()).collect();
-        read_selected(&named(), Selection { hidden: &hidden, ..Selection::default() }).expect("triangles")
+        let hidden = hidden.iter().map(|name| (*name).to_owned()).collect();
+        let shown = ShownParts { hidden, ..ShownParts::default() };
+        read_selected(&named(), Selection { parts: Some(&shown), ..Selection::default() }).expect("triangles")
     };
     let whole = read(&[]);
     assert_eq!(
@@ -57,12 +59,15 @@ fn named_nodes_are_parts_and_hidden_ones_are_left_out() {
 fn hidden_nodes_may_be_broken_and_hiding_all_is_said() {
     let mut draft = named();
     draft.root["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(99);
-    let hidden = ["left".to_owned(), "mesh".to_owned()];
-    let selected = |hidden| Selection { hidden, ..Selection::default() };
-    assert!(read_selected(&draft, selected(&hidden[..1])).is_err());
-    assert_eq!(read_selected(&draft, selected(&hidden)).expect("the node without a name").triangles.len(), 1);
+    let [some, all] = [&["left"][..], &["left", "mesh"]].map(|hidden| {
+        let hidden = hidden.iter().map(|name| (*name).to_owned()).collect();
+        ShownParts { hidden, ..ShownParts::default() }
+    });
+    let [some, all] = [&some, &all].map(|shown| Selection { parts: Some(shown), ..Selection::default() });
+    assert!(read_selected(&draft, some).is_err());
+    assert_eq!(read_selected(&draft, all).expect("the node without a name").triangles.len(), 1);
     draft.root["nodes"].as_array_mut().expect("nodes").truncate(3);
     draft.root["scenes"] = json!([{ "nodes": [0, 2] }]);
-    let said = read_selected(&draft, selected(&hidden)).map(|_| ()).expect_err("nothing is left").to_string();
+    let said = read_selected(&draft, all).map(|_| ()).expect_err("nothing is left").to_string();
     assert!(said.contains("its named parts are hidden"), "{said}");
 }
