@@ -97,12 +97,12 @@ pub(super) fn unclicked(ui: &mut egui::Ui, text: RichText) -> egui::Response {
 const LIST_ROWS: f32 = 6.0;
 
 /// A list of many rows. Only the visible ones are made. The keys Up, Down, Home and End go from row to row. If there are other rows
-/// than in the last frame, which is told by their count and by `first`, the list shows the first of them again.
+/// than in the last frame, which two numbers of `rows` tell, the list shows the first of them again.
 pub(super) fn list(
     ui: &mut egui::Ui,
     name: &str,
     count: usize,
-    first: u32,
+    rows: (usize, u32),
     mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response,
 ) {
     let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
@@ -116,9 +116,9 @@ pub(super) fn list(
     // The row that the last frame's key asked for, and how far the list was scrolled then.
     let asked: Option<(usize, f32)> = ui.data_mut(|data| data.remove_temp(id));
     let before: Option<(usize, u32)> = ui.data(|data| data.get_temp(id.with("rows")));
-    ui.data_mut(|data| data.insert_temp(id.with("rows"), (count, first)));
+    ui.data_mut(|data| data.insert_temp(id.with("rows"), rows));
     let area = match asked {
-        _ if before.is_some_and(|before| before != (count, first)) => area.vertical_scroll_offset(0.0),
+        _ if before.is_some_and(|before| before != rows) => area.vertical_scroll_offset(0.0),
         Some((index, offset)) => {
             let top = index as f32 * pitch;
             area.vertical_scroll_offset(offset.clamp((top + pitch - shown).max(0.0), top))
@@ -170,7 +170,7 @@ pub(super) fn found_list(
     row: impl Fn(usize) -> FoundRow,
 ) -> Option<usize> {
     let mut clicked = None;
-    list(ui, name, count, first, |ui, index| {
+    list(ui, name, count, (count, first), |ui, index| {
         let FoundRow { columns, is_selected, hover } = row(index);
         let response = ui.selectable_label(is_selected, RichText::new(columns).monospace()).on_hover_text(hover);
         if response.clicked() {

@@ -21,8 +21,7 @@ mod surfaces;
 mod textures;
 mod vertices;
 
-use super::face_builder::Finished;
-use super::loaded_mesh::{Contents, LoadedMesh};
+use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::Notes;
@@ -82,12 +81,11 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(placed);
     drop(scene);
     progress.set(0.8);
-    let finished = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
-    let Finished { mut mesh, numbers, mut notes, parts, is_refined } = finished;
-    RigBuilder::complete(&mut mesh, numbers, details, binder, &mut notes, &budget, progress)?;
+    let (mut loaded, numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
+    RigBuilder::complete(&mut loaded.mesh, numbers, details, binder, &mut notes, &budget, progress)?;
+    loaded.contents.morph_targets = morph_targets;
     let (files, file_bytes) = (files.named(), budget.files());
-    let contents = Contents { parts, morph_targets, ..Contents::default() };
-    Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), contents, files, file_bytes, is_refined })
+    Ok(LoadedMesh { warnings: notes.into_warnings(), files, file_bytes, ..loaded })
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::app::App;
+use crate::app::jobs::companion_files::absolute_path;
 use crate::app::jobs::picture_job::PictureChoices;
 use inspect::render::Camera;
 use inspect::shot::{CopiedCommand, Turn};
@@ -46,12 +47,11 @@ impl App {
         let moment = self.moment().zip(document.loaded.mesh.rig.as_deref());
         let animation = moment.map(|(moment, rig)| (rig.clip_name(moment.clip), moment.time));
         let source = absolute_source(&document.loaded.source);
-        let reference_shape =
-            self.reference_shape.as_ref().map(|reference_shape| absolute_source(&reference_shape.source));
-        let left_mesh = self.left_mesh.as_ref().and_then(|left| left.source.as_ref()).map(absolute_source);
+        let reference_shape = self.reference_shape().map(absolute_source);
+        let left_mesh = self.left_mesh.as_ref().and_then(|left| left.from.as_ref()).map(absolute_source);
         let mut preparation = document.loaded.preparation.clone();
         if let Some(HeightSource::File(path)) = &mut preparation.heights {
-            *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
+            *path = absolute_path(path.clone());
         }
         let settings = self.saved_settings_of(theme, choices);
         let px = |size: glam::Vec2| size.to_array().map(|side| side as u32);
@@ -99,7 +99,7 @@ impl App {
 /// A source with an absolute path, which is valid in every folder.
 fn absolute_source(source: &Source) -> Source {
     match source {
-        Source::File(path) => Source::File(std::path::absolute(path).unwrap_or_else(|_| path.clone())),
+        Source::File(path) => Source::File(absolute_path(path.clone())),
         shape => shape.clone(),
     }
 }

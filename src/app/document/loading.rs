@@ -2,7 +2,6 @@
 
 use std::io::ErrorKind;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use super::Document;
 use crate::app::App;
@@ -10,6 +9,7 @@ use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::file_watch::{Stamped, sources};
 use crate::app::jobs::job_list::{Load, Work};
 use crate::app::jobs::scenes::scene_of;
+use crate::commands::CompanionFile;
 use geometry::progress::{Progress, Stage};
 use gpu::GpuError;
 use inspect::engine::{self, Engine, Preparation};
@@ -18,7 +18,7 @@ use inspect::settings::Settings;
 use load::environment_file::is_environment;
 use load::files::FileError;
 use load::format::Format;
-use load::{Contents, Import, LoadError, ShownParts, Source};
+use load::{Contents, Import, LoadError, Source};
 
 /// Why a mesh could not be loaded.
 struct NotLoaded {
@@ -87,12 +87,15 @@ impl App {
         self.load(context, source, preparation, false);
     }
 
-    /// Loads the same mesh again after `change` has changed its preparation.
+    /// Loads the same mesh again if `change` changes its preparation.
     pub fn prepare(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
         let Some(source) = self.source().cloned() else { return };
-        let mut preparation = self.preparation();
+        let before = self.preparation();
+        let mut preparation = before.clone();
         change(&mut preparation);
-        self.load(context, source, preparation, true);
+        if preparation != before {
+            self.load(context, source, preparation, true);
+        }
     }
 
     /// Begins a load that is under way anew, on another device.
@@ -128,28 +131,21 @@ impl App {
         Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
     }
 
-    /// Loads the mesh again if its normals, axis, unit, hidden parts or weights of morph targets were changed, also by undo. While
-    /// something is dragged, and while another mesh is being loaded, it waits; a weight that is dragged is followed from load to load.
+    /// Loads the mesh again if its normals, its axis or its unit were changed, also by undo. While something is dragged, and
+    /// while another mesh is being loaded, it waits.
     pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
         let opens_another = self.jobs.load().is_some_and(|load| !load.keep_view);
-        let waits = || self.is_opening() || self.preparation().parts.morphs == self.parts.morphs;
-        if self.document.is_none() || opens_another || (context.egui_is_using_pointer() && waits()) {
+        if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
             return;
         }
-        let (import, parts) = (self.settings.import, self.parts.clone());
-        let wanted = |preparation: &Preparation| preparation.import == import && preparation.parts == *parts;
-        if !wanted(&self.preparation()) {
-            self.prepare(context, |preparation| {
-                (preparation.import, preparation.parts) = (import, ShownParts::clone(&parts));
-            });
-        }
+        let import = self.settings.import;
+        self.prepare(context, |preparation| preparation.import = import);
     }
 
-    /// Goes back to the normals, axis, unit, hidden parts and weights that the mesh has, after a load that came to nothing.
+    /// Goes back to the normals, the axis and the unit that the mesh has, after a load that came to nothing.
     pub(in crate::app) fn keep_file_choices(&mut self) {
         if let Some(document) = &self.document {
             self.settings.import = document.loaded.preparation.import;
-            self.parts = Arc::new(document.loaded.preparation.parts.clone());
         }
     }
 
@@ -214,8 +210,8 @@ impl App {
             (self.viewport.frozen, self.viewport.ruler) = (None, None);
         }
         if !keep_view {
-            self.forget_reference_shape();
-            self.forget_left_mesh();
+            self.close_companion(CompanionFile::ReferenceShape);
+            self.close_companion(CompanionFile::LeftMesh);
         } else if is_turned {
             self.follow_reference_shape(context);
             self.follow_left_mesh(context);
@@ -227,6 +223,7 @@ impl App {
         }
         self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
         if !keep_view {
+            self.panels.dragged_morphs = None;
             self.take_placement();
             self.take_preparation();
         }

@@ -53,10 +53,10 @@ impl App {
             return;
         };
         ui.label("Panorama").on_hover_text("The file of light that is open (--environment).");
-        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
+        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.from.display().to_string());
         ui.end_row();
         if button_row(ui, "Close environment", CLOSE_ENVIRONMENT) {
-            self.close_environment();
+            self.close_companion(CompanionFile::Environment);
         }
     }
 }

@@ -21,7 +21,7 @@ impl App {
                 let is_shown = image.is_none() && own == matcap;
                 if ui.selectable_label(is_shown, matcap.label()).on_hover_text(matcap.text()).clicked() {
                     self.settings.matcap = matcap;
-                    self.forget_matcap();
+                    self.close_companion(CompanionFile::Matcap);
                 }
             }
             if ui.selectable_label(image.is_some(), "Image file…").on_hover_text(MATCAP_IMAGE).clicked() {

@@ -1,44 +1,52 @@
 //! The list of the file's morph targets, with a slider for the weight of each.
 
-use std::sync::Arc;
-
 use egui::{Align, Button, Label, Layout, Response, Sense, Slider, SliderClamping, Ui, vec2};
 
-use super::parts::{LONGEST, filtered};
+use super::parts::{LONGEST, name_filter};
 use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::widgets::{LABEL_WIDTH, list};
 use geometry::names::{shortened, shown};
-use load::ShownParts;
+use load::MorphWeights;
 
 impl App {
     /// A slider for each morph target, if the file has any. The mesh is loaded again with other weights.
     pub(in crate::app) fn morphs_section(&mut self, ui: &mut Ui) {
         let contents = self.contents();
-        let targets: Vec<_> = contents.morph_targets.iter().collect();
+        let targets = &contents.morph_targets;
         if targets.is_empty() || !self.panels.open.title(ui, Section::MorphTargets) {
             return;
         }
-        let names = targets.iter().map(|(name, _)| name.as_str());
-        let listed = filtered(ui, "morph targets", &mut self.panels.morphs_filter, names);
-        list(ui, "morph targets", listed.len(), 0, |ui, row| {
-            let (name, rest) = targets[listed[row]];
-            morph_row(ui, name, *rest, &mut self.parts)
+        let hover = "Lists the morph targets whose names contain this.";
+        let filter = &mut self.panels.morphs_filter;
+        let filter = name_filter(ui, "Filter morph targets by name", hover, targets.len(), filter);
+        let listed: Vec<_> = targets.iter().filter(|(name, _)| name.to_lowercase().contains(&filter)).collect();
+        let before = self.preparation().parts.morphs;
+        let mut weights = self.panels.dragged_morphs.take().unwrap_or_else(|| before.clone());
+        list(ui, "morph targets", listed.len(), (filter.len(), 0), |ui, row| {
+            let (name, rest) = listed[row];
+            morph_row(ui, name, *rest, &mut weights)
         });
-        let button = ui.add_enabled(!self.parts.morphs.is_empty(), Button::new("Reset morph targets"));
+        let button = ui.add_enabled(!weights.is_empty(), Button::new("Reset morph targets"));
         if button.on_hover_text("Gives all morph targets the weights that the file says.").clicked() {
-            Arc::make_mut(&mut self.parts).morphs.clear();
+            weights.clear();
+        }
+        // A drag is followed from load to load: if each step stopped the load before it, none would be seen.
+        if weights != before && self.is_opening() && ui.ctx().egui_is_using_pointer() {
+            self.panels.dragged_morphs = Some(weights);
+        } else {
+            self.prepare(ui.ctx(), |preparation| preparation.parts.morphs = weights);
         }
     }
 }
 
 /// A morph target's row: its name, and its weight, which is `rest` in the file.
-fn morph_row(ui: &mut Ui, name: &str, rest: f32, parts: &mut Arc<ShownParts>) -> Response {
+fn morph_row(ui: &mut Ui, name: &str, rest: f32, weights: &mut MorphWeights) -> Response {
     let hover = format!(
         "{}: its weight where no clip moves it (--morph). A double click on the name gives it that of the file: {rest}.",
         shown(name)
     );
-    let mut weight = parts.morphs.get(name).copied().unwrap_or(rest);
+    let mut weight = weights.get(name).copied().unwrap_or(rest);
     let row = ui.horizontal(|ui| {
         let size = vec2(LABEL_WIDTH, ui.spacing().interact_size.y);
         let label = ui.allocate_ui_with_layout(size, Layout::left_to_right(Align::Center), |ui| {
@@ -54,9 +62,9 @@ fn morph_row(ui: &mut Ui, name: &str, rest: f32, parts: &mut Arc<ShownParts>) ->
     });
     let (label, slider) = row.inner;
     if label.double_clicked() {
-        Arc::make_mut(parts).morphs.remove(name);
+        weights.remove(name);
     } else if slider.changed() {
-        Arc::make_mut(parts).morphs.insert(name.to_owned(), weight);
+        weights.insert(name.to_owned(), weight);
     }
     // The slider needs the arrow keys for itself.
     label

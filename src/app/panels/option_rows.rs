@@ -104,12 +104,10 @@ fn choice_row(
     chooser(ui, option.label, hover, &mut name, &all);
     if name != before {
         let is_number = |name: &str| number.is_some_and(|number| number.name == name);
-        option.set(
-            settings,
-            match name {
-                Some(name) if is_number(name) => Value::Number(1.0),
-                name => name.map_or(Value::Unset, Value::Name),
-            },
-        );
+        let value = match name {
+            Some(name) if is_number(name) => Value::Number(1.0),
+            name => name.map_or(Value::Unset, Value::Name),
+        };
+        option.set(settings, value);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
+use crate::app::jobs::companion_files::LeftMesh;
 use crate::app::jobs::job_list::Work;
-use crate::app::jobs::left_mesh::LeftMesh;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, fixed, list_row};
@@ -77,7 +77,7 @@ impl App {
         let shown = self.left_mesh.as_ref().map_or_else(|| "The same".to_owned(), LeftMesh::title);
         list_row(ui, "Left mesh", shown, &with_note(LEFT_MESH, "--split-with"), |ui| {
             if ui.selectable_label(self.left_mesh.is_none(), "The same").clicked() {
-                self.forget_left_mesh();
+                self.close_companion(CompanionFile::LeftMesh);
             }
             let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
             if has_before && ui.selectable_label(false, "Before the change on disk").clicked() {
@@ -143,7 +143,7 @@ impl App {
         if let Some(given) = &self.given {
             let hover = "These factors take the place of those of LOD.";
             ui.label("Factors").on_hover_text(hover);
-            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.path.display().to_string());
+            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.from.display().to_string());
             ui.end_row();
             if button_row(ui, "Close the file", "Closes the file of factors. LOD computes factors again.") {
                 self.forget_factors();

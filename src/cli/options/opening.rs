@@ -13,6 +13,7 @@ use load::{Import, ShownParts};
 #[command(
     mut_arg("hide_part", |arg| arg.requires("file")),
     mut_arg("show_part", |arg| arg.requires("file")),
+    mut_arg("part", |arg| arg.requires("file")),
     mut_arg("morph", |arg| arg.requires("file"))
 )]
 pub struct OpeningOptions {
@@ -22,9 +23,9 @@ pub struct OpeningOptions {
     pub parts: PartOptions,
 }
 
-/// The options of [`options::IMPORT`] that were given, with their values.
-#[derive(Clone, Default)]
-struct GivenImport(Vec<(&'static Declaration, Value)>);
+/// The names of those of [`options::IMPORT`] that were given, with their values.
+#[derive(Clone, Debug, Default)]
+struct GivenImport(Vec<(&'static str, Value)>);
 
 impl OpeningOptions {
     /// Whether none was given.
@@ -41,8 +42,9 @@ impl OpeningOptions {
     /// How the geometry of a file is taken, which is `usual` without options.
     pub fn import(&self, usual: Import) -> Import {
         let mut settings = Settings { import: usual, ..Settings::default() };
-        for (declaration, value) in &self.import.0.0 {
-            declaration.set(&mut settings, value.clone());
+        for (name, value) in &self.import.0.0 {
+            let declared = options::IMPORT.into_iter().filter(|own| own.name == *name);
+            declared.for_each(|own| _ = own.set(&mut settings, value.clone()));
         }
         settings.import
     }
@@ -56,15 +58,9 @@ impl Group for GivenImport {
     }
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        let value = |declaration: &&'static Declaration| Some((*declaration, given(declaration, matches)?));
+        let value = |declaration: &&'static Declaration| Some((declaration.name, given(declaration, matches)?));
         self.0 = Self::ALL.iter().filter_map(value).collect();
         Ok(())
-    }
-}
-
-impl std::fmt::Debug for GivenImport {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.debug_map().entries(self.0.iter().map(|(declaration, value)| (declaration.name, value))).finish()
     }
 }
 

@@ -8,6 +8,7 @@ use std::str::FromStr;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
+use geometry::mesh::PartStyle;
 use inspect::export::ending;
 use inspect::render::camera::FIELDS_OF_VIEW;
 use load::Source;
@@ -54,6 +55,12 @@ pub(crate) fn ending_in(
 /// Parses the path of a mesh to write.
 pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
     ending_in(&["glb", "obj"], "meshes are written as .glb or .obj files: name it one of these")
+}
+
+/// Parses the name of a part, and what it has in place of what is set for all.
+pub(crate) fn part_style(text: &str) -> Result<(String, PartStyle), String> {
+    let (name, style) = text.rsplit_once(':').ok_or("expected NAME:surface=SURFACE,detail=NUMBER")?;
+    Ok((name.to_owned(), style.parse()?))
 }
 
 /// Parses a width and height in px.
@@ -112,6 +119,11 @@ fn in_range<T: Display>(what: &str, range: &RangeInclusive<T>) -> String {
 /// Parses an angle in degrees.
 pub(crate) fn angle(text: &str) -> Result<f32, String> {
     number(text, |angle: &f32| angle.is_finite(), "a number of degrees")
+}
+
+/// Parses a time that is finite and not negative.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    number(text, |time: &f64| time.is_finite() && *time >= 0.0, "a number of seconds, 0 or more")
 }
 
 /// Parses a position in object units.

@@ -67,6 +67,15 @@ impl Heights {
         Self::all_over(mesh, map, &Progress::new()).expect("not cancelled")
     }
 
+    /// Uses a map made in code, of `side` px a side, with so many waves across and down. It can be repeated without a seam.
+    pub fn waves(mesh: &Mesh, side: u32, [across, down]: [f32; 2]) -> Self {
+        let height = |i: u32| {
+            let [x, y] = [i % side, i / side].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / side as f32);
+            0.5 + 0.25 * (across * x).sin() * (down * y).cos() + 0.2 * (x + 2.0 * y).cos()
+        };
+        Self::everywhere(mesh, HeightMap::new([side; 2], (0..side * side).map(height).collect()))
+    }
+
     /// Uses one map for all materials of a mesh, and can be cancelled.
     ///
     /// # Errors

@@ -3,8 +3,9 @@
 
 use glam::Vec3;
 
+use super::Surface;
 use super::factors::FIXED_ONE;
-use super::surface::{ControlNet, Surface, UNIT};
+use super::surface::{ControlNet, UNIT};
 
 /// Returns the second derivatives of a patch's position at weights `u` and `v` (16.16 fixed point; w = 1 - u - v), in
 /// object units: twice by u, by u and v, and twice by v. They are linear Bézier triangles of second differences of

@@ -47,6 +47,7 @@ mod surface;
 mod triangle_budget;
 mod vertex;
 
+pub use crate::surface_kind::{Surface, SurfaceFamily};
 pub use crate::view::DepthRange;
 pub use convention::Convention;
 pub use cull::Clip;
@@ -60,7 +61,6 @@ pub use mesh_tessellation::{Tessellated, tessellate};
 pub use normal::Normals;
 pub use octahedral_normal::unpack_normal;
 pub use quad::QuadFactors;
-pub use surface::{Surface, SurfaceFamily};
 pub use vertex::Vertex;
 
 #[cfg(test)]

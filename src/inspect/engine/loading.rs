@@ -8,6 +8,7 @@ use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
+use load::part_tree::{self, Branch};
 use load::selection::Selection;
 use load::{
     Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings,
@@ -28,6 +29,8 @@ pub struct Loaded {
     pub warnings: Vec<String>,
     /// What the file offers.
     pub contents: Arc<Contents>,
+    /// Its parts as a tree.
+    pub part_tree: Arc<Vec<Branch>>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
@@ -122,6 +125,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
         warnings,
+        part_tree: Arc::new(part_tree::tree(&contents.parts)),
         contents: Arc::new(contents),
         files,
         topology: Arc::new(topology),

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use serde::{Serialize, Serializer};
+
 use super::{
     Choice, Description, DeviationUnit, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays,
     SectionAxis, Settings, SplitView, ToneCurve,
@@ -77,8 +79,9 @@ pub struct Range {
     pub is_logarithmic: bool,
 }
 
-/// A value of any option.
-#[derive(Clone, Debug, PartialEq)]
+/// A value of any option. As JSON it is null, a word, words, a number, numbers, or true or false; values of options are a word.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Value {
     /// The option has no value.
     Unset,
@@ -89,7 +92,11 @@ pub enum Value {
     Switch(bool),
     Color([u8; 3]),
     /// Options by their names.
-    Options(Vec<(&'static str, Value)>),
+    Options(#[serde(serialize_with = "in_a_word")] Vec<(&'static str, Value)>),
+}
+
+fn in_a_word<S: Serializer>(values: &[(&'static str, Value)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&Value::Options(values.to_vec()))
 }
 
 impl Declaration {
@@ -122,6 +129,15 @@ impl Declaration {
             Some(members) => members.iter().map(|&name| name.to_owned()).collect(),
             None => vec![self.name.replace('-', "_")],
         }
+    }
+
+    /// The same members, each with its part of the value.
+    pub fn written(&self, settings: &Settings) -> Vec<(String, Value)> {
+        let values = match self.get(settings) {
+            Value::Pair(pair) => pair.map(Value::Number).to_vec(),
+            value => vec![value],
+        };
+        self.members().into_iter().zip(values).collect()
     }
 
     /// The default value of commands.

@@ -57,7 +57,7 @@ use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
 use geometry::view::ScreenView;
-use gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
+use gpu::{Given, GpuError, SurfaceShader, Timing, submit_untimed};
 use load::panorama::Panorama;
 
 /// What is drawn.
@@ -179,22 +179,19 @@ impl Shot {
             left.tessellator.give(subject.given.clone().filter(|_| takes_given))?;
             left.tessellator.set_surface_shader(None)?;
         }
-        let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
-        let (lod_view, results) = (view.lod_view(&scene), Default::default());
-        let (silhouette, judged, error_place) = (None, Vec::new(), None);
         let mut shot = Self {
+            posed: subject.loaded.posed(subject.moment),
+            lod_view: view.lod_view(&scene),
+            scale: deviation_scale(0.0, scene.ulp()),
+            results: Default::default(),
+            silhouette: None,
+            judged: Vec::new(),
+            error_place: None,
             subject,
-            posed,
             engine,
             scene,
             target,
             view,
-            lod_view,
-            results,
-            scale,
-            silhouette,
-            judged,
-            error_place,
         };
         shot.engine.prepare(&shot.scene, &shot.subject.settings)?;
         shot.count()?;
@@ -312,10 +309,9 @@ impl Shot {
         let steps = Renderer::step_count(scene, settings);
         for step in 0..steps {
             progress.check()?;
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-            engine.renderer.draw_steps(&mut recorder, scene, target, &view.camera, settings, step..step + 1)?;
-            recorder.submit();
+            submit_untimed(&engine.gpu, |recorder| {
+                engine.renderer.draw_steps(recorder, scene, target, &view.camera, settings, step..step + 1)
+            })?;
             engine.gpu.wait();
             progress.set((step + 1) as f32 / steps as f32);
         }

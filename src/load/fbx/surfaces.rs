@@ -14,7 +14,7 @@ use crate::import::{Subdivide, Subdivision};
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::model_file::ModelFile;
 use crate::notes::{Notes, counted, counts};
-use crate::parts::DEFAULT_PART;
+use crate::parts::node_path;
 use crate::read_error::{FilePosition, ReadError};
 use crate::rig_builder::{NodeBinder, PER_DELTA, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::selection::Selection;
@@ -113,8 +113,11 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
         });
-        let name = &*node.element.name;
-        self.faces.enter_part(if name.is_empty() { DEFAULT_PART } else { name.as_bytes() })?;
+        let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
+        let named = |node: usize| (&*self.scene.nodes[node].element.name, self.placed.is_level.contains(&node));
+        // The scene's root isn't one of the file's nodes.
+        let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
+        self.faces.enter_part(path.as_bytes(), level)?;
         let mut reader = MeshReader {
             node,
             mesh,

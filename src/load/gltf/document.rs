@@ -90,8 +90,9 @@ pub(super) fn parse(
     if !requires_draco {
         extensions.leave_out_packed(&root);
     }
+    let levels = node_parts::place_levels(&mut root, &extensions.levels);
     let mut reach = Reach::new(&root, &faults, hiding);
-    let parts = node_parts::take(&mut root, &extensions.instances, &reach, &selected, budget)?;
+    let parts = node_parts::take(&mut root, &extensions.instances, &reach, &levels, &selected, budget)?;
     if parts.is_cut {
         reach = Reach::new(&root, &faults, reach.hiding);
     }

@@ -108,6 +108,30 @@ fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
 }
 
 #[test]
+fn materials_are_parts_too_if_there_are_several() {
+    let faces =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\no car\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\nf 3 2 1\no bike\nf 2 3 1\n";
+    let read = |hidden: &[&str], only: &[&str]| {
+        let [hidden, only] =
+            [hidden, only].map(|names| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
+        let shown = ShownParts { hidden, only, ..ShownParts::default() };
+        let selected = Selection { parts: Some(&shown), ..Selection::default() };
+        super::read(faces.as_bytes().to_vec(), &ModelFile { selected, ..ModelFile::from_test("", &Progress::new()) })
+    };
+    let whole = read(&[], &[]).expect("triangles");
+    let parts: Vec<_> = whole.contents.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+    assert_eq!(parts, [("car", 3), ("bike", 1), ("material:red", 1), ("material:blue", 3)]);
+    assert_eq!(whole.part_of(0), Some(0), "a triangle belongs to the part that isn't a material");
+    let blue = read(&[], &["material:blue"]).expect("triangles");
+    assert_eq!((blue.triangles.len(), blue.materials.len()), (3, 1));
+    assert_eq!((0..3).map(|triangle| blue.part_of(triangle)).collect::<Vec<_>>(), [Some(0), Some(0), Some(1)]);
+    let both = read(&["material:red"], &["car"]).expect("triangles");
+    assert_eq!(both.triangles.len(), 2, "of the car, what isn't red");
+    let none = read(&["material:red", "material:blue"], &[]).map(|_| ()).expect_err("all are hidden");
+    assert!(none.to_string().contains("its parts are hidden"), "{none}");
+}
+
+#[test]
 fn text_is_forgiven_its_spaces_its_comments_and_its_ends_of_lines() {
     let cube = cube();
     let (vertices, faces) = cube.split_at(cube.find("g sides").unwrap());

@@ -23,7 +23,7 @@ use crate::render::sheen::LEAST_SHEEN_ALPHA;
 use crate::render::tone::{COMPRESSION_START, DESATURATION};
 use crate::settings::{Colors, Overlays, ToneCurve};
 use crate::shot::DIFFERENCE_FLOOR;
-use geometry::mesh::{EdgeKind, MAX_MAPS, MOST_LIGHTS, RELIEF_STEPS, Slot};
+use geometry::mesh::{EdgeKind, MAX_MAPS, MOST_LIGHTS, PartStyle, RELIEF_STEPS, Slot};
 use geometry::tessellate::shared_constants::{
     AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
     BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DIRECTION_ROUNDING, FACING_AWAY, FACING_MARGIN,
@@ -36,7 +36,7 @@ use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use gpu::layout::LOD_GIVEN;
 use gpu::relief_buffers::HEIGHTS_ACROSS;
 use gpu::shader_constants::enum_constants;
-use gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP};
+use gpu::{CURVE_SURFACE_STEP, DETAIL_STEP, GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP};
 
 /// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
@@ -249,6 +249,9 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("NEEDED_SHARE", number(NEEDED_SHARE)),
         ("RELIEF_STEPS", number(RELIEF_STEPS as u32)),
         ("TEXTURED", number(TEXTURED)),
+        ("DETAIL_STEP", number(DETAIL_STEP)),
+        ("LEAST_DETAIL", number(PartStyle::LEAST)),
+        ("CURVE_SURFACE_STEP", number(CURVE_SURFACE_STEP)),
         ("FIXED_ONE", number(FIXED_ONE)),
         ("FIXED_HALF", number(FIXED_HALF)),
         ("FIXED_TWO_THIRDS", number(FIXED_TWO_THIRDS)),

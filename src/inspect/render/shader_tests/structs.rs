@@ -70,6 +70,7 @@ fn shared_structs_have_the_same_layout() {
         displacement,
         height_scale,
         midlevel,
+        chosen_surface,
     });
     same!(Share { direction, level, dominant });
     same!(PatchRelief { form, longest, range, slope, losses });

@@ -11,7 +11,7 @@ fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfE
 }
 
 fn part(name: &str, triangles: u32, is_hidden: bool) -> Part {
-    Part { name: name.to_owned(), triangles, is_hidden }
+    Part { name: name.to_owned(), triangles, is_hidden, level: 0 }
 }
 
 /// Two nodes of one name, one with the name of its mesh, one that shows nothing, and one without a name.
@@ -40,19 +40,48 @@ fn named_nodes_are_parts_and_hidden_ones_are_left_out() {
         read_selected(&named(), Selection { parts: Some(&shown), ..Selection::default() }).expect("triangles")
     };
     let whole = read(&[]);
-    assert_eq!(
-        (whole.triangles.len(), &whole.contents.parts[..]),
-        (4, &[part("left", 2, false), part("mesh", 1, false)][..])
-    );
+    let parts = |left: bool, below: bool| {
+        [part("left", 1, left), part("left/left", 1, below), part("mesh", 1, false), part("default", 1, false)]
+    };
+    assert_eq!((whole.triangles.len(), &whole.contents.parts[..]), (4, &parts(false, false)[..]));
     let of_each: Vec<_> = (0..4).map(|triangle| whole.part_of(triangle)).collect();
-    assert_eq!(of_each, [Some(0), Some(0), Some(1), None], "children follow their parents");
+    assert_eq!(of_each, [Some(0), Some(1), Some(2), Some(3)], "children follow their parents");
     let some = read(&["left"]);
-    assert_eq!(
-        (some.triangles.len(), &some.contents.parts[..]),
-        (2, &[part("left", 2, true), part("mesh", 1, false)][..])
-    );
+    assert_eq!((some.triangles.len(), &some.contents.parts[..]), (2, &parts(true, true)[..]));
     assert!(some.corners.iter().all(|corner| corner.position.x > 8.0 || corner.position.y > 6.0));
     assert!(some.warnings.is_empty(), "{:?}", some.warnings);
+    let own = read(&["/left/."]);
+    assert_eq!((own.triangles.len(), &own.contents.parts[..]), (3, &parts(true, false)[..]), "children stay");
+}
+
+#[test]
+fn other_levels_of_detail_are_placed_beside_the_first_and_shown_if_they_are_named() {
+    let mut draft = named();
+    draft.root["extensionsUsed"] = json!(["MSFT_lod"]);
+    draft.root["nodes"] = json!([
+        { "name": "group", "translation": [0, 7, 0], "children": [1] },
+        { "name": "near", "mesh": 0, "extensions": { "MSFT_lod": { "ids": [2, 99, 1] } } },
+        { "name": "far", "mesh": 1, "children": [3] },
+        { "name": "bolt", "mesh": 1 },
+        { "name": "near", "mesh": 1, "extensions": { "MSFT_lod": { "ids": [5] } } },
+        { "name": "far", "mesh": 1 },
+    ]);
+    draft.root["scenes"] = json!([{ "nodes": [0, 4, 5] }]);
+    let read = |only: &[&str]| {
+        let mut named = ShownParts::default();
+        named.show_only(only.iter().map(|name| (*name).to_owned()).collect());
+        let selected = Selection { parts: Some(&named), ..Selection::default() };
+        let loaded = read_selected(&draft, selected).expect("triangles");
+        let shown = loaded.contents.parts.iter().filter(|part| !part.is_hidden).map(|part| part.name.clone());
+        (shown.collect::<Vec<_>>(), loaded)
+    };
+    let (shown, first) = read(&[]);
+    assert_eq!((shown, first.triangles.len()), (vec!["group/near".to_owned(), "near".to_owned()], 2));
+    assert!(first.warnings.iter().any(|warning| warning.contains("levels of detail")), "{:?}", first.warnings);
+    let (shown, other) = read(&["group/far"]);
+    assert_eq!((shown, other.triangles.len()), (vec!["group/far".to_owned(), "group/far/bolt".to_owned()], 2));
+    assert!(other.corners.iter().all(|corner| corner.position.y > 6.0), "it moves with the group");
+    assert_eq!(read(&["group"]).0, ["group/near"]);
 }
 
 #[test]
