@@ -26,6 +26,7 @@ mod json;
 mod lenient;
 mod lights;
 mod material_lists;
+pub mod material_members;
 mod material_source;
 mod materials;
 mod meshopt;
@@ -63,6 +64,7 @@ use super::rig_builder::{RigBuilder, SkinJoints};
 use super::uri::Files;
 use super::warnings::repair_warnings;
 use super::{notes, rig_builder};
+use geometry::casts::to_f32;
 use geometry::mesh::Borrowed;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::MeshBuilder;
@@ -236,13 +238,15 @@ impl<'a> Scene<'a> {
         let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin));
         let global = self.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
         let global = nodes::below(global, instance);
+        // Vertices of a skin don't move with their node.
+        let scale = if skin.is_some() { 1.0 } else { to_f32(global.determinant().abs().cbrt()) };
         for primitive in mesh.primitives() {
             progress.check()?;
             let _scope = Borrowed::from(self.accessors.budget);
             if self.primitives.skip(&primitive) {
                 continue;
             }
-            let material = self.materials.resolve(&primitive.material(), &mut self.builder);
+            let material = self.materials.resolve(&primitive.material(), scale, &mut self.builder);
             let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
                 mesh,

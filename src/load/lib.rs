@@ -50,7 +50,7 @@ mod watched_bytes;
 mod webp;
 
 pub use crate::files::{FileError, Limits};
-pub use gltf::GltfError;
+pub use gltf::{GltfError, material_members};
 pub use heights::HeightError;
 pub use loaded_mesh::{Contents, LoadedMesh};
 pub use matcap_image::{MatcapError, load_matcap};

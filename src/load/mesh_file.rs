@@ -72,8 +72,8 @@ pub enum LoadError {
     /// The shape is made in code, where Y is up.
     #[error("{shape} is made in code with Y up, in metres: omit --up and --unit")]
     Shape { shape: String },
-    /// The file doesn't have the "material variant", "scene", "part" or "morph target" of this name, but others. `none` is said if
-    /// there are no others.
+    /// The file doesn't have the "material variant", "scene", "part" or "morph target" of this name, but others. `none` is said
+    /// if there are no others.
     #[error("{} has no {what} {}; {}", shown_path(path), shown(name), choice(known, none))]
     Absent { path: PathBuf, what: &'static str, name: String, known: Vec<String>, none: &'static str },
 }
@@ -144,7 +144,7 @@ pub fn load_selected(
     Ok(mesh)
 }
 
-/// Checks that a mesh has the variant, the scene, the parts and the morph targets that were named, and gives its parts their styles.
+/// Checks that a mesh has the variant, scene, parts and morph targets that were named, and gives its parts their styles.
 ///
 /// # Errors
 /// [`LoadError::Absent`].

@@ -264,7 +264,16 @@ impl App {
     }
 
     fn look_rows(&mut self, ui: &mut egui::Ui) {
-        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
+        for option in [
+            &options::CURVATURE_KIND,
+            &options::CURVATURE_SCALE,
+            &options::ZEBRA_STRIPES,
+            &options::ZEBRA_DIRECTION,
+            &options::CHECKER_SQUARES,
+            &options::TEXEL_DENSITY_PER,
+        ] {
+            shown_option_row(ui, option, &mut self.settings);
+        }
         self.matcap_row(ui);
         self.light_rows(ui);
         self.background_row(ui);

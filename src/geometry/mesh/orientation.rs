@@ -67,6 +67,9 @@ pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
     if let Some(rig) = &mut mesh.rig {
         reorient_rig(Arc::make_mut(rig), DMat4::from_mat3(up.matrix() * scale));
     }
+    for look in mesh.materials.iter_mut().map(|material| &mut material.look) {
+        (look.thickness, look.attenuation_distance) = (length(look.thickness), length(look.attenuation_distance));
+    }
     for light in &mut mesh.lights {
         (light.place, light.direction) = (place(light.place), up.turn(light.direction));
         if let LightKind::Point { range } | LightKind::Spot { range, .. } = &mut light.kind {
@@ -125,6 +128,19 @@ mod tests {
             assert_eq!([x, y], [0, 0], "{scale}");
             mesh.corners[0].position = position;
         }
+    }
+
+    #[test]
+    fn what_is_in_a_body_is_scaled_with_it() {
+        let mut material = crate::mesh::Material::plain("body", [1.0; 4]);
+        material.look.thickness = 4.0;
+        let mut mesh = Mesh { materials: vec![material], ..Mesh::default() };
+        for distance in [2.0, f32::INFINITY] {
+            mesh.materials[0].look.attenuation_distance = distance;
+            reorient(&mut mesh, UpAxis::Z, 0.5);
+            assert_eq!(mesh.materials[0].look.attenuation_distance, 0.5 * distance);
+        }
+        assert_eq!(mesh.materials[0].look.thickness, 1.0);
     }
 
     proptest! {

@@ -8,6 +8,13 @@ use super::{
 };
 use crate::mesh::{Curves, Mesh, Topology};
 
+/// Returns the control net of one patch of a mesh, without those of the others.
+pub fn patch_net(mesh: &Mesh, topology: &Topology, inputs: &Inputs, patch: u32) -> ControlNet {
+    let mut edges = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize].edge);
+    edges.sort_unstable();
+    ControlNets::from_edges(mesh, topology, inputs, edges.into_iter()).patch(patch)
+}
+
 /// The control nets of a mesh: two control points for each curve, and one for each patch, which is computed when
 /// needed.
 pub(super) struct ControlNets<'a> {

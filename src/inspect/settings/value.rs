@@ -5,11 +5,11 @@ use std::fmt;
 use serde::{Serialize, Serializer};
 
 use super::{
-    Choice, Description, DeviationUnit, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays,
-    SectionAxis, Settings, SplitView, ToneCurve,
+    Choice, Description, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays, SectionAxis, Settings,
+    SplitView, SurfaceUnit, ToneCurve,
 };
 use geometry::mesh::UpAxis;
-use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 use load::import::Subdivide;
 use load::{FileUnit, LengthUnit, NormalSource};
 
@@ -348,8 +348,8 @@ macro_rules! named_fields {
 }
 
 named_fields! {
-    Clip, Convention, DeviationUnit, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals, NormalsAt,
-    Partitioning, SectionAxis, SplitView, Subdivide, Surface, ToneCurve, UpAxis,
+    Clip, Convention, CurvatureKind, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals,
+    NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {
@@ -379,35 +379,22 @@ impl<T: Field> Field for Option<T> {
     }
 }
 
-impl Field for f32 {
-    fn value(&self) -> Value {
-        Value::Number(*self)
-    }
+/// Fields that are a value's contents.
+macro_rules! plain_fields {
+    ($($type:ty => $kind:ident),+ $(,)?) => {
+        $(impl Field for $type {
+            fn value(&self) -> Value {
+                Value::$kind(*self)
+            }
 
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Number(number) = value { Some(number) } else { None }
-    }
+            fn from_value(value: Value) -> Option<Self> {
+                if let Value::$kind(own) = value { Some(own) } else { None }
+            }
+        })+
+    };
 }
 
-impl Field for bool {
-    fn value(&self) -> Value {
-        Value::Switch(*self)
-    }
-
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Switch(is_on) = value { Some(is_on) } else { None }
-    }
-}
-
-impl Field for [u8; 3] {
-    fn value(&self) -> Value {
-        Value::Color(*self)
-    }
-
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Color(color) = value { Some(color) } else { None }
-    }
-}
+plain_fields! { f32 => Number, bool => Switch, [u8; 3] => Color }
 
 /// The names of the overlays that are on. Two that colour the surface are refused.
 impl Field for Overlays {

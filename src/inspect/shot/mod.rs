@@ -49,10 +49,10 @@ use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Silhouette
 use crate::gates::Judgement;
 use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges, patch_width};
 use crate::render::{
-    Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
-    deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
+    Camera, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines, deviation_scale, lay_over,
+    lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
-use crate::settings::{ARENA_BYTES, ColorSource, DeviationUnit, Settings, SplitSide, SplitView};
+use crate::settings::{ARENA_BYTES, ColorSource, Settings, SplitSide, SplitView};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
@@ -278,7 +278,7 @@ impl Shot {
         }
         if self.view.legend {
             self.draw_split(&mut picture)?;
-            draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
+            draw_legend(&mut picture, &self.subject.settings, &self.scene.usual(), &self.distances())?;
         }
         Ok(picture)
     }
@@ -320,15 +320,10 @@ impl Shot {
 
     /// What the legend says about distances.
     fn distances(&self) -> Distances {
-        let unit = self.subject.settings.deviation_in;
-        let scale = match unit {
-            DeviationUnit::Units => self.scale,
-            DeviationUnit::Px => DEVIATION_PX_SCALE,
-        };
         let mut fields = self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
         let is_partial = fields.any(|field| field.left_out > 0);
         let outlines = self.silhouette.as_ref().map(|silhouette| silhouette.distances);
-        Distances { unit, scale: Some(scale), is_partial, measured: None, outlines }
+        Distances { scale: Some(self.scale), is_partial, measured: None, outlines }
     }
 
     /// What a half is tessellated with, if there is one.

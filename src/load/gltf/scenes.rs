@@ -6,8 +6,8 @@ use super::json::list;
 use super::notes::Notes;
 use super::schema_check::shown;
 
-/// Returns the names of a document's scenes, and which of them is shown: the one that is wanted, if the document has it; otherwise
-/// its default scene, or its first one. The document names that scene afterwards. Without scenes all nodes are shown.
+/// Returns the names of a document's scenes, and which of them is shown: the one that is wanted, if the document has it;
+/// otherwise its default scene, or its first one. The document names that scene afterwards. Without scenes all nodes are shown.
 pub(super) fn choose(
     root: &mut Map<String, Value>,
     wanted: Option<&str>,
