@@ -49,6 +49,22 @@ pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
     ui.end_row();
 }
 
+/// A row with a name and a list whose entries `show` makes.
+pub(super) fn list_row(ui: &mut egui::Ui, name: &str, shown: String, hover: &str, show: impl FnOnce(&mut egui::Ui)) {
+    let label = ui.label(name).on_hover_text(hover);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).truncate().show_ui(ui, show);
+    combo.response.labelled_by(label.id).on_hover_text(hover);
+    ui.end_row();
+}
+
+/// A row with nothing but a button. Returns whether it was clicked.
+pub(super) fn button_row(ui: &mut egui::Ui, text: &str, hover: &str) -> bool {
+    ui.label("");
+    let is_clicked = ui.button(text).on_hover_text(hover).clicked();
+    ui.end_row();
+    is_clicked
+}
+
 /// A row with a name and a right-aligned number.
 pub(super) fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
     ui.label(name).on_hover_text(hover);

@@ -100,6 +100,7 @@ fn options_with_other_values_are_written() {
                 ("-a:b".to_owned(), PartStyle { surface: Some(Surface::PhongAen), detail: 0.25 }),
                 ("d".to_owned(), PartStyle { surface: None, detail: 2.0 }),
             ],
+            morphs: [("-a = b".to_owned(), -0.1), ("Smile".to_owned(), 0.7)].into(),
         },
         import: Import::default(),
         limits,

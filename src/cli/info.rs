@@ -15,10 +15,9 @@ use geometry::names::{on_one_line, shown};
 use geometry::numbers::exact;
 use geometry::progress::{Cancelled, Progress};
 use inspect::engine::{self, Loaded};
-use load::Source;
 use load::part_tree::{Branch, tree};
-use load::parts::Part;
 use load::selection::is_material;
+use load::{Contents, Source};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -60,14 +59,9 @@ pub(super) struct Info {
     pub materials: Vec<MaterialInfo>,
     pub lights: Vec<LightInfo>,
     pub cameras: Vec<CameraInfo>,
-    /// The names of the file's material variants.
-    pub variants: Vec<String>,
-    /// The names of the file's scenes.
-    pub scenes: Vec<String>,
-    /// Which of them this is; none if the file has no scenes.
-    pub scene: Option<usize>,
-    /// The parts that the file has, without its materials; empty for formats without any.
-    pub parts: Vec<Part>,
+    /// What the file offers; its materials aren't among the parts.
+    #[serde(flatten)]
+    pub contents: Contents,
     pub animations: Vec<AnimationInfo>,
     pub edges: EdgeCounts,
     /// What each weld tolerance on offer would join and collapse, compared with the exact weld.
@@ -130,6 +124,8 @@ impl Info {
         let counts = || (topology.edge_counts(), euler_characteristic(topology), mesh.bounds());
         let ((edges, euler_characteristic, bounds), joins) =
             rayon::join(counts, || weld_previews(&loaded.read, exact, progress));
+        let mut contents = Contents::clone(&loaded.contents);
+        contents.parts.retain(|part| !is_material(&part.name));
         Ok(Self {
             name: mesh.name.clone(),
             triangles: mesh.triangles.len() as u32,
@@ -142,10 +138,7 @@ impl Info {
             materials: mesh.materials.iter().map(MaterialInfo::new).collect(),
             lights: mesh.lights.iter().map(LightInfo::new).collect(),
             cameras: mesh.cameras.iter().map(CameraInfo::new).collect(),
-            variants: loaded.variants.clone(),
-            scenes: loaded.scenes.clone(),
-            scene: loaded.scene,
-            parts: loaded.parts.iter().filter(|part| !is_material(&part.name)).cloned().collect(),
+            contents,
             animations: mesh.rig.as_deref().map_or_else(Vec::new, animations),
             edges,
             joins: joins?,
@@ -173,20 +166,7 @@ impl fmt::Display for Info {
         self.materials.iter().try_for_each(|material| write!(f, "{material}"))?;
         self.lights.iter().try_for_each(|light| write!(f, "{light}"))?;
         self.cameras.iter().try_for_each(|camera| write!(f, "{camera}"))?;
-        self.variants.iter().try_for_each(|variant| writeln!(f, "variant       {}", shown(variant)))?;
-        // Most files have one scene, of which nothing is to be said.
-        for (i, scene) in self.scenes.iter().enumerate().filter(|_| self.scenes.len() > 1) {
-            let is_read = if Some(i) == self.scene { ", which is shown" } else { "" };
-            writeln!(f, "scene         {}{is_read}", shown(scene))?;
-        }
-        for Branch { path, part, parts, shown: left, triangles, .. } in
-            tree(&self.parts).iter().filter(|_| self.parts.len() > 1)
-        {
-            let left_out = if *left == 0 { ", left out" } else { "" };
-            let (kind, count) =
-                if part.is_some() { ("part ", String::new()) } else { ("group", format!("{parts} parts, ")) };
-            writeln!(f, "{kind}         {}: {count}{triangles} triangles{left_out}", shown(path))?;
-        }
+        self.write_contents(f)?;
         for AnimationInfo { name, duration, moved } in &self.animations {
             // Files have times in f32: an f64 would print digits that the file doesn't have.
             let name = shown(name);
@@ -197,6 +177,27 @@ impl fmt::Display for Info {
 }
 
 impl Info {
+    /// What the file offers to choose from.
+    fn write_contents(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Contents { variants, scenes, scene, parts, morph_targets } = &self.contents;
+        variants.iter().try_for_each(|variant| writeln!(f, "variant       {}", shown(variant)))?;
+        // Most files have one scene, of which nothing is to be said.
+        for (i, name) in scenes.iter().enumerate().filter(|_| scenes.len() > 1) {
+            let is_read = if Some(i) == *scene { ", which is shown" } else { "" };
+            writeln!(f, "scene         {}{is_read}", shown(name))?;
+        }
+        for Branch { path, part, parts, shown: left, triangles, .. } in tree(parts).iter().filter(|_| parts.len() > 1) {
+            let left_out = if *left == 0 { ", left out" } else { "" };
+            let (kind, count) =
+                if part.is_some() { ("part ", String::new()) } else { ("group", format!("{parts} parts, ")) };
+            writeln!(f, "{kind}         {}: {count}{triangles} triangles{left_out}", shown(path))?;
+        }
+        for (name, weight) in morph_targets {
+            writeln!(f, "morph target  {}: {weight} at rest in the file", shown(name))?;
+        }
+        Ok(())
+    }
+
     /// What the mesh consists of.
     fn write_mesh(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let EdgeCounts { smooth, split, seam, boundary, non_manifold } = self.edges;

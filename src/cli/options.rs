@@ -271,7 +271,7 @@ impl WeldOption {
     }
 }
 
-/// Which parts of a file are read.
+/// Which parts of a file are read, and in which shape.
 #[derive(Clone, Debug, Default, Args)]
 pub struct PartOptions {
     /// Leave out the part, group or material of this name or path; may be given several times. `info` lists them
@@ -285,11 +285,16 @@ pub struct PartOptions {
     /// has the one that comes first among those of `--surface`, and the finest detail
     #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
     part: Vec<(String, PartStyle)>,
+    /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.
+    /// `info` lists the targets
+    #[arg(long, value_name = "NAME=WEIGHT", allow_hyphen_values = true, value_parser = values::morph)]
+    morph: Vec<(String, f32)>,
 }
 
 impl PartOptions {
     pub fn shown(&self) -> ShownParts {
-        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone(), styles: self.part.clone() }
+        let (hidden, only) = (self.hide_part.clone(), self.show_part.clone());
+        ShownParts { hidden, only, styles: self.part.clone(), morphs: self.morph.iter().cloned().collect() }
     }
 }
 

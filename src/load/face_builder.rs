@@ -5,7 +5,7 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::cage_faces::{CageFaces, OfFace};
 use super::import::Import;
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
 use super::notes::{Notes, counts};
@@ -347,8 +347,8 @@ impl<'a> FaceBuilder<'a> {
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
         let parts = self.parts.finish(&mut mesh, &mut self.notes);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
-        let is_refined = self.is_refined == Some(true);
-        Ok((LoadedMesh { mesh, parts, is_refined, ..LoadedMesh::default() }, numbers, self.notes))
+        let (contents, is_refined) = (Contents { parts, ..Contents::default() }, self.is_refined == Some(true));
+        Ok((LoadedMesh { mesh, contents, is_refined, ..LoadedMesh::default() }, numbers, self.notes))
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.

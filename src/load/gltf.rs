@@ -30,6 +30,7 @@ pub mod material_members;
 mod material_source;
 mod materials;
 mod meshopt;
+mod morph_targets;
 mod node_parts;
 mod nodes;
 mod primitive;
@@ -55,7 +56,7 @@ use std::sync::Arc;
 use ::gltf::{Document, Node, Semantic};
 use glam::DMat4;
 
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::Notes;
@@ -145,7 +146,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
                 format!("KHR_node_visibility hides the {hidden} {said}")
             }
         };
-        holds += if parsed.scenes.names.len() > 1 { "; --scene shows another of its scenes" } else { "" };
+        holds += if parsed.contents.scenes.len() > 1 { "; --scene shows another of its scenes" } else { "" };
         return Err(GltfError::Empty { holds });
     }
     notes.append(accessors.notes.take());
@@ -175,9 +176,9 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     notes.append(of_cameras);
     let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
-    let scenes::Scenes { names: scenes, shown: scene } = parsed.scenes;
-    let (files, file_bytes, variants) = (files.named(), budget.files(), parsed.variants);
-    Ok(LoadedMesh { mesh, warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: false })
+    let contents = Contents { parts, ..parsed.contents };
+    let (files, file_bytes) = (files.named(), budget.files());
+    Ok(LoadedMesh { mesh, warnings, contents, files, file_bytes, is_refined: false })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.

@@ -162,7 +162,8 @@ mod tests {
     #[test]
     fn parts_and_groups_are_shown_alone_added_and_left_out() {
         let names = ["g/a", "g/b", "c"];
-        let mut shown = ShownParts::alone("g");
+        let mut shown = ShownParts::default();
+        shown.show_only(vec!["g".to_owned()]);
         let mut set = |path: &str, is_shown: bool| {
             let parts = parts(&names, &shown);
             let tree = tree(&parts);

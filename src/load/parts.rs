@@ -60,9 +60,7 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn new(selected: &Selection) -> Self {
-        let selected =
-            ShownParts { hidden: selected.hidden.to_vec(), only: selected.only.to_vec(), ..ShownParts::default() };
-        Self { selected, ..Self::default() }
+        Self { selected: selected.parts.cloned().unwrap_or_default(), ..Self::default() }
     }
 
     /// Says which part the next faces belong to, by its path, and how much of that is known to be the path of a further
@@ -216,7 +214,8 @@ mod tests {
     fn hiding(hidden: &[&str], only: &[&str]) -> Parts {
         let [hidden, only] =
             [hidden, only].map(|names| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
-        Parts::new(&Selection { hidden: &hidden, only: &only, ..Selection::default() })
+        let shown = ShownParts { hidden, only, ..ShownParts::default() };
+        Parts::new(&Selection { parts: Some(&shown), ..Selection::default() })
     }
 
     #[test]

@@ -1,8 +1,13 @@
 //! What of a file is read, and how.
 
+use std::collections::BTreeMap;
+
 use super::import::Import;
 use geometry::mesh::PartStyle;
 use geometry::names::shown;
+
+/// Weights of morph targets of glTF, and of blend shapes of FBX, by their names. Targets of one name have one weight.
+pub type MorphWeights = BTreeMap<String, f32>;
 
 /// Which of a file's alternatives is read, and how its geometry is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,17 +16,20 @@ pub struct Selection<'a> {
     pub variant: Option<&'a str>,
     /// The scene, by name or by number from 0; none for the file's default scene.
     pub scene: Option<&'a str>,
-    /// The names of parts and groups that are left out.
-    pub hidden: &'a [String],
-    /// The names of parts and groups that alone are read; all parts if there are none.
-    pub only: &'a [String],
-    /// What parts have in place of what the tessellation says for all, by their names.
-    pub styles: &'a [(String, PartStyle)],
+    /// The parts; none for all of them, as the file has them.
+    pub parts: Option<&'a ShownParts>,
     /// How the geometry is taken.
     pub import: Import,
 }
 
-/// Which parts of a file are read, and how they differ.
+impl Selection<'_> {
+    /// The weight that was chosen for the morph targets of a name.
+    pub(super) fn morph(&self, name: &str) -> Option<f32> {
+        self.parts?.morphs.get(name).copied()
+    }
+}
+
+/// Which parts of a file are read, how they differ, and in which shape they are.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ShownParts {
     /// The names of parts and groups that are left out (see [`is_part_of`]).
@@ -30,18 +38,14 @@ pub struct ShownParts {
     pub only: Vec<String>,
     /// What parts have in place of what the tessellation says for all, by their names.
     pub styles: Vec<(String, PartStyle)>,
+    /// The weights of morph targets that take the place of the file's at rest, and in clips that don't move them.
+    pub morphs: MorphWeights,
 }
 
 impl ShownParts {
-    /// The part of this name alone.
-    pub fn alone(name: &str) -> Self {
-        Self { only: vec![name.to_owned()], ..Self::default() }
-    }
-
-    /// These parts, as they differ here.
-    #[must_use]
-    pub fn styled_as(self, other: &Self) -> Self {
-        Self { styles: other.styles.clone(), ..self }
+    /// Shows the parts of these names alone, or all parts without any.
+    pub fn show_only(&mut self, names: Vec<String>) {
+        (self.hidden, self.only) = (Vec::new(), names);
     }
 
     /// What a part has in place of what the tessellation says for all.

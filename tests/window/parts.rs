@@ -34,7 +34,8 @@ fn parts_are_filtered_shown_alone_and_framed() {
     assert_eq!(triangles(&harness), Some(2));
     assert_eq!(harness.state().camera().distance, before, "the camera stays");
     harness.get_by_label("1 of 11 shown");
-    assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts, ShownParts::alone("Part7"));
+    let only_part_7 = ShownParts { only: vec!["Part7".to_owned()], ..ShownParts::default() };
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts, only_part_7);
     harness.get_by_label("Part7").click_secondary();
     settle(&mut harness);
     click(&mut harness, "Frame this part");
@@ -52,7 +53,7 @@ fn a_right_click_in_the_picture_leads_to_its_part() {
     harness.get_by_label("Viewport").click_secondary();
     settle(&mut harness);
     click(&mut harness, "Hide this part");
-    let parts = harness.state().loaded().expect("a mesh").parts.clone();
+    let parts = harness.state().loaded().expect("a mesh").contents.parts.clone();
     let hidden: Vec<_> = parts.iter().filter(|part| part.is_hidden).map(|part| part.name.as_str()).collect();
     assert_eq!(hidden, ["Part5"]);
 }

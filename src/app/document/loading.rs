@@ -2,6 +2,7 @@
 
 use std::io::ErrorKind;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::Document;
 use crate::app::App;
@@ -18,7 +19,7 @@ use inspect::settings::Settings;
 use load::environment_file::is_environment;
 use load::files::FileError;
 use load::format::Format;
-use load::{Import, LoadError, Source};
+use load::{Contents, Import, LoadError, Source};
 
 /// Why a mesh could not be loaded.
 struct NotLoaded {
@@ -120,6 +121,11 @@ impl App {
         again.or(shown).cloned().unwrap_or_else(|| self.plain(&Source::default()))
     }
 
+    /// What the file offers to choose from.
+    pub(in crate::app) fn contents(&self) -> Arc<Contents> {
+        self.document.as_ref().map(|document| document.loaded.contents.clone()).unwrap_or_default()
+    }
+
     /// A preparation that leaves the mesh as the file has it, but for normals, axis and unit that were chosen.
     fn plain(&self, source: &Source) -> Preparation {
         let import = self.persistence.import_of(source, &self.settings);
@@ -184,7 +190,8 @@ impl App {
         self.dialogs.typed = None;
         self.jobs.stop_of_document();
         self.viewport.preview.forget();
-        let place = |document: &Document| (document.loaded.scene, document.loaded.preparation.import.placement());
+        let place =
+            |document: &Document| (document.loaded.contents.scene, document.loaded.preparation.import.placement());
         let placed = place(&document);
         let mut before = self.document.replace(document);
         if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {
@@ -217,6 +224,7 @@ impl App {
         }
         self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
         if !keep_view {
+            self.panels.dragged_morphs = None;
             self.take_placement();
             self.take_preparation();
         }

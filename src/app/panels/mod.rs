@@ -15,6 +15,7 @@ mod found_lists;
 mod import;
 mod light_rows;
 mod matcap;
+mod morphs;
 mod option_rows;
 mod parts;
 mod patch_explanation;
@@ -33,6 +34,7 @@ use std::collections::HashSet;
 
 use geometry::tessellate::Displacement;
 use inspect::settings::SplitSide;
+use load::MorphWeights;
 
 use crate::app::sections::OpenSections;
 use chart::Chart;
@@ -51,6 +53,10 @@ pub(super) struct Panels {
     pub edited: SplitSide,
     /// What the paths of listed parts contain.
     pub parts_filter: String,
+    /// What the names of listed morph targets contain.
+    pub morphs_filter: String,
+    /// Weights of morph targets that are dragged while the mesh is still being loaded with those before.
+    pub dragged_morphs: Option<MorphWeights>,
     /// The paths of groups in the list of parts that are folded.
     pub folded_groups: HashSet<String>,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.

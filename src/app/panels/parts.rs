@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 use std::ops::Range;
+use std::sync::Arc;
 
 use crate::app::App;
 use crate::app::sections::Section;
@@ -14,10 +15,10 @@ use load::ShownParts;
 use load::part_tree::{Branch, end, leaves, name};
 use load::selection::{MATERIAL, is_part_of};
 
-/// The greatest length of a name in the list, in characters.
-const LONGEST: usize = 40;
+/// The greatest length of a name in a list, in characters.
+pub(super) const LONGEST: usize = 40;
 
-/// So many parts have a filter.
+/// Longer lists of names have a filter.
 const MANY: usize = 8;
 
 /// How far a part is right of the group that it lies in, in points, and how often at most.
@@ -39,23 +40,14 @@ enum PartAction {
 impl App {
     /// A switch for each part and group, if the file has several. The mesh is loaded again without those that are hidden.
     pub(in crate::app) fn parts_section(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = self.document.as_ref().filter(|document| document.loaded.parts.len() > 1) else { return };
-        let tree = document.loaded.part_tree.clone();
-        if !self.panels.open.title(ui, Section::Parts) {
+        let tree = self.part_tree();
+        let [shown, all] = [leaves(&tree).filter(|leaf| leaf.shown > 0).count(), leaves(&tree).count()];
+        if all <= 1 || !self.panels.open.title(ui, Section::Parts) {
             return;
         }
-        let [shown, all] = [leaves(&tree).filter(|leaf| leaf.shown > 0).count(), leaves(&tree).count()];
         let (picked, selected) = (self.picked_part(), self.preparation().parts);
-        let filter = &mut self.panels.parts_filter;
-        if all > MANY {
-            let field =
-                egui::TextEdit::singleline(filter).hint_text("Filter parts by name").desired_width(f32::INFINITY);
-            let field = ui.add(field).on_hover_text("Lists the parts, groups and materials whose paths contain this.");
-            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Filter parts by name"));
-        } else {
-            filter.clear();
-        }
-        let filter = filter.to_lowercase();
+        let hover = "Lists the parts, groups and materials whose paths contain this.";
+        let filter = name_filter(ui, "Filter parts by name", hover, all, &mut self.panels.parts_filter);
         let folded = &mut self.panels.folded_groups;
         let listed = listed(&tree, &filter, folded);
         let mut action = None;
@@ -66,14 +58,19 @@ impl App {
             response.context_menu(|ui| action = part_entries(ui, &tree, at).or(action));
             response
         });
+        let selects = !(selected.hidden.is_empty() && selected.only.is_empty());
         ui.horizontal(|ui| {
-            let button = ui.add_enabled(selected != ShownParts::default(), egui::Button::new("Show all parts"));
+            let button = ui.add_enabled(selects, egui::Button::new("Show all parts"));
             if button.on_hover_text("Shows the parts that are hidden.").clicked() {
                 action = Some(PartAction::ShowAll);
             }
             ui.weak(format!("{} of {} shown", grouped(shown as u64), grouped(all as u64)));
         });
         action.into_iter().for_each(|action| self.act_on_parts(ui.ctx(), &tree, action));
+    }
+
+    fn part_tree(&self) -> Arc<Vec<Branch>> {
+        self.document.as_ref().map(|document| document.loaded.part_tree.clone()).unwrap_or_default()
     }
 
     /// The part of the selected triangle: a place in the list of parts.
@@ -84,7 +81,7 @@ impl App {
 
     /// The menu of what was clicked with the right button in the picture.
     pub(in crate::app) fn part_menu(&mut self, ui: &mut egui::Ui) {
-        let tree = self.document.as_ref().map(|document| document.loaded.part_tree.clone()).unwrap_or_default();
+        let tree = self.part_tree();
         let picked = self.picked_part().filter(|_| leaves(&tree).count() > 1);
         let picked = picked.and_then(|part| tree.iter().position(|branch| branch.part == Some(part)));
         let action = picked.and_then(|at| {
@@ -110,8 +107,8 @@ impl App {
         let mut parts = self.preparation().parts;
         match action {
             PartAction::Set(at, is_shown) => parts.set(tree, at, is_shown),
-            PartAction::Solo(at) => parts = ShownParts::alone(&name(tree, &tree[at])).styled_as(&parts),
-            PartAction::ShowAll => parts = ShownParts::default().styled_as(&parts),
+            PartAction::Solo(at) => parts.show_only(vec![name(tree, &tree[at])]),
+            PartAction::ShowAll => parts.show_only(Vec::new()),
             PartAction::Frame(at) => self.frame_part(tree, at),
             PartAction::CopyName(at) => context.copy_text(name(tree, &tree[at])),
         }
@@ -120,7 +117,7 @@ impl App {
 
     fn frame_part(&mut self, tree: &[Branch], at: usize) {
         let Some(document) = &self.document else { return };
-        let (mesh, parts, own) = (document.shown().0, &document.loaded.parts, name(tree, &tree[at]));
+        let (mesh, parts, own) = (document.shown().0, &document.loaded.contents.parts, name(tree, &tree[at]));
         let of_parts = mesh.part_ranges.iter().filter(|range| is_part_of(&parts[range.part as usize].name, &own));
         let of_materials =
             mesh.materials.iter().filter(|material| is_part_of(&[MATERIAL, &material.name].concat(), &own));
@@ -130,6 +127,18 @@ impl App {
             self.viewport.camera.frame(&bounds, size);
         }
     }
+}
+
+/// A field that filters `count` things by their names, if they are many. Returns what names must contain, in lower case.
+pub(super) fn name_filter(ui: &mut egui::Ui, label: &str, hover: &str, count: usize, filter: &mut String) -> String {
+    if count > MANY {
+        let field = egui::TextEdit::singleline(filter).hint_text(label).desired_width(f32::INFINITY);
+        let field = ui.add(field).on_hover_text(hover);
+        ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(label));
+    } else {
+        filter.clear();
+    }
+    filter.to_lowercase()
 }
 
 /// The places of the rows whose paths contain `filter`. What lies in groups that are folded isn't listed, unless it is searched.
@@ -158,7 +167,7 @@ fn part_row(
         if is_group { format!("{} parts, ", branch.parts) } else { String::new() },
         counted(branch.triangles, "triangle")
     );
-    let is_alone = selected.only.len() == 1 && *selected == ShownParts::alone(&name(tree, branch));
+    let is_alone = selected.hidden.is_empty() && selected.only.len() == 1 && selected.only[0] == name(tree, branch);
     let mut is_shown = branch.shown > 0;
     let mut action = None;
     let height = ui.spacing().interact_size.y;

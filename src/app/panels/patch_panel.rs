@@ -87,7 +87,7 @@ impl App {
                     is_playing: self.is_playing(),
                 };
                 if let Some((part, document)) = self.picked_part().zip(self.document.as_ref()) {
-                    let name = names::shown(&document.loaded.parts[part].name);
+                    let name = names::shown(&document.loaded.contents.parts[part].name);
                     ui.add(egui::Label::new(RichText::new(&name).strong()).truncate()).on_hover_text(name);
                 }
                 // The tables have less space between lines than the rest of the panel.

@@ -13,7 +13,8 @@ use load::{Import, ShownParts};
 #[command(
     mut_arg("hide_part", |arg| arg.requires("file")),
     mut_arg("show_part", |arg| arg.requires("file")),
-    mut_arg("part", |arg| arg.requires("file"))
+    mut_arg("part", |arg| arg.requires("file")),
+    mut_arg("morph", |arg| arg.requires("file"))
 )]
 pub struct OpeningOptions {
     #[command(flatten)]
@@ -107,6 +108,8 @@ mod tests {
     #[test]
     fn parts_need_a_file_and_commands_have_options_of_their_own() {
         assert!(Cli::try_parse_from(["pnaen", "--hide-part", "a"]).is_err());
+        assert!(Cli::try_parse_from(["pnaen", "--morph", "a=1"]).is_err());
+        assert_eq!(options(&["a.obj", "--morph", "a=1", "--morph=b=2"]).parts.shown().morphs.len(), 2);
         assert!(Cli::try_parse_from(["pnaen", "--up", "z", "info", "a.obj"]).is_err());
         for unit in ["parsec", "0", "-1", "nan", "inf", "1e300", "1e-40", "0.0254 m", ""] {
             assert!(Cli::try_parse_from(["pnaen", "a.obj", "--unit", unit]).is_err(), "{unit}");

@@ -9,10 +9,10 @@ use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
 use load::part_tree::{self, Branch};
-use load::parts::Part;
 use load::selection::Selection;
 use load::{
-    Budget, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings, untextured_warning,
+    Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings,
+    untextured_warning,
 };
 
 /// A mesh with its topology, and how long both took.
@@ -27,15 +27,9 @@ pub struct Loaded {
     pub mesh: Arc<Mesh>,
     /// Sentences about what was left out or repaired.
     pub warnings: Vec<String>,
-    /// The names of the material variants that the file has.
-    pub variants: Vec<String>,
-    /// The names of the scenes that the file has.
-    pub scenes: Vec<String>,
-    /// Which of them this is.
-    pub scene: Option<usize>,
-    /// The parts of the file, also those that are left out.
-    pub parts: Arc<Vec<Part>>,
-    /// The same as a tree.
+    /// What the file offers.
+    pub contents: Arc<Contents>,
+    /// Its parts as a tree.
     pub part_tree: Arc<Vec<Branch>>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
@@ -72,7 +66,7 @@ pub struct Preparation {
     pub variant: Option<String>,
     /// The scene of the file, by name or by number from 0; none for its default scene.
     pub scene: Option<String>,
-    /// Which parts of the file are read.
+    /// Which parts of the file are read, and in which shape.
     pub parts: ShownParts,
     /// How the geometry of the file is taken.
     pub import: Import,
@@ -90,12 +84,10 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let selected = Selection {
         variant: preparation.variant.as_deref(),
         scene: preparation.scene.as_deref(),
-        hidden: &preparation.parts.hidden,
-        only: &preparation.parts.only,
-        styles: &preparation.parts.styles,
+        parts: Some(&preparation.parts),
         import: preparation.import,
     };
-    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: _ } =
+    let LoadedMesh { mesh: mut read, mut warnings, contents, files, file_bytes, is_refined: _ } =
         source.load_selected(selected, &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
@@ -133,11 +125,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
         warnings,
-        variants,
-        scenes,
-        scene,
-        part_tree: Arc::new(part_tree::tree(&parts)),
-        parts: Arc::new(parts),
+        part_tree: Arc::new(part_tree::tree(&contents.parts)),
+        contents: Arc::new(contents),
         files,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,

@@ -61,6 +61,7 @@ use gpu::{Given, GpuError, SurfaceShader, Timing, submit_untimed};
 use load::panorama::Panorama;
 
 /// What is drawn.
+#[derive(Default)]
 pub struct Subject {
     /// The mesh at rest.
     pub loaded: Loaded,
@@ -138,20 +139,7 @@ pub struct Shot {
 impl Subject {
     /// The mesh at rest with these settings, and nothing else.
     pub fn new(loaded: Loaded, settings: Settings) -> Self {
-        Self {
-            loaded,
-            left: None,
-            moment: None,
-            given: None,
-            surface_shader: None,
-            matcap: None,
-            environment: None,
-            settings,
-            reference_surface: None,
-            selected: None,
-            more_lines: Default::default(),
-            arena_bytes: ARENA_BYTES,
-        }
+        Self { loaded, settings, arena_bytes: ARENA_BYTES, ..Self::default() }
     }
 
     /// Gives a scene of the mesh its factors, its control points, its matcap and its pose.

@@ -9,6 +9,7 @@ use super::convert::placement;
 use super::morphs;
 use crate::attachment::{LocalTransform, SceneNodes};
 use crate::memory_budget::Budget;
+use crate::model_file::ModelFile;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
 use geometry::mesh::rig::{Clip, Placement};
@@ -37,7 +38,7 @@ impl Placed {
     ///
     /// # Errors
     /// [`ReadError::TooMany`] if so many nodes have large meshes that reading them would take very long.
-    pub(super) fn new(scene: &Scene, show_hidden: bool, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
+    pub(super) fn new(scene: &Scene, file: &ModelFile, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
         check_instances(scene, budget)?;
         let nodes = &scene.nodes;
         let parents: Vec<Option<usize>> =
@@ -46,7 +47,7 @@ impl Placed {
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
         let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
-        let is_hidden = hidden(scene, show_hidden, &order, &parents);
+        let is_hidden = hidden(scene, file.selected.import.show_hidden, &order, &parents);
         let with_mesh = || (0..nodes.len()).filter(|&node| nodes[node].mesh.is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
@@ -54,10 +55,9 @@ impl Placed {
             notes.push(format!("meshes that the file hides, left out (--show-hidden shows them): {hidden}."));
         }
         let carries = carries_shown(scene, &shown, &order, &parents);
-        let mut carries_mesh: Vec<bool> = nodes.into_iter().map(|node| node.mesh.is_some()).collect();
-        SceneNodes::include_parents(&mut carries_mesh, &order, &parents);
+        let carries_mesh = SceneNodes::carrying(with_mesh(), &order, &parents);
         let morphed = shown.iter().filter_map(|&node| {
-            let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?);
+            let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?, &file.selected);
             (!rest.is_empty()).then_some((node, rest))
         });
         let morphed = morphed.collect();
@@ -133,14 +133,7 @@ fn hidden(scene: &Scene, show_hidden: bool, order: &[usize], parents: &[Option<u
 
 /// Returns which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
 fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
-    let mut carries = vec![false; order.len()];
-    for &node in shown {
-        carries[node] = true;
-        let skins = scene.nodes[node].mesh.iter().flat_map(|mesh| &mesh.skin_deformers);
-        for bone in skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref()) {
-            carries[index(bone)] = true;
-        }
-    }
-    SceneNodes::include_parents(&mut carries, order, parents);
-    carries
+    let skins = shown.iter().filter_map(|&node| scene.nodes[node].mesh.as_ref()).flat_map(|mesh| &mesh.skin_deformers);
+    let bones = skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref());
+    SceneNodes::carrying(shown.iter().copied().chain(bones.map(|bone| index(bone))), order, parents)
 }
