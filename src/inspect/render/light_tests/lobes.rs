@@ -183,7 +183,7 @@ fn long_highlights_reflect_about_what_the_table_says_and_no_more_than_they_get()
                 let summed = reflected_of_all(&look, to_eye).x;
                 let table = dfg(cosine, mean_roughness(&look));
                 let table = table.x + table.y;
-                assert!(summed < 1.005 && (summed - table).abs() < 0.09, "{look:?} {to_eye}: {summed} {table}");
+                assert!(summed < 1.005 && (summed - table).abs() < 0.12, "{look:?} {to_eye}: {summed} {table}");
             }
         }
     }
