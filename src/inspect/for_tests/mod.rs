@@ -1,0 +1,3 @@
+//! What only tests need, those of other crates too.
+
+pub mod random;
