@@ -38,7 +38,6 @@ mod pipelines;
 pub mod prefilter;
 pub(crate) mod prefilter_pass;
 pub mod punctual;
-pub mod reflectance;
 mod render_pipeline;
 pub mod renderer;
 mod scale;
@@ -53,7 +52,6 @@ pub mod studio;
 mod surface_draws;
 pub mod target;
 mod textures;
-pub mod tone;
 pub mod view_projection;
 mod window;
 
