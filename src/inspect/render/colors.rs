@@ -2,7 +2,6 @@
 
 use super::scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, SIZE_SCALE, Scale};
 use crate::settings::Colors;
-use geometry::names::every;
 
 /// A variant of the surface's shader that only some colours need, so that no other picture pays for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -12,10 +11,6 @@ pub(crate) enum Look {
     Curvature = 2,
     Matcap = 3,
     TexelDensity = 4,
-}
-
-impl Look {
-    pub(super) const ALL: [Self; 4] = every![Look: SurfaceNormals, Curvature, Matcap, TexelDensity];
 }
 
 /// What the shader looks at to show colours.

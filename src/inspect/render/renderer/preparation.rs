@@ -65,12 +65,4 @@ impl Renderer {
         let (mesh, kind) = (scene.tessellator.mesh(), self.kind(is_draft));
         mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, kind)).collect()
     }
-
-    /// Makes the pipelines of all draws, also of those that no picture has needed yet. Measurements of memory use it.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub fn prepare_all(&self) -> Result<(), GpuError> {
-        Draw::all().into_iter().try_for_each(|draw| self.get(draw).map(|_| ()))
-    }
 }
