@@ -7,7 +7,7 @@ use glam::{DMat4, DVec4, Mat4, dvec2};
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
 use super::render_pipeline::{PipelineParts, depth_state};
-use super::target::DEPTH_FORMAT;
+use super::target::{DEPTH_FORMAT, color_attachment, depth_attachment};
 use gpu::layout::Vertex;
 use gpu::{
     ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, empty, flat_texture,
@@ -175,18 +175,8 @@ impl<'a> Run<'a> {
     ) -> Result<(), GpuError> {
         let module = search.module.get(self.gpu)?;
         let draw = search.draw.get_or_make(self.gpu, || pipeline(self.gpu, module, search.vertex))?;
-        let depth = if first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
-        let color = wgpu::RenderPassColorAttachment {
-            view: &self.drawn,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-        };
-        let depth = wgpu::RenderPassDepthStencilAttachment {
-            view: &self.depth,
-            depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        };
+        let color = color_attachment(&self.drawn, Some(wgpu::Color::TRANSPARENT));
+        let depth = depth_attachment(&self.depth, first.then_some(0.0));
         let resource = |name: &str| self.resource(scene, name);
         let group = search.module.bind(self.gpu, search.vertex, &draw.get_bind_group_layout(0), resource);
         recorder.render("pick", Some(color), Some(depth), |pass| {

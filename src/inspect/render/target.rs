@@ -130,13 +130,7 @@ impl Target {
             None => (&self.resolved_srgb, None),
         };
         let background = if self.is_transparent { wgpu::Color::TRANSPARENT } else { background };
-        let load = if first { wgpu::LoadOp::Clear(background) } else { wgpu::LoadOp::Load };
-        wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        }
+        wgpu::RenderPassColorAttachment { resolve_target, ..color_attachment(view, first.then_some(background)) }
     }
 
     /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
@@ -207,6 +201,16 @@ fn depth_view(gpu: &Gpu, label: &str, size: [u32; 2]) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
     let descriptor = flat_texture(label, size, DEPTH_FORMAT, usage);
     whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples(gpu), ..descriptor }))
+}
+
+/// A colour attachment that is first cleared to a colour, or keeps what it has.
+pub(super) fn color_attachment(
+    view: &wgpu::TextureView,
+    clear: Option<wgpu::Color>,
+) -> wgpu::RenderPassColorAttachment<'_> {
+    let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
 /// A depth attachment that is first cleared to a depth, or keeps what it has.
