@@ -241,16 +241,11 @@ impl Kind {
     }
 
     fn expected(&self) -> String {
+        let names = || self.descriptions().iter().map(|value| value.name).collect::<Vec<_>>().join(", ");
         match self {
-            Self::Choice(_) | Self::Several(_) => {
-                let names: Vec<_> = self.descriptions().iter().map(|value| value.name).collect();
-                format!("expected {}", names.join(", "))
-            }
+            Self::Choice(_) | Self::Several(_) => format!("expected {}", names()),
             Self::Number(Range { least, most, .. }) => format!("expected a number from {least} to {most}"),
-            Self::NameOrNumber { range, .. } => {
-                let names: Vec<_> = self.descriptions().iter().map(|value| value.name).collect();
-                format!("expected {}, or a number: {range}", names.join(", "))
-            }
+            Self::NameOrNumber { range, .. } => format!("expected {}, or a number: {range}", names()),
             Self::Pair(range) => {
                 let Range { least, most, .. } = range;
                 let unit = range.unit_in_words();
@@ -379,35 +374,22 @@ impl<T: Field> Field for Option<T> {
     }
 }
 
-impl Field for f32 {
-    fn value(&self) -> Value {
-        Value::Number(*self)
-    }
+/// Fields that hold a value as it is.
+macro_rules! plain_fields {
+    ($($type:ty: $kind:ident),+ $(,)?) => {
+        $(impl Field for $type {
+            fn value(&self) -> Value {
+                Value::$kind(*self)
+            }
 
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Number(number) = value { Some(number) } else { None }
-    }
+            fn from_value(value: Value) -> Option<Self> {
+                if let Value::$kind(own) = value { Some(own) } else { None }
+            }
+        })+
+    };
 }
 
-impl Field for bool {
-    fn value(&self) -> Value {
-        Value::Switch(*self)
-    }
-
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Switch(is_on) = value { Some(is_on) } else { None }
-    }
-}
-
-impl Field for [u8; 3] {
-    fn value(&self) -> Value {
-        Value::Color(*self)
-    }
-
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Color(color) = value { Some(color) } else { None }
-    }
-}
+plain_fields! { f32: Number, bool: Switch, [u8; 3]: Color }
 
 /// The names of the overlays that are on. Two that colour the surface are refused.
 impl Field for Overlays {
