@@ -1,10 +1,23 @@
 //! The light from all around: functions of `shaders/environment.wgsl`, which explains them.
 
 use glam::Vec3;
+use gpu::{Gpu, GpuError};
 
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
+use crate::render::cube_map::CubeMap;
 use crate::render::dfg::{DFG_SIZE, dfg_table};
+use crate::render::environment::{ENVIRONMENT_SIZE, Environment};
 use crate::render::irradiance::{Irradiance, terms};
+
+impl Environment {
+    /// The same light (linear RGB) from all sides, under which a white surface that absorbs nothing can't be seen.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
+        Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, |_| light.into()))
+    }
+}
 
 pub fn level_of_roughness(roughness: f32) -> f32 {
     (ENVIRONMENT_LEVELS - 1) as f32 * roughness.powf(2.0 / 3.0)
@@ -46,7 +59,6 @@ mod tests {
     use std::f32::consts::PI;
 
     use super::*;
-    use crate::render::cube_map::CubeMap;
     use crate::render::irradiance::irradiance;
 
     /// The integral over all texels.

@@ -23,7 +23,7 @@ pub const ENVIRONMENT: WgslModule = WgslModule("environment");
 const SURROUNDINGS_BINDING: u32 = 19;
 
 /// Width of a face of the cube map's first level, in texels.
-const ENVIRONMENT_SIZE: u32 = 128;
+pub(crate) const ENVIRONMENT_SIZE: u32 = 128;
 
 /// Width and height of the studio's panorama, in px. Its soft boxes have edges that are five px wide.
 const STUDIO_SIZE: [u32; 2] = [512, 256];
@@ -88,14 +88,6 @@ impl Environment {
         Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, studio_light))
     }
 
-    /// The same light (linear RGB) from all sides, under which a white surface that absorbs nothing can't be seen.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
-        Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, |_| light.into()))
-    }
-
     /// The light of a panorama.
     ///
     /// # Errors
@@ -109,7 +101,7 @@ impl Environment {
         Ok(Self { backdrop, ..own })
     }
 
-    fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
         let irradiance = irradiance(light);
         let (source, cube, dfg, sampler) =
             gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), linear_sampler(gpu)))?;
