@@ -12,6 +12,7 @@ use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, image};
 use super::irradiance::{Irradiance, irradiance};
 use super::prefilter_pass::{cube_view, prefilter};
 use super::studio::studio_light;
+use super::textures::linear_sampler;
 use crate::settings::ToneCurve;
 use gpu::{Gpu, GpuError, Lazy, WgslModule, filled_texture, flat_texture, uniform_buffer};
 use load::panorama::Panorama;
@@ -103,8 +104,9 @@ impl Environment {
 
     pub(crate) fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
         let irradiance = irradiance(light);
+        let sampler = || linear_sampler(gpu, "environment");
         let (source, cube, dfg, sampler) =
-            gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), linear_sampler(gpu)))?;
+            gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), sampler()))?;
         prefilter(gpu, &source, &cube, &sampler)?;
         Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance, backdrop: Lazy::default() })
     }
@@ -177,16 +179,6 @@ fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
         tone_curve: view.tone_curve as u32,
         _pad: 0,
     }
-}
-
-fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
-    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("environment"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
-    })
 }
 
 /// A cube map of half floats whose levels the prefilter will fill.

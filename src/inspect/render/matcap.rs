@@ -6,7 +6,7 @@ use glam::{Vec3, vec3};
 
 use super::layout::{self, srgb};
 use super::materials::Materials;
-use super::textures::{ImageUse, upload};
+use super::textures::{ImageUse, linear_sampler, upload};
 use crate::settings::Matcap;
 use geometry::mesh::Texture;
 use geometry::mesh::mipmap::MipFilter;
@@ -52,13 +52,7 @@ impl MatcapPicture {
 fn sphere_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgpu::BindGroup, GpuError> {
     // Nothing of the material is seen.
     let constants = uniform_buffer(gpu, "matcap", &[0; size_of::<layout::Material>()]);
-    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("matcap"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
-    });
+    let sampler = linear_sampler(gpu, "matcap");
     let view = upload(gpu, &materials.mipmaps, picture, ImageUse::new(MipFilter::Colors))?;
     let bound = [
         (0, constants.as_entire_binding()),
