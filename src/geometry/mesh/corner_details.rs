@@ -3,8 +3,8 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 
-/// What a corner has beside the attributes of [`Corner`](super::Corner), as passes and draws read it too. Interpolated linearly over a
-/// patch.
+/// What a corner has beside the attributes of [`Corner`](super::Corner), as passes and draws read it too. Interpolated linearly
+/// over a patch.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct CornerDetail {

@@ -127,7 +127,7 @@ fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
     })
 }
 
-/// A sampler that blends texels and levels, as far as the border.
+/// A sampler that blends texels and levels.
 pub(super) fn linear_sampler(gpu: &Gpu, label: &str) -> wgpu::Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some(label),

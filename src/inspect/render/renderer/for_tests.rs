@@ -32,7 +32,8 @@ impl Renderer {
 }
 
 impl Scene {
-    /// How many triangles of the last chunk were drawn, if those that cover no sample were removed; else `None`. Waits for the device.
+    /// How many triangles of the last chunk were drawn, if those that cover no sample were removed; else `None`. Waits for the
+    /// device.
     ///
     /// # Errors
     /// The device was lost.
