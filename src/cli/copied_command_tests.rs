@@ -18,7 +18,8 @@ use proptest::prelude::*;
 use crate::cli::options::Declared;
 use crate::cli::{Cli, CliError, Command, render};
 use geometry::mesh::Bounds;
-use inspect::settings::{Matcap, Overlays, random};
+use inspect::for_tests::random;
+use inspect::settings::{Matcap, Overlays};
 use load::Import;
 
 /// Splits a line into words as a shell does.

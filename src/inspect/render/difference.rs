@@ -34,7 +34,7 @@ impl DifferenceDrawer {
         let bound = (0..).zip(views.each_ref().map(wgpu::BindingResource::TextureView));
         let group = bind_group(gpu, "difference", &self.layout, bound);
         let view = target.shown_view(false);
-        recorder.render("difference", Some(color_attachment(&view, wgpu::LoadOp::Load)), None, |pass| {
+        recorder.render("difference", Some(color_attachment(&view, None)), None, |pass| {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &group, &[]);
             pass.draw(0..3, 0..1);

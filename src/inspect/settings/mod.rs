@@ -8,8 +8,6 @@ pub mod light;
 mod matcap;
 pub mod options;
 mod overlays;
-#[cfg(any(test, feature = "random"))]
-pub mod random;
 mod value;
 
 use glam::{Mat4, Vec2, Vec3};

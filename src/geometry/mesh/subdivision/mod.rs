@@ -136,7 +136,7 @@ impl Refinement {
     /// If there isn't a value for each refined point.
     pub fn limit<'a, T: Linear>(&'a self, refined: &'a [T]) -> Limit<'a, T> {
         assert_eq!(refined.len(), self.points(), "a value for each refined point");
-        Limit::new(Values::new(self.finest(), self.scheme, refined))
+        Limit(Values::new(self.finest(), self.scheme, refined))
     }
 
     /// The face of the cage that a refined face is a part of.

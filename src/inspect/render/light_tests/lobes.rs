@@ -5,11 +5,11 @@ use std::f32::consts::PI;
 use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 
 use super::{cosines, dfg, eye_at, facets, roughnesses, white_light};
-use crate::render::prefilter::hammersley;
-use crate::render::reflectance::{
+use crate::for_tests::reflectance::{
     LookAt, albedo_at_once, direct_lobe, direct_reflection, fifth_power, ggx_distribution, mean_roughness,
     reflect_ambient, stretched_alphas,
 };
+use crate::render::prefilter::hammersley;
 
 /// An integral over all directions above the surface, from microfacets: what the lobe gives, and Schlick's part of it. With an
 /// estimate of its error.
