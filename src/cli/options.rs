@@ -11,6 +11,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec2;
 
 use super::{CliError, note, refuse};
+use geometry::choice::Choice;
 use geometry::mesh::crease_band::WIDEST;
 use geometry::mesh::{FileCamera, Moment, PartStyle};
 use geometry::progress::Progress;
@@ -24,7 +25,7 @@ use inspect::settings::{ARENA_BYTES, Settings};
 use load::files::Limits;
 use load::format::known_extensions;
 use load::import::Subdivide;
-use load::{HeightSource, Import, ShownParts, Source};
+use load::{HeightSource, ShownParts, Source};
 
 pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
 use declared::GivenTessellation;
@@ -262,12 +263,44 @@ impl WeldOption {
             limits: self.limit.limits(),
         }
     }
+}
 
-    /// Loads a reference surface, whose polygons are the cage of a subdivision surface if `subdivide` says so.
-    pub(crate) fn reference_shape(&self, source: &Source, subdivide: Subdivide) -> Result<ReferenceShape, CliError> {
-        let import = Import { subdivide, ..self.import.0 };
-        let found = ReferenceShape::load(source, import, &self.limit.limits(), &Progress::new())?;
-        found.ok_or_else(|| CliError::NoReferenceShape { file: source.to_string() })
+/// The surface that what is emitted is compared with.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ReferenceOption {
+    /// Reference surface that distances and errors are measured from: a mesh file, such as the high-poly original, or a shape. By default
+    /// the exact surface of a shape; for other meshes the surface that the tessellation converges to
+    #[arg(long = "reference-surface", value_name = "FILE", value_parser = source())]
+    pub reference_shape: Option<Source>,
+    /// Take the polygons of that file, or without --reference-surface those of the mesh's own file, as the cage of a subdivision surface, and
+    /// compare with its limit
+    #[arg(long, value_name = "SCHEME", value_parser = choice::<Subdivide>())]
+    pub reference_subdivide: Option<Subdivide>,
+}
+
+impl ReferenceOption {
+    pub(crate) fn is_given(&self) -> bool {
+        self.reference_shape.is_some() || self.reference_subdivide.is_some()
+    }
+
+    /// Loads the surface that was chosen for a mesh, and returns it with its source as `name` has it; none if none was chosen.
+    pub(crate) fn load(
+        &self,
+        mesh: &Source,
+        own: &Preparation,
+        name: fn(&Source) -> String,
+    ) -> Result<Option<(String, ReferenceShape)>, CliError> {
+        let (source, mut preparation) = match &self.reference_shape {
+            Some(source) => (source, own.of_another()),
+            None if self.is_given() => (mesh, own.clone()),
+            None => return Ok(None),
+        };
+        preparation.import.subdivide = self.reference_subdivide.unwrap_or_default();
+        let found = ReferenceShape::load(source, preparation.selection(), &preparation.limits, &Progress::new())?;
+        let found = found.ok_or_else(|| CliError::NoReferenceShape { file: source.to_string() })?;
+        let refined = self.reference_subdivide.filter(|scheme| scheme.refines_all());
+        let limit = refined.map_or_else(String::new, |scheme| format!("{} limit of ", scheme.label()));
+        Ok(Some((limit + &name(source), found)))
     }
 }
 

@@ -26,11 +26,21 @@ choices! {
     pub enum Subdivide {
         #[default]
         File => "file", "As the file says",
-            "What an FBX file marks as a subdivision surface is refined, unless a clip moves the file.";
+            "What an FBX file marks as a subdivision surface is refined.";
         Off => "none", "None", "Polygons are drawn as they are.";
         CatmullClark => "catmull-clark", "Catmull-Clark",
             "Polygons are the cage of a Catmull-Clark surface. Refined points and their normals are those of its limit.";
         Loop => "loop", "Loop", "Triangles are the cage of a Loop surface. Refined points and their normals are those of its limit.";
+    }
+}
+
+impl Subdivide {
+    /// Whether all polygons are refined, whatever the file says.
+    pub fn refines_all(self) -> bool {
+        match self {
+            Self::File | Self::Off => false,
+            Self::CatmullClark | Self::Loop => true,
+        }
     }
 }
 

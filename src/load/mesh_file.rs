@@ -110,8 +110,8 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
 }
 
 /// The warning about what was to be refined and isn't.
-const NOT_REFINED: &str = "Not all of it is refined as a subdivision surface: only polygons of FBX files without clips, and of OBJ, \
-                           PLY, OFF, STL and 3MF files, can be.";
+pub const NOT_REFINED: &str = "Not all of it is refined as a subdivision surface: only polygons of FBX, OBJ, PLY, OFF, STL and \
+                           3MF files can be.";
 
 /// Loads a mesh as [`load`] does, with the materials of a variant, or another scene than the default one.
 ///

@@ -1,20 +1,21 @@
 //! Builds the rig of an animated mesh: nodes and skins become joints, and vertices are bound to them.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
-use glam::{DMat4, Vec3};
+use glam::{DMat4, DVec4, Vec3, Vec4};
 
 use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, posed, unturned, untwisted};
 use super::notes::Notes;
 use super::tangents;
 use geometry::casts::{to_f32, to_u32};
-use geometry::mesh::build_limits::BuildError;
+use geometry::mesh::build_limits::{BuildError, MemoryRefused};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::normals::GivenNormal;
 use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
+use geometry::mesh::subdivision::Refinement;
 use geometry::mesh::{Budget, CornerDetail, CornerDetails, Mesh};
 use geometry::progress::Progress;
 
@@ -22,6 +23,8 @@ use geometry::progress::Progress;
 pub(super) const MAX_BOUND: usize = 1 << 24;
 /// The greatest number of elements of morph targets that are read.
 const MAX_DISPLACED: usize = 1 << 28;
+/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
+pub(super) const PER_DELTA: u64 = 250;
 
 /// Collects bindings, node by node, and builds a [`Rig`] of them.
 #[derive(Default)]
@@ -213,7 +216,9 @@ impl RigBuilder {
         let rest = rig.rest();
         for ((binding, corner), &id) in rig.bindings.iter_mut().zip(&mesh.corners).zip(corners) {
             if self.bound[id as usize].without_normal {
-                binding.normal = untwisted(binding, &rest, corner.normal).to_array();
+                let own = &rig.deltas[binding.first_delta as usize..][..binding.delta_count as usize];
+                let turned = own.iter().map(|delta| Vec3::from(delta.normal) * rest.weights[delta.weight as usize]);
+                binding.normal = (untwisted(binding, &rest, corner.normal) - turned.sum::<Vec3>()).to_array();
             }
         }
         if let Some(details) = mesh.details.as_ref().filter(|details| has_tangents(details)) {
@@ -227,6 +232,75 @@ impl RigBuilder {
         }
         refer_to_tangents(rig, &self.tangent_deltas);
         rig.reach = Reach::new(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
+    }
+
+    /// Binds the points that a cage is refined to, as combinations of what the cage's points are bound to, by the numbers of `cage`: their
+    /// positions, weights and displacements are those of the limit. Of a point's joints the four with the largest weights are used, and its
+    /// normal is computed from the one that its corner gets. Returns the points' numbers.
+    ///
+    /// # Errors
+    /// [`MemoryRefused`].
+    pub(super) fn bind_refined(
+        &mut self,
+        refinement: &Refinement,
+        cage: &[u32],
+        budget: &Budget,
+    ) -> Result<Vec<u32>, MemoryRefused> {
+        let binding = |&id: &u32| self.bound.get(id as usize).map_or_else(Binding::default, |bound| bound.binding);
+        let cage: Vec<Binding> = cage.iter().map(binding).collect();
+        let limit = |value: &dyn Fn(&Binding) -> DVec4| {
+            let refined = refinement.refine(&cage.iter().map(value).collect::<Vec<_>>());
+            refinement.limit(&refined).values()
+        };
+        let vector = |vector: [f32; 3]| Vec3::from(vector).as_dvec3().extend(0.0);
+        let positions = limit(&|own| vector(own.position));
+        let mut joints: Vec<Vec<(u32, f64)>> = vec![Vec::new(); positions.len()];
+        let weighed = |own: &Binding| own.joints.into_iter().zip(own.weights).filter(|(_, weight)| *weight > 0.0);
+        for four in sorted(cage.iter().flat_map(weighed).map(|(joint, _)| joint)).chunks(4) {
+            let weight =
+                |own: &Binding, joint| weighed(own).find(|(other, _)| *other == joint).map_or(0.0, |own| own.1);
+            let weights = limit(&|own| {
+                Vec4::from_array(std::array::from_fn(|k| four.get(k).map_or(0.0, |joint| weight(own, *joint))))
+                    .as_dvec4()
+            });
+            for (joints, weights) in joints.iter_mut().zip(weights) {
+                joints.extend(four.iter().copied().zip(weights.to_array()).filter(|(_, weight)| *weight > 0.0));
+                joints.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+                joints.truncate(4);
+            }
+        }
+        let mut displaced: Vec<Vec<Delta>> = vec![Vec::new(); positions.len()];
+        let deltas = |own: &Binding| &self.rig.deltas[own.first_delta as usize..][..own.delta_count as usize];
+        for weight in sorted(cage.iter().flat_map(deltas).map(|delta| delta.weight)) {
+            let of_target = |own: &Binding, part: fn(&Delta) -> [f32; 3]| {
+                vector(deltas(own).iter().find(|delta| delta.weight == weight).map_or([0.0; 3], part))
+            };
+            let moved = limit(&|own| of_target(own, |delta| delta.position));
+            let turned = limit(&|own| of_target(own, |delta| delta.normal));
+            for (list, both) in displaced.iter_mut().zip(moved.into_iter().zip(turned)) {
+                let [position, normal] = [both.0, both.1].map(|vector| vector.truncate().as_vec3().to_array());
+                let delta = Delta { position, weight, normal, tangent: 0 };
+                list.extend((position != [0.0; 3] || normal != [0.0; 3]).then_some(delta));
+            }
+        }
+        budget.hold(displaced.iter().map(|list| list.len() as u64).sum::<u64>() * PER_DELTA)?;
+        let points = positions.into_iter().zip(joints).zip(displaced);
+        Ok(points.map(|((position, joints), deltas)| self.bind_point(position, joints, &deltas)).collect())
+    }
+
+    /// Binds a point to some joints, whose weights needn't add up to 1.
+    fn bind_point(&mut self, position: DVec4, mut joints: Vec<(u32, f64)>, deltas: &[Delta]) -> u32 {
+        if self.problem.is_some() {
+            return u32::MAX;
+        }
+        let sum: f64 = joints.iter().map(|(_, weight)| weight).sum();
+        joints.sort_unstable_by_key(|(joint, _)| *joint);
+        let position = position.truncate().as_vec3().to_array();
+        let mut binding = Binding { position, ..Binding::default() };
+        for (k, (joint, weight)) in joints.into_iter().enumerate() {
+            (binding.joints[k], binding.weights[k]) = (joint, to_f32(weight / sum));
+        }
+        self.bind(BoundVertex { binding, alike: 0, without_normal: true, tangent: None }, deltas, &[])
     }
 
     fn joint(&mut self, joint: Joint) -> u32 {
@@ -301,6 +375,11 @@ fn is_moved_by(binding: &Binding, joints: &[Joint], nodes: &[bool]) -> bool {
     moving.filter_map(|(joint, _)| joints[*joint as usize].node).any(|node| nodes[node as usize])
 }
 
+/// Returns each number once, in ascending order.
+fn sorted(numbers: impl Iterator<Item = u32>) -> Vec<u32> {
+    numbers.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
 fn has_tangents(details: &CornerDetails) -> bool {
     details.iter().any(|detail| detail.tangent != Vec3::ZERO)
 }
@@ -365,6 +444,11 @@ impl NodeBinder<'_> {
         }
         let rigid = self.binder.joint(Joint { node: attachment.node, ..Joint::default() });
         VertexFrame { rigid: Some(rigid), space: BindingSpace::new(attachment.below * to_node) }
+    }
+
+    /// What all nodes' vertices are bound to.
+    pub(super) fn rig(&mut self) -> &mut RigBuilder {
+        self.binder
     }
 
     /// Returns how many displacements are stored, of all vertices together.

@@ -91,6 +91,26 @@ pub struct Preparation {
     pub limits: Limits,
 }
 
+impl Preparation {
+    /// What of the file is read, and how.
+    pub fn selection(&self) -> Selection<'_> {
+        Selection {
+            variant: self.variant.as_deref(),
+            scene: self.scene.as_deref(),
+            hidden: &self.parts.hidden,
+            only: &self.parts.only,
+            styles: &self.parts.styles,
+            import: self.import,
+        }
+    }
+
+    /// What of another file is read that is compared with this one: all of it, at the same place.
+    #[must_use]
+    pub fn of_another(&self) -> Self {
+        Self { import: self.import.placement(), limits: self.limits, ..Self::default() }
+    }
+}
+
 /// Reads a mesh, prepares it, and builds its topology. Needs no device.
 ///
 /// # Errors
@@ -99,16 +119,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
-    let selected = Selection {
-        variant: preparation.variant.as_deref(),
-        scene: preparation.scene.as_deref(),
-        hidden: &preparation.parts.hidden,
-        only: &preparation.parts.only,
-        styles: &preparation.parts.styles,
-        import: preparation.import,
-    };
     let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: _ } =
-        source.load_selected(selected, &preparation.limits, &of_mesh)?;
+        source.load_selected(preparation.selection(), &preparation.limits, &of_mesh)?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
     let too_large = |what| move |error| unfinished(source, what, error);

@@ -22,11 +22,12 @@ pub use reference::Reference;
 pub use spread::radical_inverse;
 
 use geometry::mesh::{Mesh, Shape};
+use geometry::near::{Goal, farthest};
 use geometry::progress::Progress;
 use load::files::Limits;
-use load::import::Subdivide;
+use load::mesh_file::NOT_REFINED;
 use load::selection::Selection;
-use load::{Import, LoadError, Source};
+use load::{Import, LoadError, LoadedMesh, NormalSource, Source};
 
 /// How often the cage of a reference surface is refined. Its points are then those of the limit surface.
 const LEVELS: f32 = 4.0;
@@ -60,30 +61,41 @@ impl ReferenceShape {
         of_shape(shape).map(Self::Exact)
     }
 
-    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, turned and scaled as
-    /// `import` says of the mesh that is compared with it, and refined as it says. `None` if that has no triangle.
+    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, with its own normals and refined
+    /// four times where `selected` says that it is refined. `None` if that has no triangle.
     ///
     /// # Errors
     /// The file can't be read as a mesh, or is the cage of a subdivision surface and can't be refined, or `progress` was cancelled.
     pub fn load(
         source: &Source,
-        import: Import,
+        selected: Selection,
         limits: &Limits,
         progress: &Progress,
     ) -> Result<Option<Self>, LoadError> {
-        let shape = source.shape();
-        if let Some(exact) = shape.and_then(Self::from_shape) {
+        let (shape, refines_all) = (source.shape(), selected.import.subdivide.refines_all());
+        if let Some(exact) = shape.and_then(Self::from_shape).filter(|_| !refines_all) {
             return Ok(Some(exact));
         }
-        let refined = Import { subdivide: import.subdivide, levels: Some(LEVELS), ..import.placement() };
-        let selected =
-            Selection { import: if shape.is_some() { Import::default() } else { refined }, ..Selection::default() };
-        let loaded = source.load_selected(selected, limits, progress)?;
-        if matches!(import.subdivide, Subdivide::CatmullClark | Subdivide::Loop) && !loaded.is_refined {
-            let reason = loaded.warnings.join(" ");
+        let read = |levels, progress: &Progress| -> Result<(Option<Reference>, LoadedMesh), LoadError> {
+            let import = Import { levels: Some(levels), normals: NormalSource::File, ..selected.import };
+            let import = if shape.is_some() { Import::default() } else { import };
+            let loaded = source.load_selected(Selection { import, ..selected }, limits, progress)?;
+            Ok((Reference::new(&loaded.mesh), loaded))
+        };
+        let (fine, loaded) = read(LEVELS, &progress.part(0.0, 0.8))?;
+        if refines_all && !loaded.is_refined {
+            let reason = if loaded.warnings.is_empty() { NOT_REFINED.to_owned() } else { loaded.warnings.join(" ") };
             return Err(LoadError::Unrefined { file: source.to_string(), reason });
         }
-        Ok(Self::from_mesh(&loaded.mesh))
+        let Some(mut fine) = fine else { return Ok(None) };
+        if loaded.is_refined
+            && let (Some(coarse), _) = read(LEVELS - 1.0, &progress.part(0.8, 1.0))?
+        {
+            let goal = Goal { relative: 0.05, absolute: 1e-7 * fine.diagonal, searches: 1 << 18 };
+            let step = farthest(fine.facets().soup(), &coarse.facets().tree, &goal, progress)?;
+            fine.step = step.map(|step| step.distance.at_most);
+        }
+        Ok(Some(Self::Mesh(fine)))
     }
 
     /// Returns a mesh as reference surface, with its interpolated normals, or `None` if it has no triangle. It needn't
@@ -114,6 +126,15 @@ impl ReferenceShape {
                 (nearest.point, nearest.distance)
             }
             Self::Mesh(mesh) => mesh.closest_point(p),
+        }
+    }
+
+    /// Returns how far a cage that was refined is at most from the same one refined once less, in object units. Each refinement moves it about
+    /// a quarter as far as the one before, so about a third of this is missing to the limit surface. `None` for other surfaces.
+    pub fn step(&self) -> Option<f64> {
+        match self {
+            Self::Exact(_) => None,
+            Self::Mesh(mesh) => mesh.step,
         }
     }
 

@@ -17,7 +17,9 @@ pub struct Reference {
     faces: Arc<Vec<[u32; 3]>>,
     /// The sum of the areas of all triangles up to and including each one.
     areas: Vec<f64>,
-    diagonal: f64,
+    pub(super) diagonal: f64,
+    /// See [`super::ReferenceShape::step`].
+    pub(super) step: Option<f64>,
 }
 
 impl Reference {
@@ -31,7 +33,7 @@ impl Reference {
             Some(*sum)
         });
         let (areas, [min, max]) = (areas.collect(), facets.tree.extent());
-        Some(Self { facets, areas, diagonal: min.distance(max), corners, faces })
+        Some(Self { facets, areas, diagonal: min.distance(max), step: None, corners, faces })
     }
 
     fn triangle(&self, index: usize) -> [Corner; 3] {

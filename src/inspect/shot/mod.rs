@@ -463,10 +463,10 @@ impl Shot {
 
     /// The distance of a half from the reference surface, if it was measured.
     fn accuracy(&self, half: SplitSide) -> Option<AccuracyStats> {
-        let (name, _) = self.subject.reference_surface.as_ref().and_then(ReferenceSurface::reference_shape)?;
+        let named = self.subject.reference_surface.as_ref().and_then(ReferenceSurface::reference_shape)?;
         let results = self.results(half)?;
         let is_whole = results.survey.as_ref()?.culled.total() == 0;
-        results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(name, accuracy, is_whole))
+        results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(named, accuracy, is_whole))
     }
 
     /// The deviation that the overlay shows on a half, if the overlay is on.

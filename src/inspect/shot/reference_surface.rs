@@ -42,6 +42,8 @@ pub(super) struct AccuracyStats {
     reference_surface: String,
     /// The diagonal of the reference surface's bounding box, in object units.
     diagonal: f64,
+    /// How far the last refinement moved a reference surface that is a refined cage at most, in object units; none for other surfaces.
+    reference_step: Option<f64>,
     /// From what was emitted to the nearest points of the reference surface.
     to_reference: DistanceStats,
     /// From the reference surface to the nearest points of what was emitted; none if patches were left out, or too many
@@ -69,7 +71,7 @@ struct DistanceStats {
 
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
-    pub(super) fn new(reference_shape: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
+    pub(super) fn new((name, shape): (&str, &ReferenceShape), accuracy: &Accuracy, is_whole: bool) -> Self {
         let distances = |distances: Distances, worst: WorstPoint| {
             let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
@@ -77,8 +79,9 @@ impl AccuracyStats {
         };
         let from_reference = accuracy.from_reference.filter(|_| is_whole);
         Self {
-            reference_surface: reference_shape.to_owned(),
+            reference_surface: name.to_owned(),
             diagonal: accuracy.diagonal,
+            reference_step: shape.step(),
             to_reference: distances(accuracy.to_reference, accuracy.worst_to_reference),
             from_reference: from_reference.map(|(from, worst)| distances(from, worst)),
             max_px: accuracy.worst_px.map(|worst| worst.value),

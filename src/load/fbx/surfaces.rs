@@ -16,7 +16,7 @@ use crate::model_file::ModelFile;
 use crate::notes::{Notes, counted, counts};
 use crate::parts::DEFAULT_PART;
 use crate::read_error::{FilePosition, ReadError};
-use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
+use crate::rig_builder::{NodeBinder, PER_DELTA, RigBuilder, UndeformedVertex, VertexFrame};
 use crate::uri::Files;
 use geometry::casts::{to_f32, to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
@@ -30,8 +30,6 @@ const POLYGONS: usize = 4096;
 
 /// Memory for a corner while the mesh is built, in bytes.
 const PER_CORNER: u64 = 32;
-/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
-const PER_DELTA: u64 = 250;
 
 /// Collects polygons.
 pub(super) struct Surfaces<'s, 'a> {
@@ -132,7 +130,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         };
         let subdivision = reader.subdivision();
         self.without_normals += usize::from(is_without_normals && subdivision.is_none());
-        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import));
+        let moves = reader.binder.is_some();
+        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import, moves));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {
@@ -144,7 +143,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             reader.creases()?;
         }
         reader.faces.is_hole = false;
-        reader.faces.end_cage(reader.details, progress)
+        let rig = reader.binder.as_mut().map(|binder| binder.node.rig());
+        reader.faces.end_cage(reader.details, rig, progress)
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
@@ -175,7 +175,7 @@ struct MeshReader<'a, 'b, 'f> {
 }
 
 impl MeshReader<'_, '_, '_> {
-    /// How the mesh is refined. One that a clip may move isn't: its joints and blend shapes move the points of the cage.
+    /// How the mesh is refined. One that joints move in part isn't: the rest of it isn't in the same space.
     fn subdivision(&mut self) -> Option<Subdivision> {
         let (import, mesh) = (self.faces.import, self.mesh);
         let mode = mesh.subdivision_display_mode;
@@ -186,7 +186,7 @@ impl MeshReader<'_, '_, '_> {
             Subdivide::File => is_marked,
             Subdivide::CatmullClark | Subdivide::Loop => true,
         };
-        if !is_wanted || self.binder.is_some() {
+        if !is_wanted || self.moves_in_part() {
             if is_wanted || is_marked {
                 self.found.cages += 1;
                 self.faces.is_refined = Some(false);
@@ -201,6 +201,17 @@ impl MeshReader<'_, '_, '_> {
         Some(Subdivision { levels, boundary, ..import.subdivision().unwrap_or_default() })
     }
 
+    /// Whether clips move the mesh, and joints some of its vertices but not all.
+    fn moves_in_part(&mut self) -> bool {
+        let Some(skin) = self.vertices.skin.filter(|_| self.binder.is_some()) else { return false };
+        let is_moved = |vertex| {
+            skin.influences(vertex, &mut self.influences);
+            !self.influences.is_empty()
+        };
+        let moved = (0..self.mesh.vertices.len()).map(is_moved).filter(|is_moved| *is_moved).count();
+        moved > 0 && moved < self.mesh.vertices.len()
+    }
+
     /// Tells which edges are creases, and which points are sharp. FBX files have a sharpness of 10 as 1.
     fn creases(&mut self) -> Result<(), ReadError> {
         let sharp = self.mesh.edges.iter().zip(self.mesh.edge_crease.iter()).filter(|(_, crease)| **crease > 0.0);
@@ -211,8 +222,8 @@ impl MeshReader<'_, '_, '_> {
             sharp.extend((crease > 0.0).then_some(([corner; 2], to_f32(10.0 * crease))));
         }
         for (ends, sharpness) in sharp {
-            let mut positions = [Vec3::ZERO; 2];
-            for (position, corner) in positions.iter_mut().zip(ends) {
+            let mut places = [(Vec3::ZERO, 0); 2];
+            for (place, corner) in places.iter_mut().zip(ends) {
                 let vertex = self.vertices.vertex(corner as usize)?;
                 self.vertices.morphs.of(vertex, &mut self.deltas);
                 self.influences.clear();
@@ -220,12 +231,12 @@ impl MeshReader<'_, '_, '_> {
                     skin.influences(vertex, &mut self.influences);
                 }
                 let posed = self.vertices.posed(corner as usize, vertex, &self.influences, &self.deltas);
-                *position = posed.corner.position;
+                *place = (posed.corner.position, to_u32(vertex));
             }
             if let Some(cage) = &mut self.faces.cage {
                 match ends {
-                    [a, b] if a == b => cage.sharpen(positions[0], sharpness),
-                    _ => cage.crease(positions, sharpness),
+                    [a, b] if a == b => cage.sharpen(places[0], sharpness),
+                    _ => cage.crease(places, sharpness),
                 }
             }
         }
@@ -293,7 +304,9 @@ impl MeshReader<'_, '_, '_> {
             number = table.number(detail, number, self.budget)?;
             self.details = Some(table);
         }
-        Ok((NumberedCorner { corner: posed.corner, number, vertex: None }, mirrors(&posed.linear)))
+        // Where it isn't refined, a vertex may have several corners.
+        let vertex = self.faces.cage.is_some().then_some([to_u32(vertex), 0, 0]);
+        Ok((NumberedCorner { corner: posed.corner, number, vertex }, mirrors(&posed.linear)))
     }
 
     fn own_uv(&mut self, corner: usize, material: &Resolved) -> Vec2 {
