@@ -176,7 +176,7 @@ impl App {
         if self.has_own_limit() != own_limit {
             self.close_companion(ReferenceShape);
             if own_limit {
-                self.open_own_limit(context);
+                self.read_reference(context, None, true);
             }
         }
         for (companion, source) in CompanionFile::ALL.into_iter().zip(files) {

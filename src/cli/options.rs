@@ -17,7 +17,7 @@ use geometry::mesh::{FileCamera, Moment, PartStyle};
 use geometry::progress::Progress;
 use geometry::tessellate::{Displacement, LodView, Surface, Tessellation, tolerance_within_budget};
 use gpu::Timing;
-use inspect::engine::{Engine, Loaded, Preparation};
+use inspect::engine::{Engine, Loaded, Preparation, load_reference};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
 use inspect::settings::options::TOLERANCE_RANGE;
@@ -279,28 +279,20 @@ pub struct ReferenceOption {
 }
 
 impl ReferenceOption {
-    pub(crate) fn is_given(&self) -> bool {
-        self.reference_shape.is_some() || self.reference_subdivide.is_some()
-    }
-
-    /// Loads the surface that was chosen for a mesh, and returns it with its source as `name` has it; none if none was chosen.
+    /// Loads the surface that was chosen for a mesh, and returns it with its name, made of that of its source; none if none was chosen.
     pub(crate) fn load(
         &self,
         mesh: &Source,
         own: &Preparation,
         name: fn(&Source) -> String,
     ) -> Result<Option<(String, ReferenceShape)>, CliError> {
-        let (source, mut preparation) = match &self.reference_shape {
-            Some(source) => (source, own.of_another()),
-            None if self.is_given() => (mesh, own.clone()),
-            None => return Ok(None),
-        };
-        preparation.import.subdivide = self.reference_subdivide.unwrap_or_default();
-        let found = ReferenceShape::load(source, preparation.selection(), &preparation.limits, &Progress::new())?;
-        let found = found.ok_or_else(|| CliError::NoReferenceShape { file: source.to_string() })?;
-        let refined = self.reference_subdivide.filter(|scheme| scheme.refines_all());
-        let limit = refined.map_or_else(String::new, |scheme| format!("{} limit of ", scheme.label()));
-        Ok(Some((limit + &name(source), found)))
+        if self.reference_shape.is_none() && self.reference_subdivide.is_none() {
+            return Ok(None);
+        }
+        let (from, subdivide) = (self.reference_shape.as_ref(), self.reference_subdivide.unwrap_or_default());
+        let found = load_reference(from, (mesh, own), subdivide, &Progress::new())?;
+        let scheme = self.reference_subdivide.map_or_else(String::new, |scheme| format!(" ({})", scheme.name()));
+        Ok(Some((name(from.unwrap_or(mesh)) + &scheme, found)))
     }
 }
 

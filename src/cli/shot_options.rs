@@ -19,7 +19,7 @@ use inspect::reference_shape::ReferenceShape;
 use inspect::render::environment::Environment;
 use inspect::render::{Camera, Scene, framed_size};
 use inspect::settings::{Choice, ColorSource, Lighting};
-use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotError, ShotView, Subject};
+use inspect::shot::{FactorsFile, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
 use load::{Source, load_matcap};
@@ -135,9 +135,6 @@ impl ShotOptions {
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let reference_surface = self.reference_surface(&loaded)?;
-        if matches!(reference_surface, Some(ReferenceSurface::Limit)) {
-            self.user_surface.check_deviation()?;
-        }
         let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
         let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
@@ -158,26 +155,25 @@ impl ShotOptions {
         Ok((subject, factors_file))
     }
 
-    /// The surface to compare with: the one that was chosen, or if the overlay is shown the exact surface or the limit surface.
-    fn reference_surface(&self, loaded: &Loaded) -> Result<Option<ReferenceSurface>, CliError> {
+    /// The surface to compare with, and its name: the one that was chosen, or if the overlay is shown the exact surface; none for the limit
+    /// surface.
+    fn reference_surface(&self, loaded: &Loaded) -> Result<Option<(String, Arc<ReferenceShape>)>, CliError> {
         let Self { surface, picture, reference, .. } = self;
         let moves = surface.animation.is_some();
+        let chosen = reference.load(&loaded.source, &loaded.preparation, Source::to_string)?;
         refuse(
-            moves && reference.is_given(),
+            moves && chosen.is_some(),
             "--reference-surface and --reference-subdivide can't be combined with --animation: the reference surface doesn't move",
         )?;
-        if let Some((name, found)) = reference.load(&loaded.source, &surface.preparation(), Source::to_string)? {
-            return Ok(Some(ReferenceSurface::ReferenceShape(name, Arc::new(found))));
-        }
-        if picture.0.overlays.colors.source() != ColorSource::ReferenceSurface {
-            return Ok(None);
+        if chosen.is_some() || picture.0.overlays.colors.source() != ColorSource::ReferenceSurface {
+            return Ok(chosen.map(|(name, chosen)| (name, Arc::new(chosen))));
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();
         let exact = loaded.source.shape().filter(|_| is_plain).and_then(ReferenceShape::from_shape);
-        let found = exact.map(|reference_shape| {
-            ReferenceSurface::ReferenceShape(loaded.source.to_string(), Arc::new(reference_shape))
-        });
-        Ok(Some(found.unwrap_or(ReferenceSurface::Limit)))
+        if exact.is_none() {
+            self.user_surface.check_deviation()?;
+        }
+        Ok(exact.map(|exact| (loaded.source.to_string(), Arc::new(exact))))
     }
 
     /// Reads the light of a file. Standard error tells what was repaired.

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
+use glam::{DVec2, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
 
 use super::import::{Import, Subdivision};
 use super::recent_corners::NumberedCorner;
@@ -72,12 +72,13 @@ impl CageFaces {
         budget: &Budget,
     ) -> Result<usize, MemoryRefused> {
         let whole: Vec<usize> = (0..corners.len()).collect();
-        let is_whole = self.subdivision.scheme != Scheme::Loop;
-        let bytes = PER_CORNER * if is_whole { whole.len() } else { 3 * triangles.len() } as u64;
+        let parts: Vec<&[usize]> = match self.subdivision.scheme {
+            Scheme::CatmullClark => vec![&whole],
+            Scheme::Loop => triangles.iter().map(|triangle| &triangle[..]).collect(),
+        };
+        let bytes = PER_CORNER * parts.iter().map(|part| part.len() as u64).sum::<u64>();
         budget.hold(bytes)?;
         self.held += bytes;
-        let parts: Vec<&[usize]> =
-            if is_whole { vec![&whole] } else { triangles.iter().map(|triangle| &triangle[..]).collect() };
         let mut left_out = 0;
         for part in parts {
             let start = self.points.len();
@@ -192,7 +193,9 @@ impl CageFaces {
         budget: &Budget,
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (places, normals) = self.limit(refinement);
+        let refined = refinement.refine(&self.positions.iter().map(|position| position.as_dvec3()).collect::<Vec<_>>());
+        let limit = refinement.limit(&refined);
+        let (places, normals) = (limit.values(), limit.normals());
         let at_corners = |has: bool, value: &dyn Fn(&NumberedCorner) -> DVec4| {
             let values: Vec<DVec4> = self.corners.iter().filter(|_| has).map(value).collect();
             if has { refinement.refine_corners(&values) } else { values }
@@ -221,7 +224,7 @@ impl CageFaces {
                     }
                     None => binding,
                 };
-                let position = places[point];
+                let position = places[point].as_vec3();
                 let normal = Some(normals[k]).filter(|_| self.has_normals);
                 let uv = uvs.get(k).map_or(Vec2::ZERO, |uv| uv.xy().as_vec2());
                 corners.push(NumberedCorner { corner: InputCorner { position, normal, uv }, number, vertex: None });
@@ -239,14 +242,6 @@ impl CageFaces {
             bindings[point as usize] = details.map_or(at.number, |details| details.binding(at.number));
         }
         bindings
-    }
-
-    /// The points of the limit surface, and its normals at the corners of faces.
-    fn limit(&self, refinement: &Refinement) -> (Vec<Vec3>, Vec<Vec3>) {
-        let positions: Vec<DVec3> = self.positions.iter().map(|position| position.as_dvec3()).collect();
-        let refined = refinement.refine(&positions);
-        let limit = refinement.limit(&refined);
-        (limit.values().into_iter().map(DVec3::as_vec3).collect(), limit.normals())
     }
 }
 

@@ -34,16 +34,6 @@ choices! {
     }
 }
 
-impl Subdivide {
-    /// Whether all polygons are refined, whatever the file says.
-    pub fn refines_all(self) -> bool {
-        match self {
-            Self::File | Self::Off => false,
-            Self::CatmullClark | Self::Loop => true,
-        }
-    }
-}
-
 /// How often cages can be refined, and how often they are if nothing is said.
 pub const MOST_LEVELS: u8 = 6;
 const USUAL_LEVELS: u32 = 2;
@@ -159,6 +149,11 @@ impl Import {
             Subdivide::Loop => Scheme::Loop,
         };
         Some(Subdivision { scheme, levels: self.levels_or(USUAL_LEVELS), ..Subdivision::default() })
+    }
+
+    /// Whether all polygons are refined, whatever the file says.
+    pub fn refines_all(&self) -> bool {
+        self.subdivision().is_some()
     }
 
     /// How often cages are refined of which the file says so many times.

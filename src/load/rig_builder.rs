@@ -1,9 +1,9 @@
 //! Builds the rig of an animated mesh: nodes and skins become joints, and vertices are bound to them.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{DMat4, DVec4, Vec3, Vec4};
+use glam::{DMat4, DVec3, Vec3};
 
 use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, posed, unturned, untwisted};
@@ -248,59 +248,43 @@ impl RigBuilder {
     ) -> Result<Vec<u32>, MemoryRefused> {
         let binding = |&id: &u32| self.bound.get(id as usize).map_or_else(Binding::default, |bound| bound.binding);
         let cage: Vec<Binding> = cage.iter().map(binding).collect();
-        let limit = |value: &dyn Fn(&Binding) -> DVec4| {
-            let refined = refinement.refine(&cage.iter().map(value).collect::<Vec<_>>());
-            refinement.limit(&refined).values()
+        let vector = |vector: [f32; 3]| Vec3::from(vector).as_dvec3();
+        let positions = refinement.refine(&cage.iter().map(|own| vector(own.position)).collect::<Vec<_>>());
+        let positions = refinement.limit(&positions).values();
+        // What isn't used of a vertex's joints comes last, and has no weight.
+        let hung = |own: &Binding| own.joints.into_iter().zip(own.weights.map(f64::from)).collect();
+        let joints = refinement.limit_of_some(&cage.iter().map(hung).collect::<Vec<_>>());
+        // A target moves positions under an even number, and turns normals under an odd one.
+        let displaced = |own: &Binding| {
+            let deltas = &self.rig.deltas[own.first_delta as usize..][..own.delta_count as usize];
+            let both = |delta: &Delta| [(2 * delta.weight, delta.position), (2 * delta.weight + 1, delta.normal)];
+            deltas.iter().flat_map(both).map(|(number, own)| (number, vector(own))).collect()
         };
-        let vector = |vector: [f32; 3]| Vec3::from(vector).as_dvec3().extend(0.0);
-        let positions = limit(&|own| vector(own.position));
-        let mut joints: Vec<Vec<(u32, f64)>> = vec![Vec::new(); positions.len()];
-        let weighed = |own: &Binding| own.joints.into_iter().zip(own.weights).filter(|(_, weight)| *weight > 0.0);
-        for four in sorted(cage.iter().flat_map(weighed).map(|(joint, _)| joint)).chunks(4) {
-            let weight =
-                |own: &Binding, joint| weighed(own).find(|(other, _)| *other == joint).map_or(0.0, |own| own.1);
-            let weights = limit(&|own| {
-                Vec4::from_array(std::array::from_fn(|k| four.get(k).map_or(0.0, |joint| weight(own, *joint))))
-                    .as_dvec4()
-            });
-            for (joints, weights) in joints.iter_mut().zip(weights) {
-                joints.extend(four.iter().copied().zip(weights.to_array()).filter(|(_, weight)| *weight > 0.0));
-                joints.sort_by(|(_, a), (_, b)| b.total_cmp(a));
-                joints.truncate(4);
-            }
-        }
-        let mut displaced: Vec<Vec<Delta>> = vec![Vec::new(); positions.len()];
-        let deltas = |own: &Binding| &self.rig.deltas[own.first_delta as usize..][..own.delta_count as usize];
-        for weight in sorted(cage.iter().flat_map(deltas).map(|delta| delta.weight)) {
-            let of_target = |own: &Binding, part: fn(&Delta) -> [f32; 3]| {
-                vector(deltas(own).iter().find(|delta| delta.weight == weight).map_or([0.0; 3], part))
-            };
-            let moved = limit(&|own| of_target(own, |delta| delta.position));
-            let turned = limit(&|own| of_target(own, |delta| delta.normal));
-            for (list, both) in displaced.iter_mut().zip(moved.into_iter().zip(turned)) {
-                let [position, normal] = [both.0, both.1].map(|vector| vector.truncate().as_vec3().to_array());
-                let delta = Delta { position, weight, normal, tangent: 0 };
-                list.extend((position != [0.0; 3] || normal != [0.0; 3]).then_some(delta));
-            }
-        }
+        let displaced = refinement.limit_of_some(&cage.iter().map(displaced).collect::<Vec<_>>());
         budget.hold(displaced.iter().map(|list| list.len() as u64).sum::<u64>() * PER_DELTA)?;
         let points = positions.into_iter().zip(joints).zip(displaced);
-        Ok(points.map(|((position, joints), deltas)| self.bind_point(position, joints, &deltas)).collect())
+        Ok(points.map(|((position, joints), displaced)| self.bind_point(position, joints, &displaced)).collect())
     }
 
-    /// Binds a point to some joints, whose weights needn't add up to 1.
-    fn bind_point(&mut self, position: DVec4, mut joints: Vec<(u32, f64)>, deltas: &[Delta]) -> u32 {
+    /// Binds a refined point; joints' weights needn't add up to 1.
+    fn bind_point(&mut self, position: DVec3, mut joints: Vec<(u32, f64)>, displaced: &[(u32, DVec3)]) -> u32 {
         if self.problem.is_some() {
             return u32::MAX;
         }
+        joints.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+        joints.truncate(4);
+        joints.sort_by_key(|(joint, _)| *joint);
         let sum: f64 = joints.iter().map(|(_, weight)| weight).sum();
-        joints.sort_unstable_by_key(|(joint, _)| *joint);
-        let position = position.truncate().as_vec3().to_array();
-        let mut binding = Binding { position, ..Binding::default() };
+        let mut binding = Binding { position: position.as_vec3().to_array(), ..Binding::default() };
         for (k, (joint, weight)) in joints.into_iter().enumerate() {
             (binding.joints[k], binding.weights[k]) = (joint, to_f32(weight / sum));
         }
-        self.bind(BoundVertex { binding, alike: 0, without_normal: true, tangent: None }, deltas, &[])
+        let deltas = displaced.chunk_by(|a, b| a.0 / 2 == b.0 / 2).map(|own| {
+            let part = |odd| own.iter().find(|own| own.0 % 2 == odd).map_or([0.0; 3], |own| own.1.as_vec3().to_array());
+            Delta { position: part(0), weight: own[0].0 / 2, normal: part(1), tangent: 0 }
+        });
+        let bound = BoundVertex { binding, alike: 0, without_normal: true, tangent: None };
+        self.bind(bound, &deltas.collect::<Vec<_>>(), &[])
     }
 
     fn joint(&mut self, joint: Joint) -> u32 {
@@ -375,11 +359,6 @@ fn is_moved_by(binding: &Binding, joints: &[Joint], nodes: &[bool]) -> bool {
     moving.filter_map(|(joint, _)| joints[*joint as usize].node).any(|node| nodes[node as usize])
 }
 
-/// Returns each number once, in ascending order.
-fn sorted(numbers: impl Iterator<Item = u32>) -> Vec<u32> {
-    numbers.collect::<BTreeSet<_>>().into_iter().collect()
-}
-
 fn has_tangents(details: &CornerDetails) -> bool {
     details.iter().any(|detail| detail.tangent != Vec3::ZERO)
 }
@@ -390,7 +369,8 @@ pub(super) struct NodeBinder<'a> {
     skin: Option<&'a SkinJoints>,
     /// For each joint of the skin, its index in the palette once it is used.
     skin_joints: Vec<Option<u32>>,
-    binder: &'a mut RigBuilder,
+    /// What the vertices of all nodes are bound to.
+    pub binder: &'a mut RigBuilder,
 }
 
 /// A vertex before it is deformed.
@@ -444,11 +424,6 @@ impl NodeBinder<'_> {
         }
         let rigid = self.binder.joint(Joint { node: attachment.node, ..Joint::default() });
         VertexFrame { rigid: Some(rigid), space: BindingSpace::new(attachment.below * to_node) }
-    }
-
-    /// What all nodes' vertices are bound to.
-    pub(super) fn rig(&mut self) -> &mut RigBuilder {
-        self.binder
     }
 
     /// Returns how many displacements are stored, of all vertices together.

@@ -154,34 +154,20 @@ impl App {
 impl App {
     /// Starts to load a reference surface. Until it is loaded, the one before it stays.
     pub fn open_reference_shape(&mut self, context: &egui::Context, source: Source) {
-        self.read_reference_shape(context, Some(source), true);
+        self.read_reference(context, Some(source), true);
     }
 
-    /// The same for the limit of the mesh's own cage.
-    pub(in crate::app) fn open_own_limit(&mut self, context: &egui::Context) {
-        self.read_reference_shape(context, None, true);
-    }
-
-    /// Reads a reference surface. `is_chosen` says whether deviation is shown once it is read.
-    fn read_reference_shape(&mut self, context: &egui::Context, from: Option<Source>, is_chosen: bool) {
-        let own = self.preparation();
-        let (source, mut preparation) = match from.clone() {
-            Some(source) => (source, own.of_another()),
-            None => (self.source().cloned().unwrap_or_default(), own),
+    /// The same, also for the limit of the mesh's own cage. `is_chosen` says whether deviation is shown once it is read.
+    pub(in crate::app) fn read_reference(&mut self, context: &egui::Context, from: Option<Source>, is_chosen: bool) {
+        let (own, preparation) = (self.source().cloned().unwrap_or_default(), self.preparation());
+        let subdivide = if from.is_some() { Subdivide::File } else { self.own_scheme() };
+        let what = from.as_ref().unwrap_or(&own).title();
+        let wanted = from.clone();
+        let load = move |progress: &Progress| {
+            let found = engine::load_reference(wanted.as_ref(), (&own, &preparation), subdivide, progress);
+            found.map(Arc::new).map_err(|error| error.to_string())
         };
-        preparation.import.subdivide = if from.is_some() { Subdivide::File } else { self.own_scheme() };
-        let (wanted, limits) = (source.clone(), self.jobs.limits);
-        let load = move |progress: &Progress| match ReferenceShape::load(
-            &wanted,
-            preparation.selection(),
-            &limits,
-            progress,
-        ) {
-            Ok(Some(reference_shape)) => Ok(Arc::new(reference_shape)),
-            Ok(None) => Err(format!("{wanted} can't be a reference surface: it has no triangles")),
-            Err(error) => Err(error.to_string()),
-        };
-        let (title, what) = (format!("Loading the reference surface {}", source.title()), source.title());
+        let title = format!("Loading the reference surface {what}");
         let take = move |app: &mut Self, reference_shape| {
             app.reference_shape = Some(Opened::new(from, reference_shape));
             if is_chosen {
@@ -197,7 +183,7 @@ impl App {
         let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.clone());
         let follows = |from: &Option<Source>| from.as_ref().is_none_or(|source| is_turned && source.shape().is_none());
         if let Some(from) = chosen.filter(follows) {
-            self.read_reference_shape(context, from, false);
+            self.read_reference(context, from, false);
         }
     }
 
@@ -213,10 +199,8 @@ impl App {
 
     /// How the mesh's own cage is refined where its limit is the reference surface.
     pub(in crate::app) fn own_scheme(&self) -> Subdivide {
-        match self.preparation().import.subdivide {
-            Subdivide::Loop => Subdivide::Loop,
-            Subdivide::File | Subdivide::Off | Subdivide::CatmullClark => Subdivide::CatmullClark,
-        }
+        let import = self.preparation().import;
+        if import.refines_all() { import.subdivide } else { Subdivide::CatmullClark }
     }
 
     /// The reference surface that distances are measured from: its number, the surface (none for the limit surface), and
@@ -228,8 +212,7 @@ impl App {
             return limit();
         };
         if let Some(chosen) = &self.reference_shape {
-            let own = || "limit of its own cage".to_owned();
-            let name = chosen.from.as_ref().map_or_else(own, Source::title);
+            let name = chosen.from.as_ref().map_or_else(|| "subdivision limit".to_owned(), Source::title);
             return (chosen.generation, Some(chosen.content.clone()), name);
         }
         let is_plain = !self.settings.tessellation.displacement.is_on();

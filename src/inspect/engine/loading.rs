@@ -4,10 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::reference_shape::ReferenceShape;
 use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
+use load::import::Subdivide;
 use load::parts::Part;
 use load::selection::Selection;
 use load::{
@@ -103,12 +105,23 @@ impl Preparation {
             import: self.import,
         }
     }
+}
 
-    /// What of another file is read that is compared with this one: all of it, at the same place.
-    #[must_use]
-    pub fn of_another(&self) -> Self {
-        Self { import: self.import.placement(), limits: self.limits, ..Self::default() }
-    }
+/// Loads the surface that a mesh is compared with: that of another source, at the mesh's place, or without one that of the mesh's own.
+/// `subdivide` says how its polygons are refined.
+///
+/// # Errors
+/// The same as [`ReferenceShape::load`]'s.
+pub fn load_reference(
+    from: Option<&Source>,
+    (mesh, preparation): (&Source, &Preparation),
+    subdivide: Subdivide,
+    progress: &Progress,
+) -> Result<ReferenceShape, LoadError> {
+    let another = Selection { import: preparation.import.placement(), ..Selection::default() };
+    let (source, selected) = from.map_or((mesh, preparation.selection()), |from| (from, another));
+    let selected = Selection { import: Import { subdivide, ..selected.import }, ..selected };
+    ReferenceShape::load(source, selected, &preparation.limits, progress)
 }
 
 /// Reads a mesh, prepares it, and builds its topology. Needs no device.

@@ -8,7 +8,7 @@ use std::path::Path;
 use super::turn::Turn;
 use crate::engine::Preparation;
 use crate::render::Camera;
-use crate::settings::{ColorSource, Declaration, Lighting, Settings, Value, options};
+use crate::settings::{Choice, ColorSource, Declaration, Lighting, Settings, Value, options};
 use geometry::tessellate::{Displacement, Tessellation};
 use load::files::Limits;
 use load::import::Subdivide;
@@ -182,7 +182,7 @@ impl CopiedCommand<'_> {
         }
         if self.animation.is_none() {
             self.reference_shape.iter().for_each(|own| line.option("--reference-surface", named(own)));
-            self.reference_subdivide.iter().for_each(|scheme| line.option("--reference-subdivide", scheme));
+            self.reference_subdivide.iter().for_each(|own| line.option("--reference-subdivide", own.name()));
         }
         self.triangle.into_iter().for_each(|triangle| line.option("--select", triangle));
         if let Some((name, time)) = self.animation {

@@ -1,40 +1,11 @@
-//! The surface that a picture is compared with, and the stats of the distance to it.
-
-use std::sync::Arc;
+//! The stats of the distance to the surface that a picture is compared with.
 
 use serde::Serialize;
 
-use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Rms, WorstPoint};
+use crate::measure::{Accuracy, Angles, DeviationField, Distances, Rms, WorstPoint};
 use crate::reference_shape::ReferenceShape;
 use crate::render::Scale;
 use geometry::near::Interval;
-use geometry::tessellate::Inputs;
-
-/// The surface that a picture is compared with.
-pub enum ReferenceSurface {
-    /// A given or exact surface, with its name.
-    ReferenceShape(String, Arc<ReferenceShape>),
-    /// The limit surface of the tessellation.
-    Limit,
-}
-
-impl ReferenceSurface {
-    /// The surface to compare with what was emitted with these inputs.
-    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
-        match self {
-            Self::ReferenceShape(_, reference_shape) => DeviationTarget::ReferenceShape(reference_shape.clone()),
-            Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
-        }
-    }
-
-    /// The given or exact surface and its name; none for the limit surface.
-    pub fn reference_shape(&self) -> Option<(&str, &ReferenceShape)> {
-        match self {
-            Self::ReferenceShape(name, reference_shape) => Some((name, reference_shape)),
-            Self::Limit => None,
-        }
-    }
-}
 
 /// The distance of everything that was emitted from the reference surface.
 #[derive(Debug, Serialize)]
@@ -71,7 +42,7 @@ struct DistanceStats {
 
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
-    pub(super) fn new((name, shape): (&str, &ReferenceShape), accuracy: &Accuracy, is_whole: bool) -> Self {
+    pub(super) fn new(name: &str, shape: &ReferenceShape, accuracy: &Accuracy, is_whole: bool) -> Self {
         let distances = |distances: Distances, worst: WorstPoint| {
             let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
@@ -81,7 +52,7 @@ impl AccuracyStats {
         Self {
             reference_surface: name.to_owned(),
             diagonal: accuracy.diagonal,
-            reference_step: shape.step(),
+            reference_step: shape.step,
             to_reference: distances(accuracy.to_reference, accuracy.worst_to_reference),
             from_reference: from_reference.map(|(from, worst)| distances(from, worst)),
             max_px: accuracy.worst_px.map(|worst| worst.value),

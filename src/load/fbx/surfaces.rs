@@ -7,7 +7,7 @@ use super::convert::{vec2, vec4};
 use super::materials::{self, Materials, Resolved};
 use super::nodes::Placed;
 use super::skin::Skin;
-use super::vertices::Vertices;
+use super::vertices::{PosedCorner, Vertices};
 use crate::cage_faces::CageFaces;
 use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner};
 use crate::import::{Subdivide, Subdivision};
@@ -143,7 +143,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             reader.creases()?;
         }
         reader.faces.is_hole = false;
-        let rig = reader.binder.as_mut().map(|binder| binder.node.rig());
+        let rig = reader.binder.as_mut().map(|binder| &mut *binder.node.binder);
         reader.faces.end_cage(reader.details, rig, progress)
     }
 
@@ -204,11 +204,11 @@ impl MeshReader<'_, '_, '_> {
     /// Whether clips move the mesh, and joints some of its vertices but not all.
     fn moves_in_part(&mut self) -> bool {
         let Some(skin) = self.vertices.skin.filter(|_| self.binder.is_some()) else { return false };
-        let is_moved = |vertex| {
+        let mut is_moved = |vertex| {
             skin.influences(vertex, &mut self.influences);
             !self.influences.is_empty()
         };
-        let moved = (0..self.mesh.vertices.len()).map(is_moved).filter(|is_moved| *is_moved).count();
+        let moved = (0..self.mesh.vertices.len()).filter(|vertex| is_moved(*vertex)).count();
         moved > 0 && moved < self.mesh.vertices.len()
     }
 
@@ -221,23 +221,13 @@ impl MeshReader<'_, '_, '_> {
             let crease = points.values.get(*index as usize).copied().unwrap_or_default();
             sharp.extend((crease > 0.0).then_some(([corner; 2], to_f32(10.0 * crease))));
         }
-        for (ends, sharpness) in sharp {
-            let mut places = [(Vec3::ZERO, 0); 2];
-            for (place, corner) in places.iter_mut().zip(ends) {
-                let vertex = self.vertices.vertex(corner as usize)?;
-                self.vertices.morphs.of(vertex, &mut self.deltas);
-                self.influences.clear();
-                if let Some(skin) = self.vertices.skin {
-                    skin.influences(vertex, &mut self.influences);
-                }
-                let posed = self.vertices.posed(corner as usize, vertex, &self.influences, &self.deltas);
-                *place = (posed.corner.position, to_u32(vertex));
-            }
-            if let Some(cage) = &mut self.faces.cage {
-                match ends {
-                    [a, b] if a == b => cage.sharpen(places[0], sharpness),
-                    _ => cage.crease(places, sharpness),
-                }
+        for ([a, b], sharpness) in sharp {
+            let places = [self.posed(a as usize)?, self.posed(b as usize)?];
+            let places = places.map(|(vertex, posed, _)| (posed.corner.position, vertex));
+            match &mut self.faces.cage {
+                Some(cage) if a == b => cage.sharpen(places[0], sharpness),
+                Some(cage) => cage.crease(places, sharpness),
+                None => {}
             }
         }
         Ok(())
@@ -282,15 +272,19 @@ impl MeshReader<'_, '_, '_> {
         Ok(resolved)
     }
 
-    /// Reads a corner. Also returns whether its transform mirrors.
-    fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
+    /// Puts a corner into its rest pose. Returns its vertex too, and whether more joints move it than are used.
+    fn posed(&mut self, corner: usize) -> Result<(u32, PosedCorner, bool), ReadError> {
         let vertex = self.vertices.vertex(corner)?;
         self.vertices.morphs.of(vertex, &mut self.deltas);
         self.influences.clear();
-        if let Some(skin) = self.vertices.skin {
-            self.found.many_joints += usize::from(skin.influences(vertex, &mut self.influences));
-        }
-        let mut posed = self.vertices.posed(corner, vertex, &self.influences, &self.deltas);
+        let has_more = self.vertices.skin.is_some_and(|skin| skin.influences(vertex, &mut self.influences));
+        Ok((to_u32(vertex), self.vertices.posed(corner, vertex, &self.influences, &self.deltas), has_more))
+    }
+
+    /// Reads a corner. Also returns whether its transform mirrors.
+    fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
+        let (vertex, mut posed, has_more) = self.posed(corner)?;
+        self.found.many_joints += usize::from(has_more);
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
@@ -305,7 +299,7 @@ impl MeshReader<'_, '_, '_> {
             self.details = Some(table);
         }
         // Where it isn't refined, a vertex may have several corners.
-        let vertex = self.faces.cage.is_some().then_some([to_u32(vertex), 0, 0]);
+        let vertex = self.faces.cage.is_some().then_some([vertex, 0, 0]);
         Ok((NumberedCorner { corner: posed.corner, number, vertex }, mirrors(&posed.linear)))
     }
 
