@@ -268,18 +268,18 @@ impl WeldOption {
 /// The surface that what is emitted is compared with.
 #[derive(Clone, Debug, Default, Args)]
 pub struct ReferenceOption {
-    /// Reference surface that distances and errors are measured from: a mesh file, such as the high-poly original, or a shape. By default
-    /// the exact surface of a shape; for other meshes the surface that the tessellation converges to
+    /// Reference surface that distances and errors are measured from: a mesh file, such as the high-poly original, or a shape.
+    /// By default the exact surface of a shape; for other meshes the surface that the tessellation converges to
     #[arg(long = "reference-surface", value_name = "FILE", value_parser = source())]
     pub reference_shape: Option<Source>,
-    /// Take the polygons of that file, or without --reference-surface those of the mesh's own file, as the cage of a subdivision surface, and
-    /// compare with its limit
+    /// Compare with the limit of the subdivision surface whose cage is made of the polygons of --reference-surface, or without
+    /// that option of those of the mesh's own file
     #[arg(long, value_name = "SCHEME", value_parser = choice::<Subdivide>())]
     pub reference_subdivide: Option<Subdivide>,
 }
 
 impl ReferenceOption {
-    /// Loads the surface that was chosen for a mesh, and returns it with its name, made of that of its source; none if none was chosen.
+    /// Loads the surface that was chosen for a mesh, and returns it with its name, made of that of its source; none if none was.
     pub(crate) fn load(
         &self,
         mesh: &Source,

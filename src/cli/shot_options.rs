@@ -155,15 +155,15 @@ impl ShotOptions {
         Ok((subject, factors_file))
     }
 
-    /// The surface to compare with, and its name: the one that was chosen, or if the overlay is shown the exact surface; none for the limit
-    /// surface.
+    /// The surface to compare with, and its name: the one that was chosen, or if the overlay is shown the exact surface; none for
+    /// the limit surface.
     fn reference_surface(&self, loaded: &Loaded) -> Result<Option<(String, Arc<ReferenceShape>)>, CliError> {
         let Self { surface, picture, reference, .. } = self;
         let moves = surface.animation.is_some();
         let chosen = reference.load(&loaded.source, &loaded.preparation, Source::to_string)?;
         refuse(
             moves && chosen.is_some(),
-            "--reference-surface and --reference-subdivide can't be combined with --animation: the reference surface doesn't move",
+            "--reference-surface and --reference-subdivide can't be combined with --animation: that surface doesn't move",
         )?;
         if chosen.is_some() || picture.0.overlays.colors.source() != ColorSource::ReferenceSurface {
             return Ok(chosen.map(|(name, chosen)| (name, Arc::new(chosen))));

@@ -121,8 +121,8 @@ impl CageFaces {
     }
 
     /// Refines the cage, and gives the corners of each refined face to `add`, with points and normals of the limit surface. `details` are
-    /// those that corners have by their numbers; what clips move is bound to `rig`. A cage that can't be refined stays as it is, and the
-    /// reason is returned.
+    /// those that corners have by their numbers; what clips move is bound to `rig`. A cage that can't be refined stays as it is, and
+    /// the reason is returned.
     ///
     /// # Errors
     /// Those of `add`, and [`MemoryRefused`].
@@ -234,8 +234,8 @@ impl CageFaces {
         Ok(())
     }
 
-    /// What each point is bound to: the first of its corners is, since the others differ from it in their normals alone. A point that is in
-    /// no face is bound to nothing.
+    /// What each point is bound to: what its first corner is, since others differ from that in their normals alone. A point that is
+    /// in no face is bound to nothing.
     fn bindings(&self, details: Option<&DetailTable>) -> Vec<u32> {
         let mut bindings = vec![u32::MAX; self.positions.len()];
         for (&point, at) in self.points.iter().zip(&self.corners).rev() {

@@ -117,8 +117,8 @@ impl<'a> FaceBuilder<'a> {
         }
     }
 
-    /// Adds the refined faces of the cage that was collected. `details` are those of corners, if the reader has them, and `rig` what clips
-    /// move.
+    /// Adds the refined faces of the cage that was collected. `details` are those of corners, if the reader has them, and `rig` what
+    /// clips move.
     ///
     /// # Errors
     /// [`ReadError::TooMany`], [`ReadError::TooLarge`] and [`ReadError::Cancelled`].

@@ -234,9 +234,9 @@ impl RigBuilder {
         rig.reach = Reach::new(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
     }
 
-    /// Binds the points that a cage is refined to, as combinations of what the cage's points are bound to, by the numbers of `cage`: their
-    /// positions, weights and displacements are those of the limit. Of a point's joints the four with the largest weights are used, and its
-    /// normal is computed from the one that its corner gets. Returns the points' numbers.
+    /// Binds the points that a cage is refined to, as combinations of what the cage's points are bound to, by the numbers of `cage`:
+    /// their positions, weights and displacements are those of the limit. Of a point's joints the four with the largest weights are
+    /// used, and its normal is computed from the one that its corner gets. Returns the points' numbers.
     ///
     /// # Errors
     /// [`MemoryRefused`].

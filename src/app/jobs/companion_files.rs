@@ -177,7 +177,7 @@ impl App {
         self.read_companion(context, CompanionFile::ReferenceShape, title, what, load, take);
     }
 
-    /// Loads the reference surface again after the mesh was: the limit of its own cage, and if the mesh was turned or scaled also that of a
+    /// Loads the reference surface again after the mesh was: the limit of its own cage, or if the mesh was turned or scaled a
     /// file.
     pub(in crate::app) fn follow_reference_shape(&mut self, context: &egui::Context, is_turned: bool) {
         let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.clone());

@@ -171,8 +171,8 @@ impl App {
                          converges to.";
             fact(ui, "Reference", &shortened(&name, 20), hover);
             if let Some(step) = reference_shape.as_ref().and_then(|own| own.step) {
-                let hover = "How far the last refinement of the reference surface's cage moved it at most, in object units. About a third \
-                             of that is missing to the limit surface.";
+                let hover = "How far the last refinement of the reference surface's cage moved it at most, in object units. \
+                             About a third of that is missing to the limit surface.";
                 fact(ui, "Last refinement", &format!("{} units", short(step)), hover);
             }
             option_row(ui, &options::DEVIATION_IN, &mut self.settings, "");

@@ -107,8 +107,8 @@ impl Preparation {
     }
 }
 
-/// Loads the surface that a mesh is compared with: that of another source, at the mesh's place, or without one that of the mesh's own.
-/// `subdivide` says how its polygons are refined.
+/// Loads the surface that a mesh is compared with: that of another source, at the mesh's place, or without one that of the mesh's
+/// own. `subdivide` says how its polygons are refined.
 ///
 /// # Errors
 /// The same as [`ReferenceShape::load`]'s.

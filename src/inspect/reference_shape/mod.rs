@@ -98,8 +98,8 @@ pub trait Known: Send + Sync {
 /// A reference surface: the surface that a tessellation should be.
 pub struct ReferenceShape {
     known: Box<dyn Known>,
-    /// How far a cage that was refined is at most from the same one refined once less, in object units. Each refinement moves it about a
-    /// quarter as far as the one before, so about a third of this is missing to the limit surface. `None` for other surfaces.
+    /// How far a cage that was refined is at most from the same one refined once less, in object units. Each refinement moves it
+    /// about a quarter as far as the one before, so about a third of this is missing to the limit. `None` for other surfaces.
     pub step: Option<f64>,
 }
 
@@ -117,12 +117,12 @@ impl ReferenceShape {
         of_shape(shape).map(|exact| Self { known: Box::new(exact), step: None })
     }
 
-    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, with its own normals and refined
-    /// four times where `selected` says that it is refined.
+    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, with its own normals and
+    /// refined four times where `selected` says that it is refined.
     ///
     /// # Errors
-    /// The file can't be read as a mesh, is the cage of a subdivision surface and can't be refined, or has no triangle; or `progress` was
-    /// cancelled.
+    /// The file can't be read as a mesh, is the cage of a subdivision surface and can't be refined, or has no triangle; or
+    /// `progress` was cancelled.
     pub fn load(source: &Source, selected: Selection, limits: &Limits, progress: &Progress) -> Result<Self, LoadError> {
         let (shape, refines_all) = (source.shape(), selected.import.refines_all());
         if let Some(exact) = shape.and_then(Self::from_shape).filter(|_| !refines_all) {

@@ -78,7 +78,7 @@ pub struct Subject {
     /// The light of a file that is still to be uploaded, if the scene doesn't have it already.
     pub environment: Option<Panorama>,
     pub settings: Settings,
-    /// The surface that it is compared with, and its name. Without one, the deviation overlay takes the limit surface of the tessellation.
+    /// The surface that it is compared with, and its name. Without one, the deviation overlay takes the tessellation's limit surface.
     pub reference_surface: Option<(String, Arc<ReferenceShape>)>,
     /// The patch that is outlined.
     pub selected: Option<u32>,

@@ -13,7 +13,7 @@ pub(super) struct AccuracyStats {
     reference_surface: String,
     /// The diagonal of the reference surface's bounding box, in object units.
     diagonal: f64,
-    /// How far the last refinement moved a reference surface that is a refined cage at most, in object units; none for other surfaces.
+    /// How far the last refinement moved a reference surface that is a refined cage at most, in object units; none for others.
     reference_step: Option<f64>,
     /// From what was emitted to the nearest points of the reference surface.
     to_reference: DistanceStats,

@@ -140,8 +140,8 @@ impl Refinement {
         Limit::new(Values::new(self.finest(), self.scheme, refined))
     }
 
-    /// The limit of values that only some points of the cage have, each under a number, such as weights of joints: what isn't zero at each
-    /// refined point, by growing numbers.
+    /// The limit of values that only some points of the cage have, each under a number, such as weights of joints: what isn't zero at
+    /// each refined point, by growing numbers.
     ///
     /// # Panics
     /// If there isn't a list for each point of the cage.
