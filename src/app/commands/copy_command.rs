@@ -66,6 +66,7 @@ impl App {
             size: self.saved_size(choices),
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
             reference_shape: reference_shape.as_ref(),
+            reference_subdivide: self.has_own_limit().then(|| self.own_scheme()),
             left_mesh: left_mesh.as_ref(),
             factors: self.factors_file(),
             lod_shader: self.lod_shader_file().filter(|_| self.uses_lod_shader()),

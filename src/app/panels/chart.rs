@@ -161,17 +161,14 @@ impl App {
 impl ChartBasis {
     /// Says in which respect this differs from `now`; none if they are equal.
     fn other_than(&self, now: &Self) -> Option<&'static str> {
-        if self.document != now.document {
-            Some("another mesh is shown")
-        } else if self.moment != now.moment {
-            Some("another pose is shown")
-        } else if self.reference_shape != now.reference_shape {
-            Some("another reference surface is chosen")
-        } else if (self.camera, self.size) != (now.camera, now.size) {
-            Some("the view has changed")
-        } else {
-            (self.base != now.base).then_some("other settings have changed")
-        }
+        let respects = [
+            (self.document != now.document, "another mesh is shown"),
+            (self.moment != now.moment, "another pose is shown"),
+            (self.reference_shape != now.reference_shape, "another reference surface is chosen"),
+            ((self.camera, self.size) != (now.camera, now.size), "the view has changed"),
+            (self.base != now.base, "other settings have changed"),
+        ];
+        respects.into_iter().find_map(|(differs, why)| differs.then_some(why))
     }
 }
 

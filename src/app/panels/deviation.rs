@@ -161,9 +161,15 @@ impl App {
         }
         let mut clicked = None;
         egui::Grid::new("deviation").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "The surface that distances are measured to: the exact surface of a shape made in code, a file chosen \
-                         under File, or else the surface that the tessellation converges to.";
+            let hover = "The surface that distances are measured to: the exact surface of a shape made in code, a file or the \
+                         limit of the mesh's own cage, chosen under File, or else the surface that the tessellation \
+                         converges to.";
             fact(ui, "Reference", &shortened(&name, 20), hover);
+            if let Some(step) = reference_shape.as_ref().and_then(|own| own.step) {
+                let hover = "How far the last refinement of the reference surface's cage moved it at most, in object units. \
+                             About a third of that is missing to the limit surface.";
+                fact(ui, "Last refinement", &format!("{} units", short(step)), hover);
+            }
             option_row(ui, &options::DEVIATION_IN, &mut self.settings, "");
             for half in SplitSide::BOTH {
                 let surface = self.surface_title(half);

@@ -45,6 +45,11 @@ impl DetailTable {
         self.details.get(number as usize).copied().unwrap_or_default()
     }
 
+    /// Returns the binding of a number; the number itself if there is no such pair.
+    pub fn binding(&self, number: u32) -> u32 {
+        self.bindings.get(number as usize).copied().unwrap_or(number)
+    }
+
     fn grow(&mut self, budget: &Budget) -> Result<(), MemoryRefused> {
         let (count, capacity) = (self.details.len(), self.details.capacity());
         let more = (count / 2).max(64);
