@@ -26,6 +26,8 @@ pub(super) struct Undoable {
     /// How the mesh is prepared, but for the import, which is in the settings.
     pub preparation: Preparation,
     pub companions: [Option<Source>; CompanionFile::ALL.len()],
+    /// Whether the mesh is compared with what it was before its file changed.
+    pub is_with_before: bool,
 }
 
 /// The states before and after the present one.
@@ -113,6 +115,7 @@ impl App {
             settings: self.settings_without_files(),
             preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
             companions: CompanionFile::ALL.map(|companion| self.companion(companion)),
+            is_with_before: self.shows_before(),
         }
     }
 
@@ -133,6 +136,7 @@ impl App {
             for companion in [CompanionFile::ReferenceShape, CompanionFile::LeftMesh, CompanionFile::Factors] {
                 step.companions[companion as usize] = None;
             }
+            step.is_with_before = false;
         });
     }
 
@@ -158,7 +162,7 @@ impl App {
     }
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
-        let Some(Undoable { settings, preparation, companions: files }) = step else { return };
+        let Some(Undoable { settings, preparation, companions: files, is_with_before }) = step else { return };
         use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
         [ReferenceShape, LeftMesh, Matcap, Environment]
             .into_iter()
@@ -174,6 +178,11 @@ impl App {
                 self.close_companion(companion);
                 source.into_iter().for_each(|source| self.open_companion(context, companion, source));
             }
+        }
+        match (self.shows_before(), is_with_before) {
+            (false, true) => _ = self.show_before(),
+            (true, false) => self.close_companion(LeftMesh),
+            (false, false) | (true, true) => {}
         }
         self.put_settings(settings);
         self.parts = Arc::new(preparation.parts.clone());

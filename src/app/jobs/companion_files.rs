@@ -227,17 +227,31 @@ impl App {
     /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.
     pub(in crate::app) fn forget_before(&mut self) {
         self.document.iter_mut().for_each(|document| document.before = None);
-        if self.left_mesh.as_ref().is_some_and(|left| left.from.is_none()) {
+        if self.shows_before() {
             self.close_companion(CompanionFile::LeftMesh);
         }
+        self.history.change_all(|step| step.is_with_before = false);
     }
 
     /// Shows the mesh as it was before its file changed, tessellated as the new one is.
     pub(in crate::app) fn compare_with_before(&mut self) {
-        let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
-        self.settings.left = self.settings.tessellation;
+        if self.show_before().is_some() {
+            self.settings.left = self.settings.tessellation;
+            self.settings.split.get_or_insert(self.viewport.last_split);
+        }
+    }
+
+    /// Whether the left half is for the mesh as it was before its file changed.
+    pub(in crate::app) fn shows_before(&self) -> bool {
+        self.left_mesh.as_ref().is_some_and(|left| left.from.is_none())
+    }
+
+    /// Takes the mesh as it was before its file changed for the left half; none if it hasn't changed.
+    pub(in crate::app) fn show_before(&mut self) -> Option<()> {
+        let before = self.document.as_ref()?.before.clone()?;
+        self.close_companion(CompanionFile::LeftMesh);
         self.left_mesh = Some(Opened::new(None, before));
-        self.settings.split.get_or_insert(self.viewport.last_split);
+        Some(())
     }
 }
 

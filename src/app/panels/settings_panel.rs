@@ -80,7 +80,7 @@ impl App {
                 self.close_companion(CompanionFile::LeftMesh);
             }
             let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
-            if has_before && ui.selectable_label(false, "Before the change on disk").clicked() {
+            if has_before && ui.selectable_label(self.shows_before(), "Before the change on disk").clicked() {
                 self.compare_with_before();
             }
             if ui.selectable_label(false, "Another file…").clicked() {

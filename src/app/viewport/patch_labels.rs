@@ -9,7 +9,6 @@ use crate::app::text::factor;
 use crate::app::widgets::rgb;
 use geometry::tessellate::{factor_side, segments};
 use geometry::view::{ScreenView, project};
-use inspect::render::half_places;
 use inspect::render::layout::FACTOR_COLORS;
 use inspect::settings::SplitSide;
 
@@ -24,13 +23,9 @@ impl App {
     pub(in crate::app) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
         let selected = self.selected_patch().filter(|_| !self.settings.shows_difference());
         let (Some(patch), Some(document)) = (selected, &self.document) else { return };
-        let Some(ScreenView { clip_from_object, viewport }) = self.shown_view() else { return };
+        let Some(ScreenView { clip_from_object, viewport }) = self.shown_view(rect) else { return };
         let Some((_, topology)) = &document.posed() else { return };
-        let [_, right] = half_places(viewport.to_array().map(|side| side as u32), &self.settings);
-        let at = |position| {
-            let px = project(clip_from_object, viewport, position)? + glam::vec2(right.shift as f32, 0.0);
-            Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
-        };
+        let at = |position| project(clip_from_object, viewport, position).map(|at| rect.min + Vec2::new(at.x, at.y));
         let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };
         let extent = Rect::from_points(&[a, b, c]).size().max_elem();
         if extent < LEAST_EXTENT {

@@ -108,12 +108,15 @@ impl App {
                 Some(format!("{} px", short(size)))
             }
             Colors::Deviation => {
-                if self.settings.deviation_in == DeviationUnit::Px {
-                    return None;
-                }
                 let reference = self.yardstick().1?;
                 let point = seen_on_plane(&view, vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5), corners)?;
-                Some(format!("{} units", short(reference.closest(point.as_dvec3()).distance)))
+                let distance = reference.closest(point.as_dvec3()).distance;
+                let px_where_w_is_1 = self.viewport.picture.drawn?.camera.px_where_w_is_1(view.viewport.y);
+                let px = f64::from(px_where_w_is_1 / (clip_from_object * point.extend(1.0)).w);
+                Some(match self.settings.deviation_in {
+                    DeviationUnit::Units => format!("{} units", short(distance)),
+                    DeviationUnit::Px => format!("{} px", short(distance * px)),
+                })
             }
             _ => {
                 let scene = self.document.as_ref()?.scene.half(place.half)?;

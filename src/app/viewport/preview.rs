@@ -5,6 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use glam::{Mat4, Vec3, vec2};
+
 use super::picture::{Picture, PictureRequest};
 use super::preview_pace::PreviewPace;
 use crate::app::jobs::job_list::Jobs;
@@ -14,7 +16,7 @@ use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::ScreenView;
 use gpu::{GpuError, Timing, submit_untimed};
 use inspect::engine::Engine;
-use inspect::render::{Camera, Scene, Target};
+use inspect::render::{Camera, Scene, Target, half_places};
 use inspect::settings::{ColorSource, Colors, Settings, SplitSide, SplitView};
 
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
@@ -316,9 +318,15 @@ impl App {
         Some((PictureRequest { settings, inputs, ..*full }, shape))
     }
 
-    /// The view of what is shown: of a preview, or of the full picture.
-    pub(in crate::app) fn shown_view(&self) -> Option<ScreenView> {
+    /// The view of what is shown, of a preview or of the full picture, as the right half has it in an area of the window. Its size
+    /// is in points.
+    pub(super) fn shown_view(&self, area: egui::Rect) -> Option<ScreenView> {
         let picture = &self.viewport.picture;
-        self.viewport.preview.shown(picture).map(|(drawn, _)| drawn.view).or(picture.seen_from())
+        let drawn = self.viewport.preview.shown(picture).map(|(drawn, _)| drawn.view);
+        let ScreenView { clip_from_object, viewport } = drawn.or(picture.seen_from())?;
+        let [_, right] = half_places(viewport.to_array().map(|side| side as u32), &self.settings);
+        let shift = Mat4::from_translation(Vec3::X * (2.0 * right.shift as f32 / viewport.x));
+        let viewport = vec2(area.width(), area.height());
+        Some(ScreenView { clip_from_object: shift * clip_from_object, viewport })
     }
 }
