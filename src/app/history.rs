@@ -180,7 +180,7 @@ impl App {
             }
         }
         match (self.shows_before(), is_with_before) {
-            (false, true) => _ = self.show_before(),
+            (false, true) => self.compare_with_before(),
             (true, false) => self.close_companion(LeftMesh),
             (false, false) | (true, true) => {}
         }

@@ -35,11 +35,8 @@ impl App {
     pub(in crate::app) fn copy_line(&mut self, context: &egui::Context, command: Option<String>) {
         let Some(command) = command else { return };
         context.copy_text(command.clone());
-        self.commands.copied = Some((command, if self.is_split_with_before() { DRAWS_RIGHT } else { DRAWS_IT }));
-    }
-
-    fn is_split_with_before(&self) -> bool {
-        self.settings.split.is_some() && self.shows_before()
+        let lacks_left = self.settings.split.is_some() && self.shows_before();
+        self.commands.copied = Some((command, if lacks_left { DRAWS_RIGHT } else { DRAWS_IT }));
     }
 
     /// The command that draws what is shown, with these choices, as this camera sees it; none without a mesh. Without an

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
 use crate::app::text::short;
+use crate::app::widgets::list_row;
 use crate::commands::{Action, HEIGHT_IMAGE, Purpose, key_name};
 use geometry::tessellate::Displacement;
 use inspect::settings::options;
@@ -48,11 +49,11 @@ impl App {
 
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
-        let label = ui.label("Height map");
         let shown = heights.as_ref().map_or("None".to_owned(), HeightSource::title);
         let mut chosen = None;
-        let combo = egui::ComboBox::from_id_salt("Height map").selected_text(shown).truncate();
-        let combo = combo.show_ui(ui, |ui| {
+        let hover = "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window becomes the \
+                     height map (--height).";
+        list_row(ui, "Height map", hover, &shown, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
             };
@@ -68,11 +69,6 @@ impl App {
                 self.ask_for(ui.ctx(), Purpose::Heights);
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(
-            "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window becomes the \
-             height map (--height).",
-        );
-        ui.end_row();
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
             self.displace(ui.ctx(), chosen);
         }

@@ -21,8 +21,8 @@ const MANY: usize = 8;
 /// What is done with a part: a place in the list of parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PartAction {
-    Hide(usize),
-    Show(usize),
+    /// Shows it, or hides it.
+    Set(usize, bool),
     /// Shows it alone.
     Solo(usize),
     Frame(usize),
@@ -101,8 +101,7 @@ impl App {
 
     fn act_on_parts(&mut self, parts: &[Part], action: PartAction) {
         match action {
-            PartAction::Hide(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, false),
-            PartAction::Show(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, true),
+            PartAction::Set(part, is_shown) => Arc::make_mut(&mut self.parts).set(&parts[part].name, is_shown),
             PartAction::Solo(part) => {
                 self.parts = Arc::new(ShownParts::alone(&parts[part].name).styled_as(&self.parts));
             }
@@ -147,7 +146,7 @@ fn part_row(ui: &mut egui::Ui, parts: &[Part], number: usize, is_picked: bool) -
         ui.with_layout(layout, |ui| ui.checkbox(&mut is_shown, name).on_hover_text(hover)).inner
     });
     if response.inner.changed() {
-        action = Some(if is_shown { PartAction::Show(number) } else { PartAction::Hide(number) });
+        action = Some(PartAction::Set(number, is_shown));
     }
     (response.inner, action)
 }
@@ -158,8 +157,8 @@ fn part_entries(ui: &mut egui::Ui, parts: &[Part], part: usize) -> Option<PartAc
     let entries = [
         (PartAction::Frame(part), "Frame this part", !is_hidden),
         (PartAction::Solo(part), "Show only this part", true),
-        (PartAction::Hide(part), "Hide this part", !is_hidden),
-        (PartAction::Show(part), "Show this part", is_hidden),
+        (PartAction::Set(part, false), "Hide this part", !is_hidden),
+        (PartAction::Set(part, true), "Show this part", is_hidden),
         (PartAction::ShowAll, "Show all parts", are_hidden),
     ];
     let chosen = |(action, label, is_possible): (_, &str, bool)| {

@@ -6,7 +6,7 @@ use crate::app::jobs::companion_files::LeftMesh;
 use crate::app::jobs::job_list::Work;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
-use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
+use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, file_row, fixed, list_row};
 use crate::commands::{
     Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
 };
@@ -73,9 +73,8 @@ impl App {
 
     /// Which mesh the left half shows.
     fn left_mesh_row(&mut self, ui: &mut egui::Ui) {
-        let label = ui.label("Left mesh");
         let shown = self.left_mesh.as_ref().map_or_else(|| "The same".to_owned(), LeftMesh::title);
-        let combo = egui::ComboBox::from_id_salt("Left mesh").selected_text(shown).truncate().show_ui(ui, |ui| {
+        list_row(ui, "Left mesh", &with_note(LEFT_MESH, "--split-with"), &shown, |ui| {
             if ui.selectable_label(self.left_mesh.is_none(), "The same").clicked() {
                 self.close_companion(CompanionFile::LeftMesh);
             }
@@ -87,8 +86,6 @@ impl App {
                 self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::LeftMesh));
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(with_note(LEFT_MESH, "--split-with"));
-        ui.end_row();
     }
 
     /// What the left half shows.
@@ -104,8 +101,8 @@ impl App {
         }
     }
 
-    /// A section of rows with a label and a control each.
-    fn section(&mut self, ui: &mut egui::Ui, section: Section, rows: impl FnOnce(&mut Self, &mut egui::Ui)) {
+    /// A section of rows with a label and a control or a number each.
+    pub(super) fn section(&mut self, ui: &mut egui::Ui, section: Section, rows: impl FnOnce(&mut Self, &mut egui::Ui)) {
         if self.panels.open.title(ui, section) {
             egui::Grid::new(section.title()).num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| rows(self, ui));
         }
@@ -143,15 +140,8 @@ impl App {
 
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
         if let Some(given) = &self.given {
-            let hover = "These factors take the place of those of LOD.";
-            ui.label("Factors").on_hover_text(hover);
-            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.from.display().to_string());
-            ui.end_row();
-            ui.label("");
-            let button = ui.button("Close the file");
-            let is_over = button.on_hover_text("Closes the file of factors. LOD computes factors again.").clicked();
-            ui.end_row();
-            if is_over {
+            file_row(ui, "Factors", "These factors take the place of those of LOD.", &given.from);
+            if button_row(ui, "Close the file", "Closes the file of factors. LOD computes factors again.") {
                 self.forget_factors();
             }
             return;
@@ -243,9 +233,10 @@ impl App {
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;
-        let label = ui.label("Weld");
         let mut chosen = weld;
-        let combo = egui::ComboBox::from_id_salt("Weld").selected_text(tolerance(weld)).show_ui(ui, |ui| {
+        let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances are \
+                     relative to the bounding diagonal. The list says how many edges each would join.";
+        list_row(ui, "Weld", hover, &tolerance(weld), |ui| {
             ui.selectable_value(&mut chosen, 0.0, "Exact").on_hover_text("Only exactly equal positions are one point.");
             match document.checks.joins.get() {
                 Some(all) => {
@@ -262,11 +253,6 @@ impl App {
                 None => drop(ui.weak("not tried")),
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(
-            "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances are \
-             relative to the bounding diagonal. The list says how many edges each would join.",
-        );
-        ui.end_row();
         if chosen != weld {
             self.prepare(ui.ctx(), |preparation| preparation.weld = chosen);
         }

@@ -115,7 +115,10 @@ impl App {
         self.viewport.picture.fit(&self.painting, &self.engine, size)?;
         self.viewport.picture.land(&self.engine);
         self.keep_left(context)?;
-        self.pose()?;
+        // A picture of another moment that is under way is finished first, so that playing shows pictures even if each takes long.
+        if self.viewport.picture.is_free() {
+            self.pose_now()?;
+        }
         self.follow_file_camera();
         self.mark();
         let Some((wanted, is_whole)) = self.wanted(context, size)? else { return Ok(()) };
@@ -223,12 +226,6 @@ impl App {
             context.request_repaint_after(std::time::Duration::from_millis(30));
         }
         Ok(())
-    }
-
-    /// Poses the scene for the wanted moment, unless a picture of another moment is under way. That one is finished first,
-    /// so that playing shows pictures even if each takes long.
-    fn pose(&mut self) -> Result<(), GpuError> {
-        if self.viewport.picture.is_free() { self.pose_now() } else { Ok(()) }
     }
 
     /// Poses the scene for the wanted moment.

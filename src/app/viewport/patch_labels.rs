@@ -32,11 +32,8 @@ impl App {
             return;
         }
         let middle = ((a.to_vec2() + b.to_vec2() + c.to_vec2()) / 3.0).to_pos2();
-        let corners = (0..).zip([a, b, c]).map(|(k, place)| {
-            let text = format!("{k} {}", letter(self.convention(), k));
-            (place, text, Color32::from_gray(235))
-        });
-        let corners: Vec<_> = corners.collect();
+        let corner = |(k, place)| (place, format!("{k} {}", letter(self.convention(), k)), Color32::from_gray(235));
+        let corners: Vec<_> = (0..).zip([a, b, c]).map(corner).collect();
         let edges = (0..).zip(self.patch_edges(topology, patch, SplitSide::Right)).filter_map(|(i, points)| {
             let [before, after] = [points.get((points.len() - 1) / 2)?, points.get(points.len() / 2)?];
             let place = at((*before + *after) / 2.0)?;

@@ -31,8 +31,6 @@ const TRIANGLES: f32 = 2_000_000.0;
 /// As many triangles that don't depend on the camera are drawn as they are. With others in their place, they would have to be
 /// measured again.
 const KEPT_IN_SOFTWARE: f32 = 40_000.0;
-/// A mesh with more than so many times as many patches gets a mesh of that many triangles in its place.
-const LARGE: f32 = 1.0;
 /// The largest factor of a preview. More can't be seen at its resolution.
 const LARGEST_FACTOR: f32 = 8.0;
 /// The full picture has at most so many times as many px along each axis as a preview.
@@ -227,11 +225,11 @@ fn shape_of(
         return Shape::Same;
     }
     // It stands for the mesh alone, not for another one beside it.
-    if patches > LARGE * most
+    if patches > most
         && document.moment.is_none()
         && (wanted.settings.split.is_none()
             || document.left_of == 0 && wanted.settings.split_view == SplitView::Divider)
-        && document.stand_in.is_made(jobs, context, engine, &document.loaded, (LARGE * most) as usize)
+        && document.stand_in.is_made(jobs, context, engine, &document.loaded, most as usize)
     {
         return Shape::StandIn;
     }
