@@ -61,8 +61,7 @@ impl App {
         let angle = |of: fn(&SeamTurns) -> f64| {
             seams.map_or_else(|| "…".into(), |seams| if seams.edges > 0 { degrees(of(&seams)) } else { "-".into() })
         };
-        let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv \
-                     seam.";
+        let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv seam.";
         fact(ui, "Angle at seams", &angle(|seams| seams.emitted.most), hover);
         let hover = "The largest such angle between the mesh's own normals.";
         fact(ui, "of the mesh", &angle(|seams| seams.source.most), hover);

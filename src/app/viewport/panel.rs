@@ -63,11 +63,11 @@ impl App {
         if framed {
             self.frame();
         }
-        // A picture that the device refused may be half drawn.
-        let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
         let generation = self.document.as_ref().map(|document| document.generation);
         let is_another = self.viewport.picture.shows.zip(generation).is_some_and(|(shown, own)| shown != own);
-        let is_whole = is_whole && !(is_another && self.viewport.picture.cancelled.is_some());
+        // A picture that the device refused may be half drawn.
+        let is_whole =
+            self.viewport.picture.cancelled.is_none() || (self.viewport.picture.drawn.is_some() && !is_another);
         let previewed = self.viewport.preview.shown(&self.viewport.picture).map(|(_, shape)| shape);
         let picture = match previewed {
             Some(_) => self.viewport.preview.picture(),

@@ -159,10 +159,7 @@ impl Preview {
         wanted: &PictureRequest,
         shape: Shape,
     ) -> Result<(), GpuError> {
-        if !count(scene, wanted)? || !self.pace.is_free() {
-            return Ok(());
-        }
-        if self.drawn == Some((*wanted, shape)) {
+        if !count(scene, wanted)? || !self.pace.is_free() || self.drawn == Some((*wanted, shape)) {
             return Ok(());
         }
         let Some((target, _)) = &self.target else { return Ok(()) };

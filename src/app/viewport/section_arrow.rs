@@ -86,8 +86,7 @@ impl App {
             ui.painter().arrow(middle, arrow, stroke);
         }
         let cursor = if response.dragged() { CursorIcon::Grabbing } else { CursorIcon::Grab };
-        let hover = with_note("Drag it to move the section along its axis.", "--section-at");
-        response.on_hover_cursor(cursor).on_hover_text(hover);
+        response.on_hover_cursor(cursor).on_hover_text(with_note("Drag it to move the section.", "--section-at"));
     }
 }
 
