@@ -179,10 +179,8 @@ impl App {
                 source.into_iter().for_each(|source| self.open_companion(context, companion, source));
             }
         }
-        match (self.shows_before(), is_with_before) {
-            (false, true) => self.compare_with_before(),
-            (true, false) => self.close_companion(LeftMesh),
-            (false, false) | (true, true) => {}
+        if self.shows_before() != is_with_before {
+            if is_with_before { self.compare_with_before() } else { self.close_companion(LeftMesh) }
         }
         self.put_settings(settings);
         self.parts = Arc::new(preparation.parts.clone());

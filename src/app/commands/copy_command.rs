@@ -11,8 +11,8 @@ use inspect::shot::{CopiedCommand, Turn};
 use load::{HeightSource, Source};
 
 const DRAWS_IT: &str = "This command draws it without a window:";
-const DRAWS_RIGHT: &str = "This command draws the right half without a window. The left half is left out, because no command can name \
-                           the earlier version of a file:";
+const DRAWS_RIGHT: &str = "This command draws the right half without a window. The left half is left out, because no command can \
+                           name the earlier version of a file:";
 
 impl App {
     /// Copies the command that draws what is shown with these choices, and shows that command in a window.

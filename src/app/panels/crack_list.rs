@@ -111,8 +111,8 @@ impl App {
             return;
         }
         ui.add_space(4.0);
-        let hover = "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these gaps, \
-                     because the edge's segments don't depend on the point.";
+        let hover = "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these \
+                     gaps, because the edge's segments don't depend on the point.";
         ui.horizontal(|ui| {
             marked(ui, Some(T_JUNCTION_COLOR), "T-junctions", hover);
             number(ui, &grouped(junctions.len() as u64));

@@ -234,8 +234,8 @@ impl App {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;
         let mut chosen = weld;
-        let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances are \
-                     relative to the bounding diagonal. The list says how many edges each would join.";
+        let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances \
+                     are relative to the bounding diagonal. The list says how many edges each would join.";
         list_row(ui, "Weld", hover, &tolerance(weld), |ui| {
             ui.selectable_value(&mut chosen, 0.0, "Exact").on_hover_text("Only exactly equal positions are one point.");
             match document.checks.joins.get() {

@@ -127,8 +127,8 @@ impl App {
         let hover = "Patches that are left out because the LOD camera sees only their backs.";
         fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
         let limit = found.map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
-        let hover = "Patches with a factor at the tessellator's maximum: 127 under rows, else 63 or 64. They may need more segments, \
-                     so LOD by error may miss its tolerance there.";
+        let hover = "Patches with a factor at the tessellator's maximum: 127 under rows, else 63 or 64. They may need more \
+                     segments, so LOD by error may miss its tolerance there.";
         fact(ui, "At maximum factor", &limit, hover);
     }
 
@@ -145,7 +145,8 @@ impl App {
         let hover = "Triangles in view with an area below 4.5 px, half of a square with sides of 3 px, and their share of all \
                      triangles in view.";
         marked_fact(ui, WASTE_COLOR, "Below 3 px", &small, hover);
-        let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without tessellation.";
+        let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \
+                     tessellation.";
         marked_fact(ui, WASTE_COLOR, "Below factor 2", &low, hover);
     }
 

@@ -115,7 +115,7 @@ impl App {
         self.viewport.picture.fit(&self.painting, &self.engine, size)?;
         self.viewport.picture.land(&self.engine);
         self.keep_left(context)?;
-        // A picture of another moment that is under way is finished first, so that playing shows pictures even if each takes long.
+        // A picture that is under way is finished first, so that playing shows pictures even if each takes long.
         if self.viewport.picture.is_free() {
             self.pose_now()?;
         }
@@ -411,7 +411,7 @@ impl App {
     }
 }
 
-/// What can be dragged in the picture, where `at`, from 0 to 1, follows. Screen readers say that in percent, and may ask for another
+/// What can be dragged in the picture, which `at`, from 0 to 1, follows. Screen readers say it in percent, and may ask for another
 /// one, which is returned.
 pub(super) fn handle(ui: &egui::Ui, reach: egui::Rect, name: &str, at: f32) -> (egui::Response, Option<f32>) {
     use egui::accesskit::{Action, ActionData};

@@ -313,8 +313,8 @@ impl App {
         Some((PictureRequest { settings, inputs, ..*full }, shape))
     }
 
-    /// The view of what is shown, of a preview or of the full picture, as the right half has it in an area of the window. Its size
-    /// is in points.
+    /// The view of what is shown, of a preview or of the full picture, as the right half has it in an area of the window. Its
+    /// size is in points.
     pub(super) fn shown_view(&self, area: egui::Rect) -> Option<ScreenView> {
         let picture = &self.viewport.picture;
         let drawn = self.viewport.preview.shown(picture).map(|(drawn, _)| drawn.view);

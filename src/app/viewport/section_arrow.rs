@@ -8,10 +8,11 @@ use crate::app::App;
 use crate::commands::with_note;
 use geometry::view::ScreenView;
 
-/// How long the arrow is, and how far beside it it can be grabbed, in points.
+/// How long the arrow is, and how far beside it one can grab it, in points.
 const LENGTH: f32 = 44.0;
 const REACH: f32 = 7.0;
-/// A way shorter than this, in points, is seen from its end: the arrow is then upright, and drags as if the way were so long.
+/// A way that looks shorter than the first, in points, is seen from its end. The arrow is then upright, and the way as long as the
+/// second.
 const END_ON: f32 = 24.0;
 const UPRIGHT: f32 = 200.0;
 
@@ -58,12 +59,12 @@ impl App {
         let (Some(axis), Some(document)) = (self.settings.section, &self.document) else { return };
         let Some(view) = self.shown_view(picture) else { return };
         let (bounds, at) = (&document.scene.bounds, self.settings.section_at);
-        let center = bounds.center();
-        let ends = [bounds.min, bounds.max].map(|end| center + (end - center) * axis.direction().abs());
+        let ends =
+            [bounds.min, bounds.max].map(|end| bounds.center() + (end - bounds.center()) * axis.direction().abs());
         let Some(way) = Way::new(&view, ends, at) else { return };
         let arrow = -LENGTH * axis.direction().element_sum() * way.along;
         let (middle, arrow) = (picture.min + egui::vec2(way.middle.x, way.middle.y), egui::vec2(arrow.x, arrow.y));
-        if !picture.contains(middle) {
+        if !picture.contains(middle) && !ui.ctx().egui_is_using_pointer() {
             return;
         }
         let (response, asked) =
@@ -71,9 +72,8 @@ impl App {
         if response.drag_started() {
             ui.data_mut(|data| data.insert_temp(response.id, at));
         }
-        let grabbed =
-            ui.data(|data| data.get_temp(response.id)).filter(|_| response.dragged_by(PointerButton::Primary));
-        let dragged = grabbed.zip(response.total_drag_delta()).and_then(|(from, dragged)| {
+        let from = ui.data(|data| data.get_temp(response.id)).filter(|_| response.dragged_by(PointerButton::Primary));
+        let dragged = from.zip(response.total_drag_delta()).and_then(|(from, dragged)| {
             let way = Way::new(&view, ends, from)?;
             Some((from + way.moved(vec2(dragged.x, dragged.y).dot(way.along))).clamp(0.0, 1.0))
         });
