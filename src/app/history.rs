@@ -27,6 +27,8 @@ pub(super) struct Undoable {
     pub companions: [Option<Source>; CompanionFile::ALL.len()],
     /// Whether the mesh is compared with the limit of its own cage.
     pub own_limit: bool,
+    /// Whether the mesh is compared with what it was before its file changed.
+    pub is_with_before: bool,
 }
 
 /// The states before and after the present one.
@@ -115,6 +117,7 @@ impl App {
             preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
             companions: CompanionFile::ALL.map(|companion| self.companion(companion)),
             own_limit: self.has_own_limit(),
+            is_with_before: self.shows_before(),
         }
     }
 
@@ -135,6 +138,7 @@ impl App {
             for companion in [CompanionFile::ReferenceShape, CompanionFile::LeftMesh, CompanionFile::Factors] {
                 step.companions[companion as usize] = None;
             }
+            step.is_with_before = false;
         });
     }
 
@@ -160,7 +164,9 @@ impl App {
     }
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
-        let Some(Undoable { settings, preparation, companions: files, own_limit }) = step else { return };
+        let Some(Undoable { settings, preparation, companions: files, own_limit, is_with_before }) = step else {
+            return;
+        };
         use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
         [ReferenceShape, LeftMesh, Matcap, Environment]
             .into_iter()
@@ -182,6 +188,9 @@ impl App {
                 self.close_companion(companion);
                 source.into_iter().for_each(|source| self.open_companion(context, companion, source));
             }
+        }
+        if self.shows_before() != is_with_before {
+            if is_with_before { self.compare_with_before() } else { self.close_companion(LeftMesh) }
         }
         self.put_settings(settings);
         let preparation = Preparation { import: settings.import, ..preparation };

@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::job_list::Work;
 use crate::app::App;
+use crate::app::text::file_name;
 use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
@@ -59,11 +60,6 @@ impl LeftMesh {
     pub(crate) fn title(&self) -> String {
         self.from.as_ref().map_or_else(|| "before the change".to_owned(), Source::title)
     }
-}
-
-/// The file's name without its folder.
-pub(crate) fn file_name(path: &Path) -> String {
-    shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())))
 }
 
 /// The path from the root, or as it is without a working folder.
@@ -249,17 +245,24 @@ impl App {
     /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.
     pub(in crate::app) fn forget_before(&mut self) {
         self.document.iter_mut().for_each(|document| document.before = None);
-        if self.left_mesh.as_ref().is_some_and(|left| left.from.is_none()) {
+        if self.shows_before() {
             self.close_companion(CompanionFile::LeftMesh);
         }
+        self.history.change_all(|step| step.is_with_before = false);
     }
 
     /// Shows the mesh as it was before its file changed, tessellated as the new one is.
     pub(in crate::app) fn compare_with_before(&mut self) {
         let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
+        self.close_companion(CompanionFile::LeftMesh);
         self.settings.left = self.settings.tessellation;
         self.left_mesh = Some(Opened::new(None, before));
         self.settings.split.get_or_insert(self.viewport.last_split);
+    }
+
+    /// Whether the left half is for the mesh as it was before its file changed.
+    pub(in crate::app) fn shows_before(&self) -> bool {
+        self.left_mesh.as_ref().is_some_and(|left| left.from.is_none())
     }
 }
 

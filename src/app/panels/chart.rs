@@ -174,20 +174,10 @@ impl ChartBasis {
 
 /// The settings without those that the chart varies, which are set to their defaults.
 fn base(settings: &Settings) -> Settings {
-    let Tessellation { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
-        Tessellation::default();
-    let whole = whole(settings);
-    let tried = Tessellation {
-        surface,
-        normals,
-        partitioning,
-        lod,
-        factor,
-        pixels,
-        tolerance,
-        near,
-        far,
-        ..whole.tessellation
-    };
-    whole.with(tried)
+    let (mut base, usual) = (whole(settings), Tessellation::default());
+    let own = &mut base.tessellation;
+    (own.surface, own.normals, own.partitioning) = (usual.surface, usual.normals, usual.partitioning);
+    (own.lod, own.factor, own.pixels, own.tolerance) = (usual.lod, usual.factor, usual.pixels, usual.tolerance);
+    (own.near, own.far) = (usual.near, usual.far);
+    base
 }

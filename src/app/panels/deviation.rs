@@ -8,7 +8,7 @@ use crate::app::jobs::measure_job::MeasureError;
 use crate::app::panels::option_rows::option_row;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
-use crate::app::widgets::{fact, number, swatch};
+use crate::app::widgets::{fact, marked, number};
 use geometry::tessellate::Inputs;
 use geometry::view::project;
 use inspect::gates::Spot;
@@ -214,10 +214,7 @@ impl App {
         fact(ui, "", &text(self.deviation_px(half), "px"), hover);
         let hover = "Root mean square of the distance over the area that is shown, in object units.";
         fact(ui, "RMS", &text(found.map(|found| found.rms), "units"), hover);
-        ui.horizontal(|ui| {
-            swatch(ui, WORST_COLOR);
-            ui.label("Worst point").on_hover_text("The point where the distance is largest. A click frames it.");
-        });
+        marked(ui, Some(WORST_COLOR), "Worst point", "The point where the distance is largest. A click frames it.");
         let worst = found.and_then(|found| found.worst);
         let column = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let text = worst.map_or_else(|| "…".into(), |worst| format!("in patch {}", worst.patch));

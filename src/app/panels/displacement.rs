@@ -53,7 +53,7 @@ impl App {
         let mut chosen = None;
         let hover = "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window \
                      becomes the height map (--height).";
-        list_row(ui, "Height map", shown, hover, |ui| {
+        list_row(ui, "Height map", hover, &shown, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
             };
