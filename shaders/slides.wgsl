@@ -21,7 +21,7 @@ fn load_seen(patch_index: u32) -> SeenPatch {
             corner_direction(patch_index, 1u),
             corner_direction(patch_index, 2u),
         );
-        seen.relief = seen_relief(params.view, seen.scale, directions, params.height_scale, reliefs[patch_index]);
+        seen.relief = seen_relief(params.view, seen.scale, directions, patch_scale(patch_index), reliefs[patch_index]);
     }
     return seen;
 }

@@ -48,7 +48,7 @@ pub(crate) use adapters::AdapterOption;
 pub(crate) use animation::AnimationOption;
 pub(crate) use factors_option::FactorsOption;
 pub(crate) use lod_shader_option::LodShaderOption;
-use output_guard::{file_of, file_of_heights, keep_apart};
+use output_guard::{file_of, files_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
 pub(crate) use reference_shape::ReferenceSurfaceOption;
@@ -295,6 +295,9 @@ fn make_folder(folder: &Path) -> Result<(), CliError> {
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
     let loaded = inspect::engine::load(source, preparation, &Progress::default())?;
     warn(&loaded.warnings);
+    if preparation.heights.is_none() && loaded.mesh.heights.is_some() {
+        note("the file has height images; --displacement on displaces by them");
+    }
     Ok(loaded)
 }
 

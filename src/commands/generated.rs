@@ -147,7 +147,9 @@ fn mesh() -> Vec<Command> {
         Command::new(Preparing::CreaseBand(0.0), "Crease band: Off")
             .text("Leaves creases as the mesh has them.")
             .needs(&[Need::Document]),
-        Command::new(Preparing::NoHeights, "Height map: None").text("Removes the height map.").needs(&[Need::Document]),
+        Command::new(Preparing::NoHeights, "Height map: None")
+            .text("Removes the height map. What the file itself gives its materials stays.")
+            .needs(&[Need::Document]),
         Command::new(Preparing::HeightsFromMaterials, "Height map: Material")
             .text("Displaces the mesh by the brightness of each material's base colour image.")
             .needs(&[Need::Document]),

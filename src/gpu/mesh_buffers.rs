@@ -2,7 +2,7 @@
 
 use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
-use super::relief_buffers::{ReliefBuffers, shares};
+use super::relief_buffers::{ReliefBuffers, height_maps, shares};
 use super::{Gpu, GpuError};
 use geometry::mesh::{CurveItems, Curves, Dominance, Mesh, Sharing, Topology, patch_reliefs};
 
@@ -32,6 +32,8 @@ pub struct MeshBuffers {
     pub shares: wgpu::Buffer,
     /// What LOD by error knows of the heights over each patch: a [`super::layout::PatchRelief`]. Empty without heights.
     pub reliefs: wgpu::Buffer,
+    /// What is known of every height image beside its pixels: a [`super::layout::HeightMap`].
+    pub maps: wgpu::Buffer,
     /// None without heights.
     pub relief: Option<ReliefBuffers>,
     pub sharing: Sharing,
@@ -74,6 +76,7 @@ impl MeshBuffers {
             search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 1)?,
             shares: filled(gpu, "shares", &all_shares)?,
             reliefs: filled(gpu, "reliefs", &patch_reliefs(heights, mesh, topology))?,
+            maps: height_maps(gpu, heights),
             relief,
             sharing,
             point_count: topology.points.len() as u32,

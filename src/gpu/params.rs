@@ -28,6 +28,8 @@ pub(super) fn params_of(
         radius: inputs.view.radius,
     };
     let heights = tessellate::displacing_heights(mesh, inputs);
+    let amount =
+        heights.filter(|heights| heights.follow_settings()).map(|heights| tessellate::usual_amount(heights, inputs));
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
         factor: if reads.factor { inputs.tessellation.factor } else { 0.0 },
@@ -49,8 +51,8 @@ pub(super) fn params_of(
         alpha: if inputs.tessellation.surface.is_phong() { inputs.tessellation.alpha } else { 0.0 },
         normals: inputs.tessellation.normals as u32,
         displacement: heights.map_or(0, |_| inputs.tessellation.displacement as u32),
-        height_scale: heights.map_or(0.0, |heights| tessellate::height_units(heights, inputs)),
-        midlevel: heights.map_or(0.0, |_| inputs.tessellation.midlevel),
+        height_scale: amount.map_or(0.0, |amount| amount.scale),
+        midlevel: amount.map_or(0.0, |amount| amount.midlevel),
         _pad: [0; 3],
     }
 }

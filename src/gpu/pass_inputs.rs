@@ -99,7 +99,7 @@ impl<'a> PassInputs<'a> {
             "search_workgroups" => &mesh.search_workgroups,
             "shares" => &mesh.shares,
             "reliefs" => &mesh.reliefs,
-            "maps" => &self.images?.maps,
+            "maps" => &mesh.maps,
             "part_starts" => &relief?.part_starts,
             "parts" => &relief?.parts,
             "factor_starts" => &relief?.factor_starts,

@@ -12,8 +12,6 @@ pub const HEIGHTS_ACROSS: u32 = 4096;
 /// A mesh's height images, all mip levels of all of them one after another in the rows of one texture.
 pub(crate) struct HeightImages {
     pub view: wgpu::TextureView,
-    /// A [`HeightMap`] for each image.
-    pub maps: wgpu::Buffer,
     /// Bytes that this value uploaded; 0 if it shares another's.
     bytes: u64,
 }
@@ -21,13 +19,13 @@ pub(crate) struct HeightImages {
 impl HeightImages {
     /// The same images for another tessellator; nothing is uploaded again.
     pub(crate) fn shared(&self) -> Self {
-        Self { view: self.view.clone(), maps: self.maps.clone(), bytes: 0 }
+        Self { view: self.view.clone(), bytes: 0 }
     }
 
     /// # Errors
     /// They are larger than the adapter's textures.
     pub(crate) fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {
-        let texels: u64 = heights.maps.iter().map(|map| map.heights.len() as u64).sum();
+        let texels = heights.bytes() / 4;
         let rows = texels.div_ceil(u64::from(HEIGHTS_ACROSS)).max(1);
         let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
         if rows > limit {
@@ -35,12 +33,11 @@ impl HeightImages {
             return Err(GpuError::TooLarge { what: "height images", bytes: 4 * texels, limit });
         }
         let rows = rows as u32;
-        let mut table = [HeightMap { size: [1, 1], levels: 1, ..bytemuck::Zeroable::zeroed() }; MAX_MAPS];
         let mut all: Vec<f32> = Vec::with_capacity((rows * HEIGHTS_ACROSS) as usize);
-        for (entry, map) in table.iter_mut().zip(&heights.maps) {
-            let (start, repeats) = (all.len() as u32, u32::from(map.repeats));
-            *entry = HeightMap { size: map.size, levels: map.levels, start, repeats, ..*entry };
-            all.extend_from_slice(&map.heights);
+        for (map, start) in heights.maps.iter().zip(starts(&heights.maps)) {
+            if start as usize == all.len() {
+                all.extend_from_slice(&map.heights);
+            }
         }
         all.resize((rows * HEIGHTS_ACROSS) as usize, 0.0);
         Ok(Self {
@@ -51,7 +48,6 @@ impl HeightImages {
                 wgpu::TextureFormat::R32Float,
                 bytemuck::cast_slice(&all),
             ),
-            maps: uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table)),
             bytes: 4 * all.len() as u64,
         })
     }
@@ -59,6 +55,29 @@ impl HeightImages {
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
+}
+
+/// Where the pixels of each map begin in the list of all. Maps with the same pixels have one place.
+fn starts(maps: &[geometry::mesh::HeightMap]) -> Vec<u32> {
+    let (mut starts, mut end) = (Vec::with_capacity(maps.len()), 0);
+    for (index, map) in maps.iter().enumerate() {
+        let known = maps[..index].iter().position(|other| other.shares_pixels(map));
+        starts.push(known.map_or(end, |known| starts[known]));
+        end += if known.is_none() { map.heights.len() as u32 } else { 0 };
+    }
+    starts
+}
+
+/// A [`HeightMap`] for each image.
+pub(crate) fn height_maps(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
+    let mut table = [HeightMap { size: [1, 1], levels: 1, ..bytemuck::Zeroable::zeroed() }; MAX_MAPS];
+    let maps = heights.map_or(&[][..], |heights| &heights.maps);
+    for ((entry, map), start) in table.iter_mut().zip(maps).zip(starts(maps)) {
+        let (scale, midlevel) = map.amount.map_or((0.0, 0.0), |amount| (amount.scale, amount.midlevel));
+        let (repeats, has_amount) = (u32::from(map.repeats), u32::from(map.amount.is_some()));
+        *entry = HeightMap { size: map.size, levels: map.levels, start, repeats, has_amount, scale, midlevel };
+    }
+    uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table))
 }
 
 /// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves by a [`Sharing`](geometry::mesh::Sharing).

@@ -50,9 +50,10 @@ impl App {
             self.reference_shape.as_ref().map(|reference_shape| absolute_source(&reference_shape.source));
         let left_mesh = self.left_mesh.as_ref().and_then(|left| left.source.as_ref()).map(absolute_source);
         let mut preparation = document.loaded.preparation.clone();
-        if let Some(HeightSource::File(path)) = &mut preparation.heights {
-            *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone());
+        if preparation.heights.is_none() && self.has_heights() {
+            preparation.heights = Some(HeightSource::Model);
         }
+        preparation.heights.iter_mut().for_each(HeightSource::make_absolute);
         let settings = self.saved_settings_of(theme, choices);
         let px = |size: glam::Vec2| size.to_array().map(|side| side as u32);
         let frozen = self.viewport.frozen.as_ref();

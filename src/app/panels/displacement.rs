@@ -6,6 +6,8 @@ use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
 use crate::app::text::short;
 use crate::commands::{Action, HEIGHT_IMAGE, Purpose, key_name};
+use geometry::mesh::{HeightAmount, HeightMap, Material};
+use geometry::names::shown;
 use geometry::tessellate::Displacement;
 use inspect::settings::options;
 use load::environment_file::is_environment;
@@ -35,11 +37,11 @@ impl App {
     }
 
     /// Adapts displacement to a mesh that was just loaded: on if it is the first with heights, off without heights.
-    pub(in crate::app) fn take_heights(&mut self, before: Option<&HeightSource>) {
-        self.settings.tessellation.displacement = match (self.has_heights(), before) {
-            (true, Some(_)) => return,
-            (has_heights, _) => Displacement::usual(has_heights),
-        };
+    pub(in crate::app) fn take_heights(&mut self, had_heights: bool) {
+        let has_heights = self.has_heights();
+        if !(has_heights && had_heights) {
+            self.settings.tessellation.displacement = Displacement::usual(has_heights);
+        }
     }
 
     pub(in crate::app) fn has_heights(&self) -> bool {
@@ -49,14 +51,20 @@ impl App {
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
         let label = ui.label("Height map");
-        let shown = heights.as_ref().map_or("None".to_owned(), HeightSource::title);
+        let (of_file, hover) = match &self.document.as_ref().map(|document| document.loaded.mesh.clone()) {
+            Some(mesh) if mesh.materials.iter().any(|material| material.height.is_some()) => {
+                ("As the file says", "The height images that the file gives its materials.")
+            }
+            _ => ("None", "The surface isn't displaced."),
+        };
+        let shown = heights.as_ref().map_or(of_file.to_owned(), HeightSource::title);
         let mut chosen = None;
         let combo = egui::ComboBox::from_id_salt("Height map").selected_text(shown).truncate();
         let combo = combo.show_ui(ui, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
             };
-            if entry("None", heights.is_none(), "The surface isn't displaced.") {
+            if entry(of_file, heights.is_none(), hover) {
                 chosen = Some(None);
             }
             let is_material = heights == Some(HeightSource::Materials);
@@ -68,10 +76,11 @@ impl App {
                 self.ask_for(ui.ctx(), Purpose::Heights);
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(
+        combo.response.labelled_by(label.id).on_hover_text(format!(
             "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window becomes the \
-             height map (--height).",
-        );
+             height map (--height).{}",
+            self.amounts(),
+        ));
         ui.end_row();
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
             self.displace(ui.ctx(), chosen);
@@ -79,6 +88,27 @@ impl App {
         if self.has_heights() {
             self.displacement_rows(ui);
         }
+    }
+
+    /// Names the first few materials with a height image, and how far each moves the surface if the settings don't say it.
+    fn amounts(&self) -> String {
+        const NAMED: usize = 8;
+        let Some(document) = &self.document else { return String::new() };
+        let mesh = &document.loaded.mesh;
+        let map = |index| mesh.heights.as_deref().and_then(|heights| heights.maps.get(heights.map_of(index)? as usize));
+        let displaced = mesh.materials.iter().enumerate().filter_map(|(index, own)| Some((own, map(index)?)));
+        let line = |(material, map): (&Material, &HeightMap)| match map.amount {
+            None => format!("\n{}: as far as the scale says", shown(&material.name)),
+            Some(HeightAmount { scale, midlevel }) => {
+                let [scale, midlevel] = [scale, midlevel].map(|number| short(f64::from(number)));
+                format!("\n{}: {scale} object units, midlevel {midlevel}", shown(&material.name))
+            }
+        };
+        let mut lines: Vec<_> = displaced.map(line).collect();
+        let more = lines.len().saturating_sub(NAMED);
+        lines.truncate(NAMED);
+        lines.extend((more > 0).then(|| format!("\nand {more} more materials")));
+        lines.concat()
     }
 
     pub(in crate::app) fn toggle_displacement(&mut self) {
@@ -95,13 +125,17 @@ impl App {
 
     fn displacement_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
+        let follows_settings = heights.as_ref().is_some_and(|heights| heights.follow_settings());
         let radius = heights.map_or(0.0, |heights| heights.radius);
         let settings = &mut self.settings;
         option_row(ui, &options::DISPLACEMENT, settings, key_name(&Action::ToggleDisplacement));
-        let units = short(f64::from(settings.tessellation.height_scale * radius));
-        let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
-        option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);
-        option_row(ui, &options::MIDLEVEL, settings, "");
+        // Otherwise each image has a scale and a midlevel of its own.
+        if follows_settings {
+            let units = short(f64::from(settings.tessellation.height_scale * radius));
+            let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
+            option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);
+            option_row(ui, &options::MIDLEVEL, settings, "");
+        }
         option_row(ui, &options::NORMAL_MAPS, settings, "");
     }
 }

@@ -1,15 +1,18 @@
-//! Height images for displacement. Each is a pyramid of levels, so that a sample can cover an area that suits the
-//! triangles.
+//! Height images for displacement, one for each material or one for all. Each is a pyramid of levels, so that a sample can cover an
+//! area that suits the triangles.
 
 mod pyramid;
 mod relief;
 
 pub use relief::{PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use glam::Vec2;
 
 use super::Mesh;
-use crate::casts::to_f32;
+use crate::casts::{to_f32, to_u32};
 use crate::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
@@ -17,6 +20,24 @@ pub const MAX_KEPT: u32 = 4096;
 
 /// The greatest number of maps of a mesh, for which the shaders have room.
 pub const MAX_MAPS: usize = 256;
+
+/// How far heights move the surface: by `scale` * (height - `midlevel`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightAmount {
+    /// How far white is above black, in object units.
+    pub scale: f32,
+    /// The height that stays where it is.
+    pub midlevel: f32,
+}
+
+impl HeightAmount {
+    /// The amount by which a height that is multiplied by `factor` and then has `offset` added moves the surface, both in object
+    /// units; none if that isn't finite, or doesn't depend on the height.
+    pub fn from_factor(factor: f32, offset: f32) -> Option<Self> {
+        let amount = Self { scale: factor, midlevel: -offset / factor };
+        (factor != 0.0 && factor.is_finite() && amount.midlevel.is_finite()).then_some(amount)
+    }
+}
 
 /// The heights of one image, from 0 (black) to 1 (white), in levels. Each level is half as wide and high as the one
 /// before, down to a single pixel.
@@ -30,8 +51,12 @@ pub struct HeightMap {
     /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
     /// continue.
     pub repeats: bool,
-    /// The pixels of all levels, one level after another, each row by row from the top.
-    pub heights: Vec<f32>,
+    /// How far it moves the surface; none if the settings say so.
+    pub amount: Option<HeightAmount>,
+    /// The least and the greatest height.
+    pub range: [f32; 2],
+    /// The pixels of all levels, one level after another, each row by row from the top. Maps that differ in the rest share them.
+    pub heights: Arc<Vec<f32>>,
 }
 
 /// The height maps that displace a mesh.
@@ -43,8 +68,6 @@ pub struct Heights {
     pub of_material: Vec<Option<u32>>,
     /// Whether each map is the brightness of its material's base colour.
     pub are_of_colors: bool,
-    /// The least and the greatest height in all maps.
-    pub range: [f32; 2],
     /// The mesh's bounding radius at rest, in object units. The scale of displacement is a multiple of it.
     pub radius: f32,
     /// For each of the mesh's corners, the sum of the angles, in radians, of the triangles there, in the mesh at rest.
@@ -57,6 +80,22 @@ impl HeightMap {
     /// Returns the width and height of a level, in px.
     pub fn level_size(&self, level: u32) -> [u32; 2] {
         self.size.map(|side| (side >> level).max(1))
+    }
+
+    /// Returns the same image with an amount of its own.
+    pub fn with_amount(&self, amount: Option<HeightAmount>) -> Self {
+        Self { amount, ..self.clone() }
+    }
+
+    /// Whether both have the same pixels, without comparing them.
+    pub fn shares_pixels(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.heights, &other.heights)
+    }
+
+    /// Returns the greatest distance that it moves a point by, in object units, where the settings say `usual`.
+    pub fn reach(&self, usual: HeightAmount) -> f32 {
+        let HeightAmount { scale, midlevel } = self.amount.unwrap_or(usual);
+        scale.abs() * self.range.map(|height| (height - midlevel).abs()).into_iter().fold(0.0, f32::max)
     }
 }
 
@@ -93,23 +132,40 @@ impl Heights {
                 map.repeats |= uvs.clone().any(beyond);
             }
         }
-        let mut range = [f32::INFINITY, f32::NEG_INFINITY];
-        for map in &maps {
-            let [width, height] = map.size;
-            for &own in &map.heights[..(width * height) as usize] {
-                range = [range[0].min(own), range[1].max(own)];
-            }
-        }
         let reliefs = relief::reliefs(mesh, &maps, &of_material, progress)?;
         Ok(Self {
             maps,
             of_material,
             are_of_colors: false,
-            range,
             radius: mesh.bounds().radius(),
             angles: angles(mesh),
             reliefs,
         })
+    }
+
+    /// Uses the maps that materials have; none without any. Materials whose maps are equal share one.
+    ///
+    /// # Errors
+    /// [`Cancelled`] when `progress` says so.
+    pub fn of_materials(
+        mesh: &Mesh,
+        own: &[Option<HeightMap>],
+        progress: &Progress,
+    ) -> Result<Option<Self>, Cancelled> {
+        let mut maps: Vec<HeightMap> = Vec::new();
+        let mut number = |own: &HeightMap| {
+            let is_same = |map: &HeightMap| map.shares_pixels(own) && map.amount == own.amount;
+            let known = maps.iter().position(is_same);
+            to_u32(known.unwrap_or_else(|| {
+                maps.push(own.clone());
+                maps.len() - 1
+            }))
+        };
+        let of_material: Vec<_> = own.iter().map(|own| own.as_ref().map(&mut number)).collect();
+        if maps.is_empty() {
+            return Ok(None);
+        }
+        Self::new(mesh, maps, of_material, progress).map(Some)
     }
 
     /// Returns the number of a material's image, if it has one.
@@ -122,15 +178,27 @@ impl Heights {
         &self.maps
     }
 
-    /// Returns the greatest distance that a point can be moved by, as a multiple of the scale.
-    pub fn reach(&self, midlevel: f32) -> f32 {
-        (self.range[0] - midlevel).abs().max((self.range[1] - midlevel).abs())
+    /// Returns the greatest distance that a point can be moved by, in object units, where the settings say `usual`.
+    pub fn reach(&self, usual: HeightAmount) -> f32 {
+        self.maps.iter().map(|map| map.reach(usual)).fold(0.0, f32::max)
+    }
+
+    /// Whether the settings say how far some image moves the surface.
+    pub fn follow_settings(&self) -> bool {
+        self.maps.iter().any(|map| map.amount.is_none())
     }
 
     /// Returns the size of all maps, in bytes.
     pub fn bytes(&self) -> u64 {
-        self.maps.iter().map(|map| size_of_val(&map.heights[..]) as u64).sum()
+        bytes_of_maps(self.maps.iter())
     }
+}
+
+/// Returns the size of maps in bytes. Pixels that several share count once.
+pub fn bytes_of_maps<'a>(maps: impl Iterator<Item = &'a HeightMap>) -> u64 {
+    let known: HashMap<*const Vec<f32>, u64> =
+        maps.map(|map| (Arc::as_ptr(&map.heights), size_of_val(&map.heights[..]) as u64)).collect();
+    known.values().sum()
 }
 
 /// Returns how many bytes [`Heights`] take for a mesh beside their maps: for angles, and for bounds over triangles while they are made.
@@ -159,7 +227,33 @@ mod tests {
     fn a_point_moves_by_the_height_that_differs_most_from_the_middle() {
         let map = HeightMap::new([4, 4], (0..16).map(|i| if i < 8 { 0.25 } else { 1.0 }).collect());
         let heights = Heights::everywhere(&Shape::Torus.build(), map);
-        assert_eq!([0.0, 0.5, 0.75, 1.0].map(|midlevel| heights.reach(midlevel)), [1.0, 0.5, 0.5, 0.75]);
+        let reach = |midlevel| heights.reach(HeightAmount { scale: -2.0, midlevel });
+        assert_eq!([0.0, 0.5, 0.75, 1.0].map(reach), [2.0, 1.0, 1.0, 1.5]);
+        let own = heights.maps[0].with_amount(HeightAmount::from_factor(4.0, -1.0));
+        assert_eq!(own.amount, Some(HeightAmount { scale: 4.0, midlevel: 0.25 }));
+        assert_eq!(own.reach(HeightAmount { scale: 100.0, midlevel: 0.0 }), 3.0, "the settings don't count");
+    }
+
+    #[test]
+    fn amounts_that_depend_on_no_height_are_none() {
+        let bad = [(0.0, 1.0), (f32::NAN, 0.0), (f32::INFINITY, 0.0), (1.0, f32::NAN), (1e-30, 1e30)];
+        assert!(bad.into_iter().all(|(factor, offset)| HeightAmount::from_factor(factor, offset).is_none()));
+    }
+
+    #[test]
+    fn materials_with_equal_maps_share_one_and_pixels_count_once() {
+        let mut mesh = Shape::Torus.build();
+        mesh.materials = vec![mesh.materials[0].clone(); 4];
+        let map = HeightMap::new([2, 2], vec![0.5; 4]);
+        let deep = map.with_amount(HeightAmount::from_factor(3.0, 0.0));
+        let own = [Some(map.clone()), None, Some(deep.clone()), Some(map.clone())];
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("maps");
+        assert_eq!(heights.of_material, [Some(0), None, Some(1), Some(0)]);
+        assert_eq!((heights.maps.len(), heights.bytes(), heights.follow_settings()), (2, 4 * 5, true));
+        let none = Heights::of_materials(&mesh, &[None, None, None, None], &Progress::new());
+        assert_eq!(none, Ok(None));
+        let deep = Heights::of_materials(&mesh, &[None, None, Some(deep)], &Progress::new());
+        assert!(deep.is_ok_and(|deep| deep.is_some_and(|deep| !deep.follow_settings())));
     }
 
     #[test]

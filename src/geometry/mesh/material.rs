@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::HeightMap;
 use crate::choice::choices;
 
 /// The look of some of a mesh's patches.
@@ -23,6 +24,8 @@ pub struct Material {
     pub double_sided: bool,
     /// How it reflects light.
     pub look: Look,
+    /// The height image that the file gives it, at the corners' own texture coordinates.
+    pub height: Option<HeightMap>,
     /// The mesh's triangles of this material.
     pub triangles: Range<u32>,
 }
@@ -37,6 +40,7 @@ impl Material {
             sampling: Sampling::default(),
             double_sided: false,
             look: Look::default(),
+            height: None,
             triangles: 0..0,
         }
     }

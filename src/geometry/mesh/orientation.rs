@@ -67,6 +67,9 @@ pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
     if let Some(rig) = &mut mesh.rig {
         reorient_rig(Arc::make_mut(rig), DMat4::from_mat3(up.matrix() * scale));
     }
+    for amount in mesh.materials.iter_mut().filter_map(|material| material.height.as_mut()?.amount.as_mut()) {
+        amount.scale = length(amount.scale);
+    }
     for light in &mut mesh.lights {
         (light.place, light.direction) = (place(light.place), up.turn(light.direction));
         if let LightKind::Point { range } | LightKind::Spot { range, .. } = &mut light.kind {

@@ -4,14 +4,16 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
+use geometry::mesh::{BuildError, CreaseBand, Heights, Mesh, Moment, Topology, with_crease_band};
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
+use load::heights::from_model;
 use load::parts::Part;
 use load::selection::Selection;
 use load::{
-    Budget, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings, untextured_warning,
+    Budget, HeightError, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings,
+    untextured_warning,
 };
 
 /// A mesh with its topology, and how long both took.
@@ -78,7 +80,7 @@ pub struct Preparation {
     pub weld: f32,
     /// The width of the crease band, relative to the bounding diagonal; 0 for none.
     pub crease_band: f32,
-    /// The height images for displacement.
+    /// The height images for displacement; none for those that the file gives its materials, if any.
     pub heights: Option<HeightSource>,
     /// The material variant of the file, by name; none for each primitive's own material.
     pub variant: Option<String>,
@@ -130,9 +132,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         }
     }
     let mesh = cut.as_mut().unwrap_or(&mut read);
-    if let Some(heights) = &preparation.heights {
-        progress.enter(Stage::Heights);
-        let heights = heights.load(mesh, &warnings, &budget, &progress.part(0.4, 1.0))?;
+    if let Some(heights) = heights(preparation, mesh, &mut warnings, &budget, progress)? {
         warnings.extend(untextured_warning(&heights, mesh));
         mesh.heights = Some(Arc::new(heights));
     }
@@ -153,6 +153,28 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         load_ms: (loaded - start).as_secs_f64() * 1e3,
         topology_ms: loaded.elapsed().as_secs_f64() * 1e3,
     })
+}
+
+/// Loads the heights that displace a mesh. If nobody asked for those of its file, a flaw in them costs a warning.
+fn heights(
+    preparation: &Preparation,
+    mesh: &Mesh,
+    warnings: &mut Vec<String>,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Option<Heights>, LoadError> {
+    if let Some(source) = &preparation.heights {
+        progress.enter(Stage::Heights);
+        return Ok(Some(source.load(mesh, warnings, budget, &progress.part(0.4, 1.0))?));
+    }
+    match from_model(&[], mesh, budget, &progress.part(1.0, 1.0)) {
+        Ok(heights) => Ok(heights),
+        Err(HeightError::Cancelled(cancelled)) => Err(cancelled.into()),
+        Err(error) => {
+            warnings.push(format!("its height images are left out: {error}."));
+            Ok(None)
+        }
+    }
 }
 
 /// Converts the error of a step after reading; `what` names what that step makes.

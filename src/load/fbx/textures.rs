@@ -13,7 +13,7 @@ use geometry::progress::Cancelled;
 
 /// Images by texture.
 pub(super) struct Textures<'a> {
-    files: &'a Files<'a>,
+    pub(super) files: &'a Files<'a>,
     /// By the number of the file.
     images: HashMap<u32, ReadImage>,
 }
@@ -53,7 +53,7 @@ impl<'a> Textures<'a> {
     ///
     /// # Errors
     /// A clause that says why there are none.
-    fn bytes<'t>(&self, texture: &'t ufbx::Texture) -> Result<Cow<'t, [u8]>, String> {
+    pub(super) fn bytes<'t>(&self, texture: &'t ufbx::Texture) -> Result<Cow<'t, [u8]>, String> {
         if !texture.content.is_empty() {
             return Ok(Cow::Borrowed(&texture.content));
         }

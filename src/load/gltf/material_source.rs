@@ -2,12 +2,12 @@
 //!
 //! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_clearcoat, KHR_materials_emissive_strength,
 //! KHR_materials_ior, KHR_materials_sheen, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
-//! KHR_materials_pbrSpecularGlossiness.
+//! KHR_materials_pbrSpecularGlossiness; the draft KHR_materials_displacement, <https://github.com/KhronosGroup/glTF/issues/948>.
 
 use super::lenient::Members;
 use super::schema::TRANSFORM;
 use super::uv_transform::UvTransform;
-use geometry::mesh::{Alpha, Look, Slot};
+use geometry::mesh::{Alpha, HeightAmount, Look, Slot};
 
 /// A material of a document. Its images are still to be read.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +20,8 @@ pub(super) struct MaterialSource {
     /// Without maps.
     pub look: Look,
     pub maps: [Option<MapSource>; Slot::COUNT],
+    /// The height image, and how far it moves the surface.
+    pub height: Option<(MapSource, Option<HeightAmount>)>,
     /// Factor of the glossiness that the specular colour's image has in alpha; none if it has none.
     pub glossiness: Option<f32>,
     /// Names of extensions, and of parts of extensions, that aren't drawn.
@@ -43,6 +45,7 @@ pub(super) struct Uvs {
 }
 
 const TRANSMISSION: &str = "KHR_materials_transmission";
+const DISPLACEMENT: &str = "KHR_materials_displacement";
 
 /// Extensions that aren't drawn, and the number of each that is 0 where it changes nothing.
 const STRENGTHS: [(&str, &str); 5] = [
@@ -137,6 +140,9 @@ impl MaterialSource {
         if let Some(glossy) = extensions.inside("KHR_materials_pbrSpecularGlossiness") {
             self.glossy(&glossy, textures);
         }
+        if let Some(displacement) = extensions.inside(DISPLACEMENT) {
+            self.height = height(&displacement, textures);
+        }
         self.note_undrawn(extensions);
     }
 
@@ -176,7 +182,7 @@ impl MaterialSource {
             match name {
                 "KHR_materials_clearcoat" | "KHR_materials_specular" | "KHR_materials_pbrSpecularGlossiness" => {}
                 "KHR_materials_emissive_strength" | "KHR_materials_ior" => {}
-                "KHR_materials_sheen" | "KHR_materials_unlit" => {}
+                "KHR_materials_sheen" | "KHR_materials_unlit" | DISPLACEMENT => {}
                 TRANSMISSION => {
                     // Metal lets no light through.
                     let is_metal = self.look.metallic >= 1.0 && self.maps[Slot::MetallicRoughness as usize].is_none();
@@ -197,7 +203,8 @@ impl MaterialSource {
 
     /// Returns the texture coordinates that corners have themselves.
     pub(super) fn own_uvs(&self) -> Uvs {
-        self.base_map.map_or_else(Uvs::default, |map| map.uvs)
+        let height = self.height.as_ref().map(|(map, _)| *map);
+        self.base_map.or(height).map_or_else(Uvs::default, |map| map.uvs)
     }
 
     /// Returns whether corners need more than position, normal and texture coordinates.
@@ -205,6 +212,17 @@ impl MaterialSource {
         let others = self.maps.iter().flatten().any(|map| map.uvs != self.own_uvs());
         others || Look::TANGENT_SLOTS.iter().any(|slot| self.maps[*slot as usize].is_some())
     }
+}
+
+/// Reads a height image. Drafts of the extension name its members differently.
+fn height(displacement: &Members, textures: usize) -> Option<(MapSource, Option<HeightAmount>)> {
+    let [texture, factor, offset] = match displacement.has("displacementTexture") {
+        true => ["displacementTexture", "displacementFactor", "displacementOffset"],
+        false => ["displacementGeometryTexture", "displacementGeometryFactor", "displacementGeometryOffset"],
+    };
+    let map = MapSource::new(displacement, texture, textures)?;
+    let (factor, offset) = (displacement.number(factor, 1.0, ANY), displacement.number(offset, 0.0, ANY));
+    Some((map, HeightAmount::from_factor(factor, offset)))
 }
 
 /// Returns an index of refraction: from 1 on, or 0, which stands for an infinite one.

@@ -14,6 +14,7 @@ use super::notes::Notes;
 use super::texture_source::{self, TextureSource};
 use super::uv_transform::UvTransform;
 use super::{Accessors, GltfError};
+use crate::heights::ModelImages;
 use crate::images::{decode_halved, decoded_bytes, texture_size};
 use crate::memory_budget::Budget;
 use crate::packing::roughness;
@@ -22,7 +23,7 @@ use crate::uri::Files;
 use geometry::choice::Choice;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, Sampling, Slot, Texture};
+use geometry::mesh::{Borrowed, HeightMap, Look, Map, MapUv, Material, Sampling, Slot, Texture};
 use geometry::progress::Progress;
 
 /// How many materials a sentence names.
@@ -59,6 +60,8 @@ pub(super) struct Materials<'a> {
     images: HashMap<usize, ReadImage>,
     /// Maps of roughness that were made of glossiness, by the image and the bits of its factor.
     rough: HashMap<(*const Texture, u32), Arc<Texture>>,
+    /// By the image's index.
+    heights: ModelImages<usize>,
     /// The memory that the rest of the load takes, in bytes.
     reserved: u64,
     /// For what isn't drawn, the names of the first few materials that have it, and how many have it.
@@ -105,6 +108,7 @@ impl<'a> Materials<'a> {
             textures: HashMap::new(),
             images: HashMap::new(),
             rough: HashMap::new(),
+            heights: ModelImages::new(),
             reserved: 0,
             undrawn: BTreeMap::new(),
             notes: RefCell::default(),
@@ -210,12 +214,13 @@ impl<'a> Materials<'a> {
         if let Some(factor) = source.glossiness {
             self.set_roughness(&mut look, factor, &name);
         }
+        let height = self.height(&source, &name);
         let (texture, sampling) =
             base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
         let (uvs, needs) = (source.own_uvs(), DetailNeeds::new(&look));
         let MaterialSource { base_color, double_sided, .. } = source;
         let triangles = 0..0;
-        let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
+        let made = Material { name, base_color, texture, sampling, double_sided, look, height, triangles };
         let resolved = Resolved { index: builder.material(made), uvs, needs };
         self.resolved.insert(key, resolved);
         resolved
@@ -236,6 +241,22 @@ impl<'a> Materials<'a> {
             }
         };
         Some(Map { texture, uv, sampling })
+    }
+
+    fn height(&mut self, source: &MaterialSource, material: &str) -> Option<HeightMap> {
+        let (map, amount) = source.height?;
+        if map.uvs != source.own_uvs() {
+            let said = "lies elsewhere than its base colour, whose texture coordinates are used";
+            self.notes.get_mut().push(format!("the height image of material \"{material}\" {said}."));
+        }
+        let image = *self.texture_source(map.texture)?.images.last()?;
+        let bytes = || texture_source::image(&self.lists.images, image, self.accessors, self.files);
+        let within = (self.reserved, self.budget, self.files.progress);
+        let notes = &self.notes;
+        let warn = |said| notes.borrow_mut().push(said);
+        // If it was cancelled, what follows ends too.
+        let read = self.heights.read(image, (&format!("/images/{image}"), material), bytes, within, warn);
+        Some(read.ok()??.with_amount(amount))
     }
 
     /// Gives a material a map of roughness, made of the glossiness in the image of its specular colour, times this factor.

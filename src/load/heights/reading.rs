@@ -42,10 +42,18 @@ pub(super) fn read_map(
     };
     let bytes = read_file(path, &Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
     budget.allow(bytes.len() as u64);
-    match png_header(&bytes) {
-        Some((_, false)) => image.read_rows(&bytes),
-        _ => image.read_whole(&bytes),
-    }
+    image.decode(&bytes)
+}
+
+/// The same of an image in memory, which errors call `name`.
+pub(super) fn map_of_bytes(
+    name: &Path,
+    bytes: &[u8],
+    beside: u64,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<HeightMap, HeightError> {
+    ImageFile { path: name, beside, budget, progress }.decode(bytes)
 }
 
 impl From<FileError> for HeightError {
@@ -119,6 +127,13 @@ impl ImageFile<'_> {
         match size.iter().any(|&side| side > MAX_SIZE) {
             true => Err(HeightError::TooLarge { path: self.path.to_owned(), size }),
             false => Ok(size),
+        }
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        match png_header(bytes) {
+            Some((_, false)) => self.read_rows(bytes),
+            _ => self.read_whole(bytes),
         }
     }
 
@@ -214,9 +229,9 @@ mod tests {
         let map = of(&gray.into());
         assert_eq!(map.heights[..2], [1.0 / 65535.0, 1.0]);
         let green = RgbImage::from_pixel(1, 1, Rgb([0, 255, 0])).into();
-        assert_eq!(of(&green).heights, [0.7152]);
+        assert_eq!(*of(&green).heights, [0.7152]);
         let wide = ImageBuffer::<Rgb<u16>, _>::from_pixel(1, 1, Rgb([0, 0, 65535])).into();
-        assert_eq!(of(&wide).heights, [0.0722]);
+        assert_eq!(*of(&wide).heights, [0.0722]);
     }
 
     #[test]

@@ -1,0 +1,126 @@
+//! The texts of `--height`: which images displace the materials.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+use super::{HeightSource, NamedImage};
+use geometry::mesh::HeightAmount;
+use geometry::tessellate::Tessellation;
+
+/// The text of each source that isn't a path.
+const MATERIALS: &str = "material";
+const MODEL: &str = "file";
+
+impl HeightSource {
+    /// Reads `material`, `file`, `MATERIAL=IMAGE,scale=NUMBER,midlevel=NUMBER`, or the path of an image. A path with an equals sign in it
+    /// is absolute, or begins with `./` or `../`.
+    ///
+    /// # Errors
+    /// A clause that says what is wrong.
+    pub fn parse(text: OsString) -> Result<Self, String> {
+        let is_path =
+            |text: &str| Path::new(text).is_absolute() || ["./", "../"].iter().any(|start| text.starts_with(start));
+        match text.to_str().filter(|text| !is_path(text)) {
+            Some(MATERIALS) => Ok(Self::Materials),
+            Some(MODEL) => Ok(Self::Model),
+            Some(text) if text.contains('=') => NamedImage::parse(text).map(|image| Self::Each(vec![image])),
+            _ => Ok(Self::File(text.into())),
+        }
+    }
+
+    /// Returns the texts that [`Self::parse`] reads it from, each the value of one option.
+    pub fn texts(&self) -> Vec<String> {
+        match self {
+            Self::Materials => vec![MATERIALS.to_owned()],
+            Self::Model => vec![MODEL.to_owned()],
+            Self::File(path) => {
+                let text = path.display().to_string();
+                let is_misread = Self::parse(path.into()) != Ok(self.clone()) || text.starts_with('-');
+                vec![if is_misread { format!("./{text}") } else { text }]
+            }
+            Self::Each(images) => images.iter().map(NamedImage::text).collect(),
+        }
+    }
+
+    /// Returns the source that several options name; none without any. Only images of single materials can be several.
+    pub fn joined(all: &[Self]) -> Option<Self> {
+        let images = |own: &Self| if let Self::Each(images) = own { images.clone() } else { Vec::new() };
+        let images: Vec<_> = all.iter().flat_map(images).collect();
+        if images.is_empty() { all.first().cloned() } else { Some(Self::Each(images)) }
+    }
+}
+
+impl NamedImage {
+    fn parse(text: &str) -> Result<Self, String> {
+        let (material, mut path) = text.split_once('=').unwrap_or_default();
+        let [mut scale, mut midlevel] = [None; 2];
+        while let Some((before, option)) = path.rsplit_once(',') {
+            let (kept, number) = match option.split_once('=') {
+                Some(("scale", number)) => (&mut scale, number),
+                Some(("midlevel", number)) => (&mut midlevel, number),
+                _ => break,
+            };
+            let read = number.parse().ok().filter(|number: &f32| number.is_finite());
+            *kept = Some(read.ok_or_else(|| format!("{option} is no number"))?);
+            path = before;
+        }
+        if material.is_empty() || path.is_empty() {
+            return Err("write MATERIAL=IMAGE, or ./ in front of a path with an equals sign".to_owned());
+        }
+        if scale.is_none() && midlevel.is_some() {
+            return Err("midlevel= needs scale=; without both, --height-scale and --midlevel hold".to_owned());
+        }
+        let midlevel = midlevel.unwrap_or(Tessellation::default().midlevel);
+        let amount = scale.map(|scale| HeightAmount { scale, midlevel });
+        Ok(Self { material: material.to_owned(), path: PathBuf::from(path), amount })
+    }
+
+    fn text(&self) -> String {
+        let Self { material, path, amount } = self;
+        let amount = amount.map(|own| format!(",scale={},midlevel={}", own.scale, own.midlevel)).unwrap_or_default();
+        format!("{material}={}{amount}", path.display())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(material: &str, path: &str, amount: Option<(f32, f32)>) -> HeightSource {
+        let amount = amount.map(|(scale, midlevel)| HeightAmount { scale, midlevel });
+        HeightSource::Each(vec![NamedImage { material: material.to_owned(), path: path.into(), amount }])
+    }
+
+    #[test]
+    fn texts_name_sources() {
+        let cases = [
+            ("material", HeightSource::Materials),
+            ("file", HeightSource::Model),
+            ("./file", HeightSource::File("./file".into())),
+            ("a,b.png", HeightSource::File("a,b.png".into())),
+            ("./a=b.png", HeightSource::File("./a=b.png".into())),
+            ("wall=b.png", image("wall", "b.png", None)),
+            ("old wall=a=b,c.png,scale=-2", image("old wall", "a=b,c.png", Some((-2.0, 0.5)))),
+            ("wall=b.png,midlevel=0.25,scale=1e-3", image("wall", "b.png", Some((0.001, 0.25)))),
+        ];
+        for (text, expected) in cases {
+            assert_eq!(HeightSource::parse(text.into()), Ok(expected.clone()), "{text}");
+            let texts = expected.texts();
+            assert_eq!(HeightSource::parse((&texts[0]).into()), Ok(expected), "{texts:?}");
+        }
+        let bad =
+            ["=a.png", "wall=", "wall=,scale=1", "wall=a.png,scale=x", "wall=a.png,scale=inf", "wall=a.png,midlevel=0"];
+        assert!(bad.iter().all(|text| HeightSource::parse(text.into()).is_err()));
+        assert_eq!(HeightSource::File("file".into()).texts(), ["./file"]);
+    }
+
+    #[test]
+    fn images_of_materials_are_joined() {
+        let [a, b] = ["a", "b"].map(|name| image(name, "c.png", None));
+        assert_eq!(HeightSource::joined(&[]), None);
+        assert_eq!(HeightSource::joined(&[HeightSource::Model]), Some(HeightSource::Model));
+        let joined = HeightSource::joined(&[a, b]).expect("two images");
+        assert_eq!(joined.texts(), ["a=c.png", "b=c.png"]);
+        assert_eq!(joined.files(), [Path::new("c.png"); 2]);
+    }
+}
