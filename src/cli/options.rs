@@ -49,7 +49,7 @@ pub struct SurfaceOptions {
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = whole_from(1_u64))]
     pub max_triangles: Option<u64>,
-    /// Height map that displaces the surface: a PNG, JPEG, WebP or TIFF image over all materials, its brightness as stored from 0
+    /// Height map that displaces the surface: a PNG, JPEG, WebP, TIFF or EXR image over all materials, its brightness as stored from 0
     /// (black) to 1 (white); or `material`, the brightness of each material's base colour image; or `file`, the images that the file
     /// gives its materials. MATERIAL=IMAGE,scale=S,midlevel=H replaces one of these; white is then S object units above black, and
     /// without scale= --height-scale and --midlevel hold. May be given for several materials

@@ -372,6 +372,7 @@ pub fn displaced_corners(mesh: &Mesh, topology: &Topology) -> Option<Vec<Displac
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
     use std::sync::Arc;
 
     use super::*;
@@ -400,6 +401,65 @@ mod tests {
         let map = HeightMap::new([64, 64], (0..4096).map(height).collect());
         mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, map)));
         mesh
+    }
+
+    /// The bits of every position on edges and points, by a number of the edge or point and a place along the edge.
+    fn shared_places(mesh: &Mesh, topology: &Topology, displacement: Displacement) -> HashMap<[u32; 3], [u32; 3]> {
+        let own = Tessellation { displacement, factor: 5.3, height_scale: 0.2, ..Tessellation::default() };
+        let view = LodView::new(Mat4::IDENTITY, Vec2::ONE);
+        let mut places = HashMap::new();
+        for vertex in &tessellate(mesh, topology, &Inputs::new(&own, view), None).vertices {
+            let (patch, [u, v]) = (vertex.patch(), vertex.domain());
+            let point = |k: usize| topology.corner_points[topology.patch_corners(patch)[k % 3] as usize];
+            let place = match spot(u, v) {
+                Spot::Inside => continue,
+                Spot::Corner(k) => [0, point(k), 0],
+                Spot::Side(side, t) => {
+                    let edge = topology.sides[topology.patches[patch as usize].sides[side] as usize].edge;
+                    [1, edge, if point(side) < point(side + 1) { t } else { FIXED_ONE - t }]
+                }
+            };
+            let bits = vertex.position.map(f32::to_bits);
+            assert_eq!(*places.entry(place).or_insert(bits), bits, "a crack at {place:?}");
+        }
+        places
+    }
+
+    #[test]
+    fn materials_meet_at_the_image_of_the_dominant_side() {
+        let mut mesh = Shape::Torus.build();
+        let half = mesh.triangles.len() as u32 / 2;
+        let of = |triangles| Material { triangles, ..mesh.materials[0].clone() };
+        mesh.materials = vec![of(0..half), of(half..2 * half)];
+        let topology = Topology::build(&mesh, &Progress::new()).expect("not cancelled");
+        let ramp = HeightMap::new([8, 8], (0..64).map(|i| (i % 8) as f32 / 8.0).collect());
+        let steps = HeightMap::new([5, 3], (0..15).map(|i| (i * 7 % 15) as f32 / 15.0).collect());
+        let steps = steps.with_amount(HeightAmount::from_factor(0.3, 0.1));
+        let mut places = |own: [Option<&HeightMap>; 2]| {
+            let own = own.map(|map| map.cloned());
+            mesh.heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").map(Arc::new);
+            shared_places(&mesh, &topology, Displacement::On)
+        };
+        let [flat, first, second, both] =
+            [[None, None], [Some(&steps), None], [None, Some(&ramp)], [Some(&steps), Some(&ramp)]].map(&mut places);
+        let patches_of = |side: &u32| topology.sides[*side as usize].patch();
+        let mut met = 0;
+        for (place, bits) in &both {
+            let [1, edge, _] = *place else { continue };
+            let sides: Vec<_> =
+                (0..).zip(&topology.sides).filter(|(_, side)| side.edge == edge).map(|own| own.0).collect();
+            let is_first = |side: &u32| patches_of(side) < half;
+            // The first side of an edge is the dominant one, and that of the first material comes first.
+            let expected = if sides.iter().any(is_first) { &first } else { &second };
+            assert_eq!(expected[place], *bits);
+            if sides.iter().any(is_first) && !sides.iter().all(is_first) {
+                met += 1;
+                let at = |bits: &[u32; 3]| bits.map(f32::from_bits);
+                assert_eq!(at(&second[place]), at(&flat[place]), "its dominant side has no image");
+                assert_ne!(first[place], flat[place]);
+            }
+        }
+        assert!(met > 20, "{met} places between the materials");
     }
 
     #[test]

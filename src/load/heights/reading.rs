@@ -3,11 +3,12 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use png::{BitDepth, DecodingError};
 
 use super::{HeightError, MAX_SIZE};
-use crate::files::{FileError, Limits, file_reason, read_file};
+use crate::environment_file::unpacking_bytes;
+use crate::files::{self, FileError, file_reason, read_file};
 use crate::images::{decoding_bytes, metadata_limits, png_header};
 use crate::memory_budget::Budget;
 use crate::watched_bytes::watched;
@@ -21,10 +22,13 @@ use geometry::progress::{Cancelled, Progress};
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// What is said of a file of another kind.
-const NO_IMAGE: &str = "choose a PNG, JPEG or WebP image";
+const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TIFF or EXR image";
 
-/// Reads a PNG, JPEG or WebP image. A PNG is decoded row by row, so that a large image takes no more memory than its file and its map;
-/// a JPEG, a WebP, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `beside` is how many
+/// The largest height, positive or negative. Images with floating-point numbers may have heights beyond black and white.
+const MOST_HEIGHT: f32 = 65504.0;
+
+/// Reads a PNG, JPEG, WebP, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than its file and its map;
+/// any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `beside` is how many
 /// bytes heights take beside their map.
 ///
 /// # Errors
@@ -40,7 +44,7 @@ pub(super) fn read_map(
         image::guess_format(start).map_err(|_| image.fail(NO_IMAGE.to_owned()))?;
         image.check(png_header(start).map_or([0; 2], |(size, _)| size)).map(|_| ())
     };
-    let bytes = read_file(path, &Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
+    let bytes = read_file(path, &files::Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
     budget.allow(bytes.len() as u64);
     image.decode(&bytes)
 }
@@ -71,7 +75,7 @@ impl From<FileError> for HeightError {
     }
 }
 
-/// Computes the brightness of pixels of 8 or 16 bits a channel, with the weights of Rec. 709 and no transfer function,
+/// Computes the brightness of pixels of 8, 16 or 32 bits a channel, with the weights of Rec. 709 and no transfer function,
 /// since heights aren't light. Gray images keep their values with all bits.
 ///
 /// # Errors
@@ -90,19 +94,22 @@ pub(super) fn map_of_px(
     let [channels, depth] = [color.channel_count(), color.bytes_per_pixel() / color.channel_count()];
     HeightMap::build(size, progress, |out| {
         let line = lines.next().unwrap_or_default();
-        brighten(line, channels.into(), depth == 2, u16::from_ne_bytes, out);
+        brighten(line, channels.into(), depth, u16::from_ne_bytes, out);
         Ok(())
     })
 }
 
-/// Computes the brightness of each pixel of a row with `channels` channels of 8 bits, or of 16 bits if `is_wide`.
-fn brighten(line: &[u8], channels: usize, is_wide: bool, of_bytes: fn([u8; 2]) -> u16, out: &mut [f32]) {
-    let channel = |px: &[u8], index: usize| match is_wide {
-        true => f32::from(of_bytes([px[2 * index], px[2 * index + 1]])) / 65535.0,
-        false => f32::from(px[index]) / 255.0,
+/// Computes the brightness of each pixel of a row with `channels` channels of so many bytes. Four are a floating-point number.
+fn brighten(line: &[u8], channels: usize, depth: u8, of_bytes: fn([u8; 2]) -> u16, out: &mut [f32]) {
+    let depth = usize::from(depth);
+    let channel = |px: &[u8], index: usize| match px[index * depth..][..depth] {
+        [a, b, c, d] => Some(f32::from_ne_bytes([a, b, c, d])).filter(|own| own.is_finite()).unwrap_or(0.0),
+        [a, b] => f32::from(of_bytes([a, b])) / 65535.0,
+        _ => f32::from(px[index]) / 255.0,
     };
-    for (height, px) in out.iter_mut().zip(line.chunks_exact(if is_wide { 2 * channels } else { channels })) {
-        *height = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
+    for (height, px) in out.iter_mut().zip(line.chunks_exact(depth * channels)) {
+        let own = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
+        *height = own.clamp(-MOST_HEIGHT, MOST_HEIGHT);
     }
 }
 
@@ -152,7 +159,8 @@ impl ImageFile<'_> {
         let mut line = vec![0; line];
         HeightMap::build(size, self.progress, |out| {
             reader.read_row(&mut line).map_err(undecoded)?;
-            brighten(&line, color.samples(), depth == BitDepth::Sixteen, u16::from_be_bytes, out);
+            let depth = if depth == BitDepth::Sixteen { 2 } else { 1 };
+            brighten(&line, color.samples(), depth, u16::from_be_bytes, out);
             Ok(())
         })
     }
@@ -168,18 +176,28 @@ impl ImageFile<'_> {
         webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
         let watched = ImageReader::new(watched(bytes, self.progress.part(0.0, 0.6)));
         let mut reader = watched.with_guessed_format().map_err(|error| undecoded(error.into()))?;
-        let decoding = Borrowed::from(self.budget);
-        if reader.format() == Some(ImageFormat::Png) {
+        let borrowed = Borrowed::from(self.budget);
+        let format = reader.format();
+        if format == Some(ImageFormat::Png) {
             reader.limits(metadata_limits(self.budget));
         }
-        let decoder = reader.into_decoder().map_err(undecoded)?;
+        let mut decoder = reader.into_decoder().map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
+        let has_copy = matches!(format, Some(ImageFormat::Tiff | ImageFormat::OpenExr | ImageFormat::Hdr));
+        let blocks = match format {
+            Some(ImageFormat::OpenExr) => unpacking_bytes(bytes).map_err(|fault| self.fail(fault.to_string()))?,
+            _ => 0,
+        };
+        let decoding = (decoding_bytes(&decoder) - count).saturating_add(if has_copy { count } else { 0 });
         // What decoding takes is freed before a map is made from the pixels.
-        self.afford(size, bytes, count, decoding_bytes(&decoder) - count)?;
+        self.afford(size, bytes, count, decoding.saturating_add(blocks))?;
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(self.budget.left().max(1 << 20).saturating_add(count));
+        decoder.set_limits(limits).map_err(undecoded)?;
         let mut px = vec![0; to_usize(count)];
         decoder.read_image(&mut px).map_err(undecoded)?;
-        drop(decoding);
+        drop(borrowed);
         Ok(map_of_px(size, color, &px, &self.progress.part(0.6, 1.0))?)
     }
 
@@ -232,6 +250,32 @@ mod tests {
         assert_eq!(*of(&green).heights, [0.7152]);
         let wide = ImageBuffer::<Rgb<u16>, _>::from_pixel(1, 1, Rgb([0, 0, 65535])).into();
         assert_eq!(*of(&wide).heights, [0.0722]);
+    }
+
+    #[test]
+    fn numbers_beyond_black_and_white_stay_and_those_that_are_none_become_black() {
+        let px = [2.5, -1.0, f32::NAN, f32::INFINITY, -1e9];
+        let px: Vec<f32> = px.into_iter().flat_map(|height| [height; 3]).collect();
+        let image = DynamicImage::ImageRgb32F(ImageBuffer::from_raw(5, 1, px).expect("five px"));
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        for format in [image::ImageFormat::OpenExr, image::ImageFormat::Tiff] {
+            let mut bytes = Cursor::new(Vec::new());
+            image.write_to(&mut bytes, format).expect("an image in memory");
+            let file = write(&folder, "px", bytes.get_ref());
+            let map = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect("an image");
+            let expected = [2.5, -1.0, 0.0, 0.0, -MOST_HEIGHT];
+            let close = |(own, expected): (&f32, f32)| (own - expected).abs() <= 1e-6 * expected.abs();
+            assert!(map.heights.iter().zip(expected).all(close), "{format:?}: {:?}", &map.heights[..5]);
+            assert_eq!(map.range.map(f32::round), [-MOST_HEIGHT, 3.0], "{format:?}");
+            let cut = write(&folder, "cut", &bytes.get_ref()[..bytes.get_ref().len() / 2]);
+            let said = read_map(&cut, 0, &Budget::unlimited(), &Progress::new()).expect_err("half an image");
+            assert!(said.to_string().contains("can't be read as a height image"), "{said}");
+        }
+        let wide: ImageBuffer<Luma<u16>, _> = ImageBuffer::from_raw(2, 1, vec![1_u16, 65535]).expect("two px");
+        let file = folder.path().join("wide.tif");
+        wide.save(&file).expect("a writable temporary folder");
+        let map = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect("an image");
+        assert_eq!(map.heights[..2], [1.0 / 65535.0, 1.0], "all 16 bits");
     }
 
     #[test]
