@@ -66,7 +66,7 @@ pub(super) fn watch(mut known: Stamped, wanted: &Progress, mut changed: impl FnM
 pub(crate) fn sources(source: &Source, heights: Option<&HeightSource>) -> Vec<PathBuf> {
     let mesh = if let Source::File(path) = source { Some(path) } else { None };
     let heights = heights.map(HeightSource::files).unwrap_or_default();
-    mesh.into_iter().cloned().chain(heights.into_iter().map(Path::to_path_buf)).collect()
+    mesh.into_iter().cloned().chain(heights.into_iter().map(Into::into)).collect()
 }
 
 impl App {

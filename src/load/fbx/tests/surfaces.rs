@@ -190,7 +190,8 @@ fn a_displacement_map_is_a_height_image_in_units_of_the_file() {
     assert_eq!(loaded.warnings, [] as [String; 0]);
     let map = loaded.materials[0].height.as_ref().expect("a height image");
     assert_eq!((map.size, map.amount), ([1, 2], HeightAmount::from_factor(0.01, 0.0)));
-    let broken = read(&square_textured_as("DisplacementColor", Ok(b"no image"), 1.0)).expect("a mesh");
+    let broken = text(&square_textured_as("DisplacementColor", Ok(b"no image"), 1.0));
+    let broken = read(&broken).expect("a mesh");
     let start = "the height image \"wood\" of material \"paint\" is left out: ";
     assert!(broken.materials[0].height.is_none() && broken.warnings[0].starts_with(start), "{:?}", broken.warnings);
 }
