@@ -25,7 +25,7 @@ impl HeightImages {
     /// # Errors
     /// They are larger than the adapter's textures.
     pub(crate) fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {
-        let texels = heights.bytes() / 4;
+        let texels: u64 = heights.maps.iter().map(|map| map.heights.len() as u64).sum();
         let rows = texels.div_ceil(u64::from(HEIGHTS_ACROSS)).max(1);
         let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
         if rows > limit {
@@ -34,11 +34,7 @@ impl HeightImages {
         }
         let rows = rows as u32;
         let mut all: Vec<f32> = Vec::with_capacity((rows * HEIGHTS_ACROSS) as usize);
-        for (map, start) in heights.maps.iter().zip(starts(&heights.maps)) {
-            if start as usize == all.len() {
-                all.extend_from_slice(&map.heights);
-            }
-        }
+        heights.maps.iter().for_each(|map| all.extend_from_slice(&map.heights));
         all.resize((rows * HEIGHTS_ACROSS) as usize, 0.0);
         Ok(Self {
             view: filled_texture(
@@ -57,25 +53,15 @@ impl HeightImages {
     }
 }
 
-/// Where the pixels of each map begin in the list of all. Maps with the same pixels have one place.
-fn starts(maps: &[geometry::mesh::HeightMap]) -> Vec<u32> {
-    let (mut starts, mut end) = (Vec::with_capacity(maps.len()), 0);
-    for (index, map) in maps.iter().enumerate() {
-        let known = maps[..index].iter().position(|other| other.shares_pixels(map));
-        starts.push(known.map_or(end, |known| starts[known]));
-        end += if known.is_none() { map.heights.len() as u32 } else { 0 };
-    }
-    starts
-}
-
 /// A [`HeightMap`] for each image.
 pub(crate) fn height_maps(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
     let mut table = [HeightMap { size: [1, 1], levels: 1, ..bytemuck::Zeroable::zeroed() }; MAX_MAPS];
-    let maps = heights.map_or(&[][..], |heights| &heights.maps);
-    for ((entry, map), start) in table.iter_mut().zip(maps).zip(starts(maps)) {
+    let mut start = 0;
+    for (entry, map) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.maps)) {
         let (scale, midlevel) = map.amount.map_or((0.0, 0.0), |amount| (amount.scale, amount.midlevel));
         let (repeats, has_amount) = (u32::from(map.repeats), u32::from(map.amount.is_some()));
         *entry = HeightMap { size: map.size, levels: map.levels, start, repeats, has_amount, scale, midlevel };
+        start += map.heights.len() as u32;
     }
     uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table))
 }

@@ -7,11 +7,13 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::ColorType;
 
 use super::memory_budget::Budget;
-use geometry::casts::to_u32;
+use super::uri::Files;
+use super::warnings::untextured_warning;
 use geometry::mesh::build_limits::{MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, bytes_beside_maps};
 use geometry::mesh::{HeightAmount, Mesh, Texture};
@@ -22,9 +24,6 @@ use reading::{map_of_bytes, map_of_px, read_map};
 
 /// The greatest width and height of an image that is read, in px.
 const MAX_SIZE: u32 = 16384;
-
-/// How far an image may move the surface at most, in bounding radii.
-const MOST_RADII: f32 = 100.0;
 
 /// Why heights could not be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -63,12 +62,6 @@ pub enum HeightError {
     /// An image is named for a material that isn't there.
     #[error("{name} has no material \"{material}\" to displace; it has {known}")]
     NoMaterial { name: String, material: String, known: String },
-    /// An image would move the surface beyond reason.
-    #[error(
-        "the height image of material \"{material}\" moves it by up to {reach} object units, more than {MOST_RADII} bounding \
-         radii; give it a smaller scale"
-    )]
-    TooFar { material: String, reach: f32 },
 }
 
 /// An image for the materials of one name, in place of what the model's file gives them.
@@ -109,16 +102,23 @@ impl HeightSource {
         progress: &Progress,
     ) -> Result<Heights, HeightError> {
         progress.set(0.0);
-        let heights = match self {
-            Self::Materials => from_materials(mesh, warnings, budget, progress)?,
-            Self::File(path) => from_file(path, mesh, budget, progress)?,
-            Self::Model | Self::Each(_) => match from_model(self.images(), mesh, budget, progress)? {
-                Some(heights) => heights,
-                None => from_materials(mesh, warnings, budget, progress)?,
-            },
+        let images = progress.part(0.0, 0.7);
+        let own = match self {
+            Self::Materials => Vec::new(),
+            Self::File(path) => vec![Some(read_map(path, budget, &images)?); mesh.materials.len()],
+            Self::Model | Self::Each(_) => of_model(self.images(), mesh, budget, &images)?,
         };
+        let are_of_colors = own.iter().all(Option::is_none);
+        let own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
+        let too_much = |refused| too_much(mesh, own.iter().flatten().count(), refused);
+        budget.hold(bytes_beside_maps(mesh)).map_err(too_much)?;
+        let heights = Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))?;
+        let count = heights.maps.len();
+        if count > MAX_MAPS {
+            return Err(HeightError::TooMany { name: mesh.name.clone(), count });
+        }
         progress.set(1.0);
-        Ok(heights)
+        Ok(Heights { are_of_colors, ..heights })
     }
 
     fn images(&self) -> &[NamedImage] {
@@ -154,63 +154,71 @@ impl HeightSource {
     }
 }
 
-/// Loads the images that a model's file gives its materials, and these in place of some. None if there are none.
+/// Loads the heights of a source; without one those that the model's file gives its materials, if any, in which a flaw costs a warning.
 ///
 /// # Errors
 /// [`HeightError`].
-pub fn from_model(
+pub fn load_heights(
+    source: Option<&HeightSource>,
+    mesh: &Mesh,
+    warnings: &mut Vec<String>,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Option<Heights>, HeightError> {
+    if source.is_none() && mesh.materials.iter().all(|material| material.height.is_none()) {
+        return Ok(None);
+    }
+    match source.unwrap_or(&HeightSource::Model).load(mesh, warnings, budget, progress) {
+        Err(error) if source.is_none() && !matches!(error, HeightError::Cancelled(_)) => {
+            warnings.push(format!("its height images are left out: {error}."));
+            Ok(None)
+        }
+        heights => {
+            let heights = heights?;
+            warnings.extend(untextured_warning(&heights, mesh));
+            Ok(Some(heights))
+        }
+    }
+}
+
+/// The maps of materials: those that the model's file gives them, or these in place of some.
+fn of_model(
     images: &[NamedImage],
     mesh: &Mesh,
     budget: &Budget,
     progress: &Progress,
-) -> Result<Option<Heights>, HeightError> {
-    let name = || mesh.name.clone();
+) -> Result<Vec<Option<HeightMap>>, HeightError> {
     let mut own: Vec<_> = mesh.materials.iter().map(|material| material.height.clone()).collect();
-    let part = |index: usize| 0.7 * index as f32 / images.len() as f32;
+    let part = |index: usize| index as f32 / images.len() as f32;
     for (index, NamedImage { material, path, amount }) in images.iter().enumerate() {
         if mesh.materials.iter().all(|known| known.name != *material) {
-            let known = mesh.materials.iter().map(|known| format!("\"{}\"", shown(&known.name)));
-            let known = known.collect::<Vec<_>>().join(", ");
-            return Err(HeightError::NoMaterial { name: name(), material: shown(material), known });
+            let known: Vec<_> = mesh.materials.iter().map(|known| format!("\"{}\"", shown(&known.name))).collect();
+            let (name, known) = (mesh.name.clone(), known.join(", "));
+            return Err(HeightError::NoMaterial { name, material: shown(material), known });
         }
-        let map = read_map(path, 0, budget, &progress.part(part(index), part(index + 1)))?.with_amount(*amount);
+        let map = read_map(path, budget, &progress.part(part(index), part(index + 1)))?.with_amount(*amount);
         let users = mesh.materials.iter().zip(&mut own).filter(|(known, _)| known.name == *material);
         users.for_each(|(_, own)| *own = Some(map.clone()));
     }
-    let count = own.iter().flatten().count();
-    if count == 0 {
-        return Ok(None);
-    }
-    let most = MOST_RADII * mesh.bounds().radius();
-    for (material, map) in mesh.materials.iter().zip(&own).filter_map(|(material, map)| Some((material, map.as_ref()?)))
-    {
-        // What the settings say is bounded by themselves.
-        let reach = map.reach(HeightAmount { scale: 0.0, midlevel: 0.0 });
-        if reach > most {
-            return Err(HeightError::TooFar { material: shown(&material.name), reach });
-        }
-    }
-    let too_much =
-        |refused: MemoryRefused| HeightError::TooMuchOfMaterials { name: name(), count, reason: refused.to_string() };
-    budget.hold(bytes_beside_maps(mesh)).map_err(too_much)?;
-    match Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))? {
-        Some(heights) if heights.maps.len() > MAX_MAPS => {
-            Err(HeightError::TooMany { name: name(), count: heights.maps.len() })
-        }
-        heights => Ok(heights),
-    }
+    Ok(own)
 }
 
-/// The height images that a model's file names, each read once; `K` tells them apart.
-pub(super) struct ModelImages<K>(HashMap<K, Option<HeightMap>>);
+/// The height images that a model's file gives its materials, each read once; `K` tells them apart.
+pub(super) struct ModelImages<'a, K> {
+    files: &'a Files<'a>,
+    known: HashMap<K, Option<HeightMap>>,
+    /// The memory that the rest of the load takes, in bytes.
+    pub reserved: u64,
+    /// What was left out.
+    pub warnings: Vec<String>,
+}
 
-impl<K: Eq + Hash> ModelImages<K> {
-    pub(super) fn new() -> Self {
-        Self(HashMap::new())
+impl<'a, K: Eq + Hash> ModelImages<'a, K> {
+    pub(super) fn new(files: &'a Files<'a>) -> Self {
+        Self { files, known: HashMap::new(), reserved: 0, warnings: Vec::new() }
     }
 
-    /// Returns an image of a material. One that can't be read causes a warning once, which names the material. `reserved` is the memory
-    /// that the rest of the load takes, in bytes.
+    /// Returns an image of a material. One that can't be read causes a warning, which names the first material that has it.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -218,80 +226,59 @@ impl<K: Eq + Hash> ModelImages<K> {
         &mut self,
         key: K,
         (image, material): (&str, &str),
+        amount: Option<HeightAmount>,
         bytes: impl FnOnce() -> Result<Cow<'b, [u8]>, String>,
-        (reserved, budget, progress): (u64, &Budget, &Progress),
-        warn: impl FnOnce(String),
     ) -> Result<Option<HeightMap>, Cancelled> {
-        if let Some(known) = self.0.get(&key) {
-            return Ok(known.clone());
-        }
-        let decode = |bytes: Cow<[u8]>| map_of_bytes(Path::new(image), &bytes, reserved, budget, progress);
-        let read = borrowing(budget, || bytes().map(decode));
-        let reason = match read {
-            Ok(Err(HeightError::Cancelled(cancelled))) => return Err(cancelled),
-            Ok(Ok(map)) => {
-                budget.release(reserved);
-                self.0.insert(key, Some(map.clone()));
-                return Ok(Some(map));
-            }
-            Ok(Err(error)) => error.to_string(),
-            Err(reason) => reason,
+        let Files { budget, progress, .. } = self.files;
+        let decode = || {
+            let bytes = bytes().map_err(|reason| HeightError::Image { path: image.into(), reason })?;
+            map_of_bytes(Path::new(image), &bytes, self.reserved, budget, progress)
         };
-        warn(format!("the height image {image} of material \"{material}\" is left out: {reason}."));
-        self.0.insert(key, None);
-        Ok(None)
+        let map = match self.known.get(&key) {
+            Some(known) => known.clone(),
+            None => match borrowing(budget, decode) {
+                Err(HeightError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(error) => {
+                    self.warnings.push(format!("the height image of material \"{material}\" is left out: {error}."));
+                    None
+                }
+                Ok(map) => Some(map),
+            },
+        };
+        self.known.insert(key, map.clone());
+        Ok(map.map(|map| map.with_amount(amount)))
     }
 }
 
-/// Loads an image as the height map of all materials.
-fn from_file(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
-    let map = read_map(path, bytes_beside_maps(mesh), budget, &progress.part(0.0, 0.8))?;
-    Ok(Heights::all_over(mesh, map, &progress.part(0.8, 1.0))?)
+fn too_much(mesh: &Mesh, count: usize, refused: MemoryRefused) -> HeightError {
+    HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason: refused.to_string() }
 }
 
-/// Computes the brightness of every material's base colour image. Materials that share an image share its map.
-///
-/// # Errors
-/// [`HeightError::NoImage`], [`HeightError::TooMany`] and [`HeightError::TooMuchOfMaterials`].
-fn from_materials(
+/// The brightness of every material's base colour image. Materials that share an image share its pixels.
+fn of_colors(
     mesh: &Mesh,
     warnings: &[String],
     budget: &Budget,
     progress: &Progress,
-) -> Result<Heights, HeightError> {
-    let mut known: Vec<&Texture> = Vec::new();
-    let of_material = mesh.materials.iter().map(|material| {
-        let texture = material.texture.as_deref()?;
-        let index = known.iter().position(|&known| std::ptr::eq(known, texture)).unwrap_or_else(|| {
-            known.push(texture);
-            known.len() - 1
-        });
-        Some(to_u32(index))
-    });
-    let of_material = of_material.collect();
-    let count = known.len();
+) -> Result<Vec<Option<HeightMap>>, HeightError> {
+    let mut textures: Vec<_> = mesh.materials.iter().filter_map(|material| material.texture.as_ref()).collect();
+    textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
+    textures.dedup_by_key(|texture| Arc::as_ptr(texture));
+    let count = textures.len();
     if count == 0 {
         let left_out = warnings.iter().find(|warning| warning.starts_with("the texture of "));
         let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
     }
-    if count > MAX_MAPS {
-        return Err(HeightError::TooMany { name: mesh.name.clone(), count });
+    let kept = textures.iter().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
+    budget.hold(kept).map_err(|refused| too_much(mesh, count, refused))?;
+    let mut maps = HashMap::new();
+    for (index, texture) in textures.into_iter().enumerate() {
+        let progress = progress.part(index as f32 / count as f32, (index + 1) as f32 / count as f32);
+        maps.insert(Arc::as_ptr(texture), map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)?);
     }
-    let kept = known.iter().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
-    let too_much = |refused: MemoryRefused| {
-        let reason = refused.to_string();
-        HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason }
-    };
-    budget.hold(bytes_beside_maps(mesh)).and_then(|()| budget.hold(kept)).map_err(too_much)?;
-    let part = |index: usize| 0.7 * index as f32 / count as f32;
-    let of = |(index, texture): (usize, &&Texture)| {
-        let progress = progress.part(part(index), part(index + 1));
-        map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)
-    };
-    let maps = known.iter().enumerate().map(of).collect::<Result<_, _>>()?;
-    let heights = Heights::new(mesh, maps, of_material, &progress.part(0.7, 1.0))?;
-    Ok(Heights { are_of_colors: true, ..heights })
+    let map = |texture: &Arc<Texture>| maps.get(&Arc::as_ptr(texture)).cloned();
+    Ok(mesh.materials.iter().map(|material| material.texture.as_ref().and_then(map)).collect())
 }
 
 #[cfg(test)]
@@ -302,15 +289,14 @@ mod tests {
     #[test]
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
-        assert!(matches!(
-            from_materials(&mesh, &[], &Budget::unlimited(), &Progress::new()),
-            Err(HeightError::NoImage { .. })
-        ));
+        let of_colors = |mesh: &Mesh| HeightSource::Materials.load(mesh, &[], &Budget::unlimited(), &Progress::new());
+        assert!(matches!(of_colors(&mesh), Err(HeightError::NoImage { .. })));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = geometry::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
-        let heights = from_materials(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("an image");
+        let heights = of_colors(&mesh).expect("an image");
         assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
+        assert!(heights.are_of_colors);
     }
 
     #[test]
@@ -324,35 +310,46 @@ mod tests {
         };
         mesh.materials = vec![named("wall", Some(map.clone())), named("roof", None), named("door", None)];
         let of = |images: &[NamedImage], mesh: &Mesh| {
-            from_model(images, mesh, &Budget::unlimited(), &Progress::new()).map_err(|error| error.to_string())
+            let source = HeightSource::Each(images.to_vec());
+            source.load(mesh, &[], &Budget::unlimited(), &Progress::new()).map_err(|error| error.to_string())
         };
-        let heights = of(&[], &mesh).expect("an image").expect("an image");
+        let heights = of(&[], &mesh).expect("an image");
         assert_eq!((heights.maps[0].amount, &heights.of_material[..]), (map.amount, &[Some(0), None, None][..]));
         let path = assets::path("waves.png");
         let image = |material: &str| NamedImage { material: material.to_owned(), path: path.clone(), amount: None };
-        let heights = of(&[image("roof")], &mesh).expect("two images").expect("two images");
+        let heights = of(&[image("roof")], &mesh).expect("two images");
         assert_eq!(heights.of_material, [Some(0), Some(1), None]);
-        assert!(heights.follow_settings() && heights.maps[0].size == [2, 2]);
-        let heights = of(&[image("wall")], &mesh).expect("an image").expect("an image");
+        assert!(heights.follow_settings() && heights.maps[0].size == [2, 2] && !heights.are_of_colors);
+        let heights = of(&[image("wall")], &mesh).expect("an image");
         assert_eq!((heights.of_material, heights.maps[0].amount), (vec![Some(0), None, None], None));
         let said = of(&[image("floor")], &mesh).expect_err("no such material");
         assert!(said.ends_with("has no material \"floor\" to displace; it has \"wall\", \"roof\", \"door\""), "{said}");
-        mesh.materials[0].height = Some(map.with_amount(HeightAmount::from_factor(1e9, 0.0)));
-        let said = of(&[], &mesh).expect_err("too far");
-        assert!(
-            said.contains("material \"wall\" moves it by up to 500000000 object units, more than 100 bounding"),
-            "{said}"
-        );
         mesh.materials[0].height = None;
-        assert_eq!(of(&[], &mesh), Ok(None));
+        assert!(of(&[], &mesh).expect_err("no image").contains("no material has a base colour image"));
+    }
+
+    #[test]
+    fn flaws_in_the_files_own_images_cost_a_warning_unless_they_are_asked_for() {
+        let mut mesh = Shape::Torus.build();
+        let map = HeightMap::new([2, 2], vec![0.5; 4]);
+        let small = Budget::new(0, 1);
+        let mut warnings = Vec::new();
+        let mut load = |source: Option<&HeightSource>, mesh: &Mesh| {
+            load_heights(source, mesh, &mut warnings, &small, &Progress::new())
+        };
+        assert!(load(None, &mesh).is_ok_and(|heights| heights.is_none()), "it has none");
+        mesh.materials[0].height = Some(map);
+        assert!(load(Some(&HeightSource::Model), &mesh).is_err());
+        assert!(load(None, &mesh).is_ok_and(|heights| heights.is_none()));
+        assert!(warnings.len() == 1 && warnings[0].starts_with("its height images are left out: "), "{warnings:?}");
     }
 
     #[test]
     fn a_file_that_is_not_an_image_is_refused() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
-        let error = from_file(path, &Mesh::default(), &Budget::unlimited(), &Progress::new())
-            .expect_err("no image")
-            .to_string();
+        let source = HeightSource::File(path.to_owned());
+        let error = source.load(&Mesh::default(), &[], &Budget::unlimited(), &Progress::new());
+        let error = error.expect_err("no image").to_string();
         assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
     }
 }

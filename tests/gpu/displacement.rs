@@ -357,8 +357,7 @@ fn halves_under(own: &[Option<HeightMap>; 2]) -> (Loaded, Scene) {
     let count = mesh.triangles.len() as u32;
     let half = |triangles| Material { triangles, ..mesh.materials[0].clone() };
     mesh.materials = vec![half(0..count / 2), half(count / 2..count)];
-    let heights = Heights::of_materials(&mesh, own, &Progress::new()).expect("not cancelled");
-    mesh.heights = heights.map(Arc::new);
+    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, own, &Progress::new()).expect("not cancelled")));
     on_device(Shape::Torus, mesh)
 }
 

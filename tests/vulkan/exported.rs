@@ -165,7 +165,7 @@ impl<'a> Subject<'a> {
         let corners = displaced_corners(&self.mesh, &self.topology);
         let displaced = corners.as_deref().filter(|_| tessellation.displacement != Displacement::Off);
         let displaced = displaced.and_then(|corners| {
-            let map = self.mesh.heights.as_deref()?.maps().first()?;
+            let map = self.mesh.heights.as_deref()?.maps.first()?;
             let levels = file("levels.comp").or(file("levels.hlsl"));
             Some(Displaced { corners, map, constants: self.height_constants(tessellation, map), levels })
         });

@@ -21,6 +21,9 @@ pub const MAX_KEPT: u32 = 4096;
 /// The greatest number of maps of a mesh, for which the shaders have room.
 pub const MAX_MAPS: usize = 256;
 
+/// The largest scale and midlevel of an image, so that no coordinate leaves f32.
+const MOST_AMOUNT: f32 = 1e9;
+
 /// How far heights move the surface: by `scale` * (height - `midlevel`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeightAmount {
@@ -32,10 +35,10 @@ pub struct HeightAmount {
 
 impl HeightAmount {
     /// The amount by which a height that is multiplied by `factor` and then has `offset` added moves the surface, both in object
-    /// units; none if that isn't finite, or doesn't depend on the height.
+    /// units; none if a number is no number or above 1e9, or if the height makes no difference.
     pub fn from_factor(factor: f32, offset: f32) -> Option<Self> {
         let amount = Self { scale: factor, midlevel: -offset / factor };
-        (factor != 0.0 && factor.is_finite() && amount.midlevel.is_finite()).then_some(amount)
+        [factor, amount.midlevel].iter().all(|number| number.abs() <= MOST_AMOUNT).then_some(amount)
     }
 }
 
@@ -86,86 +89,39 @@ impl HeightMap {
     pub fn with_amount(&self, amount: Option<HeightAmount>) -> Self {
         Self { amount, ..self.clone() }
     }
-
-    /// Whether both have the same pixels, without comparing them.
-    pub fn shares_pixels(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.heights, &other.heights)
-    }
-
-    /// Returns the greatest distance that it moves a point by, in object units, where the settings say `usual`.
-    pub fn reach(&self, usual: HeightAmount) -> f32 {
-        let HeightAmount { scale, midlevel } = self.amount.unwrap_or(usual);
-        scale.abs() * self.range.map(|height| (height - midlevel).abs()).into_iter().fold(0.0, f32::max)
-    }
 }
 
 impl Heights {
     /// Uses one map for all materials of a mesh.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
         // The only possible error is cancellation, and no other code has this handle.
-        Self::all_over(mesh, map, &Progress::new()).expect("not cancelled")
+        Self::of_materials(mesh, &vec![Some(map); mesh.materials.len()], &Progress::new()).expect("not cancelled")
     }
 
-    /// Uses one map for all materials of a mesh, and can be cancelled.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
-    pub fn all_over(mesh: &Mesh, map: HeightMap, progress: &Progress) -> Result<Self, Cancelled> {
-        Self::new(mesh, vec![map], vec![Some(0); mesh.materials.len()], progress)
-    }
-
-    /// Uses several maps; `of_material` holds the map of each material.
+    /// Uses a map for each material that has one. Materials whose maps are equal share one.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
-    pub fn new(
-        mesh: &Mesh,
-        mut maps: Vec<HeightMap>,
-        of_material: Vec<Option<u32>>,
-        progress: &Progress,
-    ) -> Result<Self, Cancelled> {
-        for (material, map) in mesh.materials.iter().zip(&of_material) {
-            let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
-            let uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
-            let beyond = |uv: Vec2| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any();
-            if let Some(map) = map.and_then(|map| maps.get_mut(map as usize)) {
-                map.repeats |= uvs.clone().any(beyond);
+    pub fn of_materials(mesh: &Mesh, own: &[Option<HeightMap>], progress: &Progress) -> Result<Self, Cancelled> {
+        let (mut maps, mut of_material): (Vec<HeightMap>, _) = (Vec::new(), Vec::new());
+        for (material, own) in mesh.materials.iter().zip(own) {
+            let Some(own) = own else {
+                of_material.push(None);
+                continue;
+            };
+            let is_same = |map: &HeightMap| Arc::ptr_eq(&map.heights, &own.heights) && map.amount == own.amount;
+            let index = maps.iter().position(is_same).unwrap_or(maps.len());
+            if index == maps.len() {
+                maps.push(own.clone());
             }
+            of_material.push(Some(to_u32(index)));
+            let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
+            let mut uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
+            maps[index].repeats |= uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any());
         }
         let reliefs = relief::reliefs(mesh, &maps, &of_material, progress)?;
-        Ok(Self {
-            maps,
-            of_material,
-            are_of_colors: false,
-            radius: mesh.bounds().radius(),
-            angles: angles(mesh),
-            reliefs,
-        })
-    }
-
-    /// Uses the maps that materials have; none without any. Materials whose maps are equal share one.
-    ///
-    /// # Errors
-    /// [`Cancelled`] when `progress` says so.
-    pub fn of_materials(
-        mesh: &Mesh,
-        own: &[Option<HeightMap>],
-        progress: &Progress,
-    ) -> Result<Option<Self>, Cancelled> {
-        let mut maps: Vec<HeightMap> = Vec::new();
-        let mut number = |own: &HeightMap| {
-            let is_same = |map: &HeightMap| map.shares_pixels(own) && map.amount == own.amount;
-            let known = maps.iter().position(is_same);
-            to_u32(known.unwrap_or_else(|| {
-                maps.push(own.clone());
-                maps.len() - 1
-            }))
-        };
-        let of_material: Vec<_> = own.iter().map(|own| own.as_ref().map(&mut number)).collect();
-        if maps.is_empty() {
-            return Ok(None);
-        }
-        Self::new(mesh, maps, of_material, progress).map(Some)
+        let (radius, angles) = (mesh.bounds().radius(), angles(mesh));
+        Ok(Self { maps, of_material, are_of_colors: false, radius, angles, reliefs })
     }
 
     /// Returns the number of a material's image, if it has one.
@@ -173,32 +129,25 @@ impl Heights {
         self.of_material.get(material).copied().flatten()
     }
 
-    /// Returns the images.
-    pub fn maps(&self) -> &[HeightMap] {
-        &self.maps
-    }
-
     /// Returns the greatest distance that a point can be moved by, in object units, where the settings say `usual`.
     pub fn reach(&self, usual: HeightAmount) -> f32 {
-        self.maps.iter().map(|map| map.reach(usual)).fold(0.0, f32::max)
+        let of_map = |map: &HeightMap| {
+            let HeightAmount { scale, midlevel } = map.amount.unwrap_or(usual);
+            map.range.map(|height| (scale * (height - midlevel)).abs())
+        };
+        self.maps.iter().flat_map(of_map).fold(0.0, f32::max)
     }
 
     /// Whether the settings say how far some image moves the surface.
     pub fn follow_settings(&self) -> bool {
         self.maps.iter().any(|map| map.amount.is_none())
     }
-
-    /// Returns the size of all maps, in bytes.
-    pub fn bytes(&self) -> u64 {
-        bytes_of_maps(self.maps.iter())
-    }
 }
 
 /// Returns the size of maps in bytes. Pixels that several share count once.
 pub fn bytes_of_maps<'a>(maps: impl Iterator<Item = &'a HeightMap>) -> u64 {
-    let known: HashMap<*const Vec<f32>, u64> =
-        maps.map(|map| (Arc::as_ptr(&map.heights), size_of_val(&map.heights[..]) as u64)).collect();
-    known.values().sum()
+    let known: HashMap<_, _> = maps.map(|map| (Arc::as_ptr(&map.heights), map.heights.len())).collect();
+    4 * known.into_values().sum::<usize>() as u64
 }
 
 /// Returns how many bytes [`Heights`] take for a mesh beside their maps: for angles, and for bounds over triangles while they are made.
@@ -231,6 +180,7 @@ mod tests {
         assert_eq!([0.0, 0.5, 0.75, 1.0].map(reach), [2.0, 1.0, 1.0, 1.5]);
         let own = heights.maps[0].with_amount(HeightAmount::from_factor(4.0, -1.0));
         assert_eq!(own.amount, Some(HeightAmount { scale: 4.0, midlevel: 0.25 }));
+        let own = Heights { maps: vec![own], ..heights };
         assert_eq!(own.reach(HeightAmount { scale: 100.0, midlevel: 0.0 }), 3.0, "the settings don't count");
     }
 
@@ -238,6 +188,8 @@ mod tests {
     fn amounts_that_depend_on_no_height_are_none() {
         let bad = [(0.0, 1.0), (f32::NAN, 0.0), (f32::INFINITY, 0.0), (1.0, f32::NAN), (1e-30, 1e30)];
         assert!(bad.into_iter().all(|(factor, offset)| HeightAmount::from_factor(factor, offset).is_none()));
+        assert_eq!(HeightAmount::from_factor(1e9, 0.0).map(|amount| amount.scale), Some(1e9));
+        assert_eq!(HeightAmount::from_factor(1.1e9, 0.0), None);
     }
 
     #[test]
@@ -247,13 +199,10 @@ mod tests {
         let map = HeightMap::new([2, 2], vec![0.5; 4]);
         let deep = map.with_amount(HeightAmount::from_factor(3.0, 0.0));
         let own = [Some(map.clone()), None, Some(deep.clone()), Some(map.clone())];
-        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("maps");
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled");
         assert_eq!(heights.of_material, [Some(0), None, Some(1), Some(0)]);
-        assert_eq!((heights.maps.len(), heights.bytes(), heights.follow_settings()), (2, 4 * 5, true));
-        let none = Heights::of_materials(&mesh, &[None, None, None, None], &Progress::new());
-        assert_eq!(none, Ok(None));
-        let deep = Heights::of_materials(&mesh, &[None, None, Some(deep)], &Progress::new());
-        assert!(deep.is_ok_and(|deep| deep.is_some_and(|deep| !deep.follow_settings())));
+        assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
+        assert!(heights.follow_settings() && !Heights::everywhere(&mesh, deep).follow_settings());
     }
 
     #[test]

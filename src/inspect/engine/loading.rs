@@ -4,16 +4,15 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
-use geometry::mesh::{BuildError, CreaseBand, Heights, Mesh, Moment, Topology, with_crease_band};
+use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
-use load::heights::from_model;
+use load::heights::load_heights;
 use load::parts::Part;
 use load::selection::Selection;
 use load::{
-    Budget, HeightError, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings,
-    untextured_warning,
+    Budget, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings, untextured_warning,
 };
 
 /// A mesh with its topology, and how long both took.
@@ -100,7 +99,7 @@ pub struct Preparation {
 pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
     // Large images take longer than most meshes.
-    let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
+    let of_mesh = progress.part(0.0, if preparation.heights.is_some() { 0.4 } else { 1.0 });
     let selected = Selection {
         variant: preparation.variant.as_deref(),
         scene: preparation.scene.as_deref(),
@@ -132,10 +131,10 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         }
     }
     let mesh = cut.as_mut().unwrap_or(&mut read);
-    if let Some(heights) = heights(preparation, mesh, &mut warnings, &budget, progress)? {
-        warnings.extend(untextured_warning(&heights, mesh));
-        mesh.heights = Some(Arc::new(heights));
-    }
+    let source = preparation.heights.as_ref();
+    source.iter().for_each(|_| progress.enter(Stage::Heights));
+    let heights = load_heights(source, mesh, &mut warnings, &budget, &progress.part(0.4, 1.0))?;
+    mesh.heights = heights.map(Arc::new);
     let read = Arc::new(read);
     Ok(Loaded {
         source: source.clone(),
@@ -153,28 +152,6 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         load_ms: (loaded - start).as_secs_f64() * 1e3,
         topology_ms: loaded.elapsed().as_secs_f64() * 1e3,
     })
-}
-
-/// Loads the heights that displace a mesh. If nobody asked for those of its file, a flaw in them costs a warning.
-fn heights(
-    preparation: &Preparation,
-    mesh: &Mesh,
-    warnings: &mut Vec<String>,
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<Option<Heights>, LoadError> {
-    if let Some(source) = &preparation.heights {
-        progress.enter(Stage::Heights);
-        return Ok(Some(source.load(mesh, warnings, budget, &progress.part(0.4, 1.0))?));
-    }
-    match from_model(&[], mesh, budget, &progress.part(1.0, 1.0)) {
-        Ok(heights) => Ok(heights),
-        Err(HeightError::Cancelled(cancelled)) => Err(cancelled.into()),
-        Err(error) => {
-            warnings.push(format!("its height images are left out: {error}."));
-            Ok(None)
-        }
-    }
 }
 
 /// Converts the error of a step after reading; `what` names what that step makes.

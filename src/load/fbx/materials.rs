@@ -22,11 +22,9 @@ pub(super) struct Materials<'a> {
     budget: &'a Budget,
     /// By material (none for polygons without one) and the sets of its maps, which depend on the mesh.
     resolved: HashMap<(Option<u32>, Vec<usize>), Resolved>,
-    heights: ModelImages<u32>,
+    heights: ModelImages<'a, u32>,
     /// How many object units one unit of the file is.
     unit: f32,
-    /// The memory that the rest of the load takes, in bytes.
-    reserved: u64,
     /// By what isn't drawn, the names of the materials that have it.
     undrawn: BTreeMap<&'static str, Vec<String>>,
     notes: Notes,
@@ -50,9 +48,8 @@ impl<'a> Materials<'a> {
             textures: Textures::new(files),
             budget: files.budget,
             resolved: HashMap::new(),
-            heights: ModelImages::new(),
+            heights: ModelImages::new(files),
             unit,
-            reserved: 0,
             undrawn: BTreeMap::new(),
             notes: Notes::default(),
         }
@@ -67,7 +64,7 @@ impl<'a> Materials<'a> {
         meshes: impl Iterator<Item = (&'m Node, &'m Mesh)>,
         reserved: u64,
     ) -> Result<(), ReadError> {
-        self.reserved = reserved;
+        self.heights.reserved = reserved;
         let mut seen = HashSet::new();
         let sources = meshes.flat_map(|(node, mesh)| {
             let is_new = seen.insert(mesh.element.typed_id);
@@ -164,12 +161,9 @@ impl<'a> Materials<'a> {
             let said = "lies elsewhere than its base colour, whose texture coordinates are used";
             self.notes.push(format!("the height image of material \"{}\" {said}.", source.name));
         }
-        let Self { textures, heights, notes, reserved, budget, .. } = self;
-        let image = format!("\"{}\"", shown(file.element.name.as_ref()));
-        let within = (*reserved, *budget, textures.files.progress);
-        let names = (&*image, &*source.name);
-        let read = heights.read(file.file_index, names, || textures.bytes(file), within, |said| notes.push(said))?;
-        Ok(read.map(|map| map.with_amount(HeightAmount::from_factor(source.height_factor * self.unit, 0.0))))
+        let names = (&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name);
+        let amount = HeightAmount::from_factor(source.height_factor * self.unit, 0.0);
+        Ok(self.heights.read(file.file_index, names, amount, || self.textures.bytes(file))?)
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.
@@ -237,6 +231,7 @@ impl<'a> Materials<'a> {
     pub(super) fn into_notes(self) -> Notes {
         const NAMED: usize = 5;
         let mut notes = self.notes;
+        notes.extend(self.heights.warnings);
         for (what, materials) in self.undrawn {
             let mut names: Vec<_> = materials.iter().take(NAMED).map(|name| format!("\"{name}\"")).collect();
             if materials.len() > NAMED {

@@ -13,7 +13,7 @@ use geometry::progress::Cancelled;
 
 /// Images by texture.
 pub(super) struct Textures<'a> {
-    pub(super) files: &'a Files<'a>,
+    files: &'a Files<'a>,
     /// By the number of the file.
     images: HashMap<u32, ReadImage>,
 }

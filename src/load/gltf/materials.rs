@@ -61,7 +61,7 @@ pub(super) struct Materials<'a> {
     /// Maps of roughness that were made of glossiness, by the image and the bits of its factor.
     rough: HashMap<(*const Texture, u32), Arc<Texture>>,
     /// By the image's index.
-    heights: ModelImages<usize>,
+    heights: ModelImages<'a, usize>,
     /// The memory that the rest of the load takes, in bytes.
     reserved: u64,
     /// For what isn't drawn, the names of the first few materials that have it, and how many have it.
@@ -108,7 +108,7 @@ impl<'a> Materials<'a> {
             textures: HashMap::new(),
             images: HashMap::new(),
             rough: HashMap::new(),
-            heights: ModelImages::new(),
+            heights: ModelImages::new(files),
             reserved: 0,
             undrawn: BTreeMap::new(),
             notes: RefCell::default(),
@@ -149,7 +149,7 @@ impl<'a> Materials<'a> {
     /// # Errors
     /// [`GltfError::Cancelled`].
     pub(super) fn read_images(&mut self, reserved: u64, progress: &Progress) -> Result<(), GltfError> {
-        self.reserved = reserved;
+        (self.reserved, self.heights.reserved) = (reserved, reserved);
         let mut keys: Vec<_> = self.sources.keys().copied().collect();
         keys.sort_unstable();
         let mut found: Vec<FoundImage> = Vec::new();
@@ -251,12 +251,8 @@ impl<'a> Materials<'a> {
         }
         let image = *self.texture_source(map.texture)?.images.last()?;
         let bytes = || texture_source::image(&self.lists.images, image, self.accessors, self.files);
-        let within = (self.reserved, self.budget, self.files.progress);
-        let notes = &self.notes;
-        let warn = |said| notes.borrow_mut().push(said);
         // If it was cancelled, what follows ends too.
-        let read = self.heights.read(image, (&format!("/images/{image}"), material), bytes, within, warn);
-        Some(read.ok()??.with_amount(amount))
+        self.heights.read(image, (&format!("/images/{image}"), material), amount, bytes).ok()?
     }
 
     /// Gives a material a map of roughness, made of the glossiness in the image of its specular colour, times this factor.
@@ -329,6 +325,7 @@ impl<'a> Materials<'a> {
     /// Returns what was repaired or left out.
     pub(super) fn into_notes(self) -> Notes {
         let mut notes = self.notes.into_inner();
+        notes.extend(self.heights.warnings);
         for (what, (named, count)) in self.undrawn {
             let names = named.join(", ");
             notes.push(match count - named.len() {

@@ -27,19 +27,13 @@ const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TIFF or EXR image";
 /// The largest height, positive or negative. Images with floating-point numbers may have heights beyond black and white.
 const MOST_HEIGHT: f32 = 65504.0;
 
-/// Reads a PNG, JPEG, WebP, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than its file and its map;
-/// any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `beside` is how many
-/// bytes heights take beside their map.
+/// Reads a PNG, JPEG, WebP, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than its file
+/// and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
 ///
 /// # Errors
 /// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
-pub(super) fn read_map(
-    path: &Path,
-    beside: u64,
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<HeightMap, HeightError> {
-    let image = ImageFile { path, beside, budget, progress };
+pub(super) fn read_map(path: &Path, budget: &Budget, progress: &Progress) -> Result<HeightMap, HeightError> {
+    let image = ImageFile { path, reserved: 0, budget, progress };
     let check = |start: &[u8]| {
         image::guess_format(start).map_err(|_| image.fail(NO_IMAGE.to_owned()))?;
         image.check(png_header(start).map_or([0; 2], |(size, _)| size)).map(|_| ())
@@ -49,15 +43,15 @@ pub(super) fn read_map(
     image.decode(&bytes)
 }
 
-/// The same of an image in memory, which errors call `name`.
+/// The same of an image in memory, which errors call `name`. `reserved` is the memory that the rest of the load takes, in bytes.
 pub(super) fn map_of_bytes(
     name: &Path,
     bytes: &[u8],
-    beside: u64,
+    reserved: u64,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<HeightMap, HeightError> {
-    ImageFile { path: name, beside, budget, progress }.decode(bytes)
+    ImageFile { path: name, reserved, budget, progress }.decode(bytes)
 }
 
 impl From<FileError> for HeightError {
@@ -120,7 +114,7 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 /// An image file that is being read, with what reading it needs.
 struct ImageFile<'a> {
     path: &'a Path,
-    beside: u64,
+    reserved: u64,
     budget: &'a Budget,
     progress: &'a Progress,
 }
@@ -204,13 +198,14 @@ impl ImageFile<'_> {
     /// Checks that the budget has room for an image of this size: `px` bytes of decoded pixels, `decoding` bytes while
     /// it is decoded, and the map, which is held.
     fn afford(&self, size: [u32; 2], bytes: &[u8], px: u64, decoding: u64) -> Result<(), HeightError> {
-        let kept = HeightMap::bytes_to_build(size).saturating_add(self.beside);
+        let kept = HeightMap::bytes_to_build(size);
         let too_much = |refused: MemoryRefused| HeightError::TooMuch {
             path: self.path.to_owned(),
             size,
             reason: refused.to_string(),
         };
-        let all = px.saturating_add(kept.max(decoding)).saturating_add(bytes.len() as u64);
+        let all =
+            px.saturating_add(kept.max(decoding)).saturating_add(bytes.len() as u64).saturating_add(self.reserved);
         borrowing(self.budget, || self.budget.borrow(all)).map_err(too_much)?;
         self.budget.hold(kept).map_err(too_much)
     }
@@ -262,19 +257,19 @@ mod tests {
             let mut bytes = Cursor::new(Vec::new());
             image.write_to(&mut bytes, format).expect("an image in memory");
             let file = write(&folder, "px", bytes.get_ref());
-            let map = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect("an image");
+            let map = read_map(&file, &Budget::unlimited(), &Progress::new()).expect("an image");
             let expected = [2.5, -1.0, 0.0, 0.0, -MOST_HEIGHT];
             let close = |(own, expected): (&f32, f32)| (own - expected).abs() <= 1e-6 * expected.abs();
             assert!(map.heights.iter().zip(expected).all(close), "{format:?}: {:?}", &map.heights[..5]);
             assert_eq!(map.range.map(f32::round), [-MOST_HEIGHT, 3.0], "{format:?}");
             let cut = write(&folder, "cut", &bytes.get_ref()[..bytes.get_ref().len() / 2]);
-            let said = read_map(&cut, 0, &Budget::unlimited(), &Progress::new()).expect_err("half an image");
+            let said = read_map(&cut, &Budget::unlimited(), &Progress::new()).expect_err("half an image");
             assert!(said.to_string().contains("can't be read as a height image"), "{said}");
         }
         let wide: ImageBuffer<Luma<u16>, _> = ImageBuffer::from_raw(2, 1, vec![1_u16, 65535]).expect("two px");
         let file = folder.path().join("wide.tif");
         wide.save(&file).expect("a writable temporary folder");
-        let map = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect("an image");
+        let map = read_map(&file, &Budget::unlimited(), &Progress::new()).expect("an image");
         assert_eq!(map.heights[..2], [1.0 / 65535.0, 1.0], "all 16 bits");
     }
 
@@ -284,10 +279,10 @@ mod tests {
         let folder = tempfile::tempdir().expect("a writable temporary folder");
         let file = write(&folder, "px.png", &png(&image));
         let progress = Progress::new();
-        assert_eq!(read_map(&file, 0, &Budget::unlimited(), &progress).expect("an image"), of(&image));
+        assert_eq!(read_map(&file, &Budget::unlimited(), &progress).expect("an image"), of(&image));
         assert!(progress.fraction() > 0.8, "{}", progress.fraction());
         progress.cancel();
-        assert!(matches!(read_map(&file, 0, &Budget::unlimited(), &progress), Err(HeightError::Cancelled(Cancelled))));
+        assert!(matches!(read_map(&file, &Budget::unlimited(), &progress), Err(HeightError::Cancelled(Cancelled))));
     }
 
     #[test]
@@ -299,13 +294,13 @@ mod tests {
         header.extend([8, 0, 0, 0, 0]);
         let folder = tempfile::tempdir().expect("a writable temporary folder");
         let file = write(&folder, "large.png", &header);
-        let error = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        let error = read_map(&file, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
         let expected = "has 20000 x 20000 px, but at most 16384 px a side are read; scale it to 4096 px a side or less";
         assert!(error.ends_with(expected) && error.contains("large.png"), "{error}");
         // One pixel more than is read; the decoder itself would read it.
         let wide = DynamicImage::new_luma8(MAX_SIZE + 1, 1);
         let file = write(&folder, "wide.png", &png(&wide));
-        let error = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        let error = read_map(&file, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
         assert!(error.contains("has 16385 x 1 px"), "{error}");
     }
 }

@@ -252,15 +252,13 @@ impl<'a> Materials<'a> {
     }
 
     fn read_heights(&mut self, faces: &mut FaceBuilder, reserved: u64) -> Result<(), ReadError> {
-        let Self { files, heights, problems, .. } = self;
-        let mut images = ModelImages::new();
-        for (index, MtlTexture { file, amount, .. }) in heights.drain(..) {
-            let material = faces.builder.material_mut(index);
-            let (image, within) = (shown(file.as_bytes()), (reserved, files.budget, files.progress));
-            let bytes = || files.read_path(&file).map(Cow::Owned);
-            let map = images.read(file.clone(), (&image, &material.name), bytes, within, |said| problems.push(said))?;
-            material.height = map.map(|map| map.with_amount(amount));
+        let mut images = ModelImages { reserved, ..ModelImages::new(self.files) };
+        for (index, MtlTexture { file, amount, .. }) in self.heights.drain(..) {
+            let (material, image) = (faces.builder.material_mut(index), shown(file.as_bytes()));
+            let bytes = || self.files.read_path(&file).map(Cow::Owned);
+            material.height = images.read(file.clone(), (&image, &material.name), amount, bytes)?;
         }
+        self.problems.extend(images.warnings);
         Ok(())
     }
 

@@ -192,7 +192,7 @@ fn a_displacement_map_is_a_height_image_in_units_of_the_file() {
     assert_eq!((map.size, map.amount), ([1, 2], HeightAmount::from_factor(0.01, 0.0)));
     let broken = text(&square_textured_as("DisplacementColor", Ok(b"no image"), 1.0));
     let broken = read(&broken).expect("a mesh");
-    let start = "the height image \"wood\" of material \"paint\" is left out: ";
+    let start = "the height image of material \"paint\" is left out: \"wood\" can't be read as a height image: ";
     assert!(broken.materials[0].height.is_none() && broken.warnings[0].starts_with(start), "{:?}", broken.warnings);
 }
 

@@ -139,7 +139,8 @@ fn height_images_displace_as_the_file_says() {
     assert_eq!(map.map(|map| map.amount), Some(None), "the file doesn't say how far");
     for (file, reason) in [("gone.png", "there is no such file"), ("m.mtl", "choose a "), ("../up.png", "with ..")] {
         let (map, warnings) = height(&format!("disp {file}\n"));
-        let start = format!("the height image \"{file}\" of material \"m\" is left out: ");
+        let start =
+            format!("the height image of material \"m\" is left out: \"{file}\" can't be read as a height image: ");
         let is_said = warnings.len() == 1 && warnings[0].starts_with(&start) && warnings[0].contains(reason);
         assert!(map.is_none() && is_said, "{warnings:?}");
     }
