@@ -11,9 +11,7 @@ use load::files::Limits;
 use load::heights::load_heights;
 use load::parts::Part;
 use load::selection::Selection;
-use load::{
-    Budget, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings, untextured_warning,
-};
+use load::{Budget, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug)]
@@ -99,7 +97,7 @@ pub struct Preparation {
 pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
     // Large images take longer than most meshes.
-    let of_mesh = progress.part(0.0, if preparation.heights.is_some() { 0.4 } else { 1.0 });
+    let of_mesh = if preparation.heights.is_some() { 0.4 } else { 1.0 };
     let selected = Selection {
         variant: preparation.variant.as_deref(),
         scene: preparation.scene.as_deref(),
@@ -108,7 +106,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         import: preparation.import,
     };
     let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: _ } =
-        source.load_selected(selected, &preparation.limits, &of_mesh)?;
+        source.load_selected(selected, &preparation.limits, &progress.part(0.0, of_mesh))?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
     let too_large = |what| move |error| unfinished(source, what, error);
@@ -131,9 +129,11 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         }
     }
     let mesh = cut.as_mut().unwrap_or(&mut read);
-    let source = preparation.heights.as_ref();
-    source.iter().for_each(|_| progress.enter(Stage::Heights));
-    let heights = load_heights(source, mesh, &mut warnings, &budget, &progress.part(0.4, 1.0))?;
+    let wanted = preparation.heights.as_ref();
+    if wanted.is_some() {
+        progress.enter(Stage::Heights);
+    }
+    let heights = load_heights(wanted, mesh, &mut warnings, &budget, &progress.part(of_mesh, 1.0))?;
     mesh.heights = heights.map(Arc::new);
     let read = Arc::new(read);
     Ok(Loaded {
