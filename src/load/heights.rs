@@ -145,9 +145,7 @@ impl HeightSource {
     pub fn title(&self) -> String {
         match self {
             Self::Model => "As the file says".to_owned(),
-            Self::Each(images) => {
-                images.iter().map(|image| format!("Of {}", image.material)).collect::<Vec<_>>().join(", ")
-            }
+            Self::Each(_) => "Images of materials".to_owned(),
             Self::Materials => "Base colour brightness".to_owned(),
             Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         }
@@ -218,15 +216,16 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         Self { files, known: HashMap::new(), reserved: 0, warnings: Vec::new() }
     }
 
-    /// Returns an image of a material. One that can't be read causes a warning, which names the first material that has it.
+    /// Returns an image of a material. One that can't be read causes a warning, which names the first material that has it, and so does
+    /// one that is elsewhere than the texture coordinates that corners have themselves.
     ///
     /// # Errors
     /// [`Cancelled`].
     pub(super) fn read<'b>(
         &mut self,
         key: K,
-        (image, material): (&str, &str),
-        amount: Option<HeightAmount>,
+        [image, material]: [&str; 2],
+        is_elsewhere: bool,
         bytes: impl FnOnce() -> Result<Cow<'b, [u8]>, String>,
     ) -> Result<Option<HeightMap>, Cancelled> {
         let Files { budget, progress, .. } = self.files;
@@ -245,8 +244,12 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
                 Ok(map) => Some(map),
             },
         };
+        if is_elsewhere {
+            let said = "lies elsewhere than its base colour, whose texture coordinates are used";
+            self.warnings.push(format!("the height image of material \"{material}\" {said}."));
+        }
         self.known.insert(key, map.clone());
-        Ok(map.map(|map| map.with_amount(amount)))
+        Ok(map)
     }
 }
 

@@ -6,7 +6,7 @@ use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
 use crate::app::text::short;
 use crate::commands::{Action, HEIGHT_IMAGE, Purpose, key_name};
-use geometry::mesh::{HeightAmount, HeightMap, Material};
+use geometry::mesh::{HeightAmount, Material};
 use geometry::names::shown;
 use geometry::tessellate::Displacement;
 use inspect::settings::options;
@@ -90,25 +90,16 @@ impl App {
         }
     }
 
-    /// Names the first few materials with a height image, and how far each moves the surface if the settings don't say it.
+    /// Names the first few materials whose images say how far they move the surface.
     fn amounts(&self) -> String {
         const NAMED: usize = 8;
-        let Some(document) = &self.document else { return String::new() };
-        let mesh = &document.loaded.mesh;
-        let map = |index| mesh.heights.as_deref().and_then(|heights| heights.maps.get(heights.map_of(index)? as usize));
-        let displaced = mesh.materials.iter().enumerate().filter_map(|(index, own)| Some((own, map(index)?)));
-        let line = |(material, map): (&Material, &HeightMap)| match map.amount {
-            None => format!("\n{}: as far as the scale says", shown(&material.name)),
-            Some(HeightAmount { scale, midlevel }) => {
-                let [scale, midlevel] = [scale, midlevel].map(|number| short(f64::from(number)));
-                format!("\n{}: {scale} object units, midlevel {midlevel}", shown(&material.name))
-            }
+        let mesh = self.document.as_ref().map(|document| document.loaded.mesh.clone()).unwrap_or_default();
+        let line = |(index, material): (usize, &Material)| {
+            let HeightAmount { scale, midlevel } = mesh.heights.as_deref()?.map(index)?.amount?;
+            let [scale, midlevel] = [scale, midlevel].map(|number| short(f64::from(number)));
+            Some(format!("\n{}: {scale} object units, midlevel {midlevel}", shown(&material.name)))
         };
-        let mut lines: Vec<_> = displaced.map(line).collect();
-        let more = lines.len().saturating_sub(NAMED);
-        lines.truncate(NAMED);
-        lines.extend((more > 0).then(|| format!("\nand {more} more materials")));
-        lines.concat()
+        mesh.materials.iter().enumerate().filter_map(line).take(NAMED).collect()
     }
 
     pub(in crate::app) fn toggle_displacement(&mut self) {

@@ -34,11 +34,15 @@ pub struct HeightAmount {
 }
 
 impl HeightAmount {
+    /// None if a number is no number, or above 1e9.
+    pub fn new(scale: f32, midlevel: f32) -> Option<Self> {
+        [scale, midlevel].iter().all(|number| number.abs() <= MOST_AMOUNT).then_some(Self { scale, midlevel })
+    }
+
     /// The amount by which a height that is multiplied by `factor` and then has `offset` added moves the surface, both in object
-    /// units; none if a number is no number or above 1e9, or if the height makes no difference.
+    /// units; none if the height makes no difference, and as for [`Self::new`].
     pub fn from_factor(factor: f32, offset: f32) -> Option<Self> {
-        let amount = Self { scale: factor, midlevel: -offset / factor };
-        [factor, amount.midlevel].iter().all(|number| number.abs() <= MOST_AMOUNT).then_some(amount)
+        Self::new(factor, -offset / factor)
     }
 }
 
@@ -127,6 +131,11 @@ impl Heights {
     /// Returns the number of a material's image, if it has one.
     pub fn map_of(&self, material: usize) -> Option<u32> {
         self.of_material.get(material).copied().flatten()
+    }
+
+    /// Returns a material's image, if it has one.
+    pub fn map(&self, material: usize) -> Option<&HeightMap> {
+        self.maps.get(self.map_of(material)? as usize)
     }
 
     /// Returns the greatest distance that a point can be moved by, in object units, where the settings say `usual`.

@@ -161,8 +161,7 @@ impl<'a> MeshDisplacement<'a> {
 
     /// Returns the height map of a patch.
     fn map(&self, patch: u32) -> Option<&'a HeightMap> {
-        let map = self.heights.map_of(self.topology.material_of(patch))?;
-        self.heights.maps.get(map as usize)
+        self.heights.map(self.topology.material_of(patch))
     }
 
     /// Returns how far an image moves the surface.

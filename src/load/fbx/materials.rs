@@ -157,13 +157,11 @@ impl<'a> Materials<'a> {
         let Some((map, file)) = source.height.and_then(|map| Some((map, of_file(map.texture)?))) else {
             return Ok(None);
         };
-        if map.uvs != source.own_uvs() {
-            let said = "lies elsewhere than its base colour, whose texture coordinates are used";
-            self.notes.push(format!("the height image of material \"{}\" {said}.", source.name));
-        }
-        let names = (&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name);
+        let names = [&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name];
+        let is_elsewhere = map.uvs != source.own_uvs();
+        let read = self.heights.read(file.file_index, names, is_elsewhere, || self.textures.bytes(file))?;
         let amount = HeightAmount::from_factor(source.height_factor * self.unit, 0.0);
-        Ok(self.heights.read(file.file_index, names, amount, || self.textures.bytes(file))?)
+        Ok(read.map(|map| map.with_amount(amount)))
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.

@@ -245,14 +245,12 @@ impl<'a> Materials<'a> {
 
     fn height(&mut self, source: &MaterialSource, material: &str) -> Option<HeightMap> {
         let (map, amount) = source.height?;
-        if map.uvs != source.own_uvs() {
-            let said = "lies elsewhere than its base colour, whose texture coordinates are used";
-            self.notes.get_mut().push(format!("the height image of material \"{material}\" {said}."));
-        }
         let image = *self.texture_source(map.texture)?.images.last()?;
         let bytes = || texture_source::image(&self.lists.images, image, self.accessors, self.files);
+        let names = [&*format!("/images/{image}"), material];
         // If it was cancelled, what follows ends too.
-        self.heights.read(image, (&format!("/images/{image}"), material), amount, bytes).ok()?
+        let read = self.heights.read(image, names, map.uvs != source.own_uvs(), bytes).ok()?;
+        read.map(|map| map.with_amount(amount))
     }
 
     /// Gives a material a map of roughness, made of the glossiness in the image of its specular colour, times this factor.

@@ -1,15 +1,11 @@
 //! The texts of `--height`: which images displace the materials.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::{HeightSource, NamedImage};
 use geometry::mesh::HeightAmount;
 use geometry::tessellate::Tessellation;
-
-/// The text of each source that isn't a path.
-const MATERIALS: &str = "material";
-const MODEL: &str = "file";
 
 impl HeightSource {
     /// Reads `material`, `file`, `MATERIAL=IMAGE,scale=NUMBER,midlevel=NUMBER`, or the path of an image. A path with an equals sign in it
@@ -21,8 +17,8 @@ impl HeightSource {
         let is_path =
             |text: &str| Path::new(text).is_absolute() || ["./", "../"].iter().any(|start| text.starts_with(start));
         match text.to_str().filter(|text| !is_path(text)) {
-            Some(MATERIALS) => Ok(Self::Materials),
-            Some(MODEL) => Ok(Self::Model),
+            Some("material") => Ok(Self::Materials),
+            Some("file") => Ok(Self::Model),
             Some(text) if text.contains('=') => NamedImage::parse(text).map(|image| Self::Each(vec![image])),
             _ => Ok(Self::File(text.into())),
         }
@@ -31,11 +27,11 @@ impl HeightSource {
     /// Returns the texts that [`Self::parse`] reads it from, each the value of one option.
     pub fn texts(&self) -> Vec<String> {
         match self {
-            Self::Materials => vec![MATERIALS.to_owned()],
-            Self::Model => vec![MODEL.to_owned()],
+            Self::Materials => vec!["material".to_owned()],
+            Self::Model => vec!["file".to_owned()],
             Self::File(path) => {
                 let text = path.display().to_string();
-                let is_misread = Self::parse(path.into()) != Ok(self.clone()) || text.starts_with('-');
+                let is_misread = Self::parse(path.into()) != Ok(self.clone());
                 vec![if is_misread { format!("./{text}") } else { text }]
             }
             Self::Each(images) => images.iter().map(NamedImage::text).collect(),
@@ -60,19 +56,21 @@ impl NamedImage {
                 Some(("midlevel", number)) => (&mut midlevel, number),
                 _ => break,
             };
-            let read = number.parse().ok().filter(|number: &f32| number.is_finite());
-            *kept = Some(read.ok_or_else(|| format!("{option} is no number"))?);
+            *kept = Some(number.parse().map_err(|_| format!("{option} is no number"))?);
             path = before;
         }
         if material.is_empty() || path.is_empty() {
             return Err("write MATERIAL=IMAGE, or ./ in front of a path with an equals sign".to_owned());
         }
-        if scale.is_none() && midlevel.is_some() {
-            return Err("midlevel= needs scale=; without both, --height-scale and --midlevel hold".to_owned());
-        }
-        let midlevel = midlevel.unwrap_or(Tessellation::default().midlevel);
-        let amount = scale.map(|scale| HeightAmount { scale, midlevel });
-        Ok(Self { material: material.to_owned(), path: PathBuf::from(path), amount })
+        let amount = match (scale, midlevel) {
+            (None, None) => None,
+            (None, Some(_)) => return Err("midlevel= needs scale=".to_owned()),
+            (Some(scale), midlevel) => {
+                let amount = HeightAmount::new(scale, midlevel.unwrap_or(Tessellation::default().midlevel));
+                Some(amount.ok_or("scale= and midlevel= are at most 1e9")?)
+            }
+        };
+        Ok(Self { material: material.to_owned(), path: path.into(), amount })
     }
 
     fn text(&self) -> String {

@@ -252,11 +252,13 @@ impl<'a> Materials<'a> {
     }
 
     fn read_heights(&mut self, faces: &mut FaceBuilder, reserved: u64) -> Result<(), ReadError> {
-        let mut images = ModelImages { reserved, ..ModelImages::new(self.files) };
+        let mut images = ModelImages::new(self.files);
+        images.reserved = reserved;
         for (index, MtlTexture { file, amount, .. }) in self.heights.drain(..) {
             let (material, image) = (faces.builder.material_mut(index), shown(file.as_bytes()));
             let bytes = || self.files.read_path(&file).map(Cow::Owned);
-            material.height = images.read(file.clone(), (&image, &material.name), amount, bytes)?;
+            material.height =
+                images.read(file.clone(), [&image, &material.name], false, bytes)?.map(|map| map.with_amount(amount));
         }
         self.problems.extend(images.warnings);
         Ok(())
