@@ -20,15 +20,6 @@ fn map_scale(map: HeightMap) -> f32 {
     return select(params.height_scale, map.scale, map.has_amount != 0u);
 }
 
-// Returns how far white is above black on a patch, in object units; 0 where no image displaces it.
-fn patch_scale(patch_index: u32) -> f32 {
-    let map = map_of(patch_index);
-    if map == 0u {
-        return 0.0;
-    }
-    return map_scale(maps[map - 1u]);
-}
-
 // Returns whether a patch's material has a texture.
 fn is_textured(patch_index: u32) -> bool {
     return patch_traits(patch_index) >= TEXTURED;

@@ -15,15 +15,12 @@ use super::memory_budget::Budget;
 use super::uri::Files;
 use super::warnings::untextured_warning;
 use geometry::mesh::build_limits::{MemoryRefused, borrowing};
-use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, bytes_beside_maps};
+use geometry::mesh::heights::{HeightMap, Heights, MAX_MAPS, bytes_beside_maps};
 use geometry::mesh::{HeightAmount, Mesh, Texture};
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
 use reading::{map_of_bytes, map_of_px, read_map};
-
-/// The greatest width and height of an image that is read, in px.
-const MAX_SIZE: u32 = 16384;
 
 /// Why heights could not be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -32,22 +29,9 @@ pub enum HeightError {
     /// The load was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The image can't be read.
+    /// The image can't be read, or is too large.
     #[error("{} can't be read as a height image: {reason}", shown_path(path))]
     Image { path: PathBuf, reason: String },
-    /// The image is wider or higher than is read.
-    #[error(
-        "{} has {} x {} px, but at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
-        shown_path(path), size[0], size[1]
-    )]
-    TooLarge { path: PathBuf, size: [u32; 2] },
-    /// The image would take too much memory.
-    #[error(
-        "{} has {} x {} px and {reason}; scale it to {MAX_KEPT} px a side or less, or save it as a PNG that isn't \
-         interlaced",
-        shown_path(path), size[0], size[1]
-    )]
-    TooMuch { path: PathBuf, size: [u32; 2], reason: String },
     /// No material has an image that can be read.
     #[error(
         "{name} has no image to displace by: no material has a base colour image that can be read{why}; name a height image"

@@ -6,7 +6,7 @@ use std::path::Path;
 use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use png::{BitDepth, DecodingError};
 
-use super::{HeightError, MAX_SIZE};
+use super::HeightError;
 use crate::environment_file::unpacking_bytes;
 use crate::files::{self, FileError, file_reason, read_file};
 use crate::images::{decoding_bytes, metadata_limits, png_header};
@@ -15,8 +15,11 @@ use crate::watched_bytes::watched;
 use crate::webp;
 use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
-use geometry::mesh::heights::HeightMap;
+use geometry::mesh::heights::{HeightMap, MAX_KEPT};
 use geometry::progress::{Cancelled, Progress};
+
+/// The greatest width and height of an image that is read, in px.
+const MAX_SIZE: u32 = 16384;
 
 /// The bytes of a file at most: more than the largest image takes without compression.
 const LARGEST_FILE: u64 = 4 << 30;
@@ -124,11 +127,12 @@ impl ImageFile<'_> {
         HeightError::Image { path: self.path.to_owned(), reason }
     }
 
-    fn check(&self, size: [u32; 2]) -> Result<[u32; 2], HeightError> {
-        match size.iter().any(|&side| side > MAX_SIZE) {
-            true => Err(HeightError::TooLarge { path: self.path.to_owned(), size }),
-            false => Ok(size),
+    fn check(&self, [width, height]: [u32; 2]) -> Result<[u32; 2], HeightError> {
+        if width.max(height) > MAX_SIZE {
+            let most = format!("but at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less");
+            return Err(self.fail(format!("it has {width} x {height} px, {most}")));
         }
+        Ok([width, height])
     }
 
     fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
@@ -164,7 +168,7 @@ impl ImageFile<'_> {
         // Cancelling stops the decoder with some error.
         let undecoded = |error: ImageError| match (self.progress.check(), error) {
             (Err(cancelled), _) => cancelled.into(),
-            (_, ImageError::Unsupported(_)) => self.fail(NO_IMAGE.to_owned()),
+            (_, ImageError::Unsupported(_)) if image::guess_format(bytes).is_err() => self.fail(NO_IMAGE.to_owned()),
             (_, error) => self.fail(error.to_string()),
         };
         webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
@@ -199,10 +203,11 @@ impl ImageFile<'_> {
     /// it is decoded, and the map, which is held.
     fn afford(&self, size: [u32; 2], bytes: &[u8], px: u64, decoding: u64) -> Result<(), HeightError> {
         let kept = HeightMap::bytes_to_build(size);
-        let too_much = |refused: MemoryRefused| HeightError::TooMuch {
-            path: self.path.to_owned(),
-            size,
-            reason: refused.to_string(),
+        let too_much = |refused: MemoryRefused| {
+            let ([width, height], side) = (size, format!("scale it to {MAX_KEPT} px a side or less"));
+            self.fail(format!(
+                "it has {width} x {height} px and {refused}; {side}, or save it as a PNG that isn't interlaced"
+            ))
         };
         let all =
             px.saturating_add(kept.max(decoding)).saturating_add(bytes.len() as u64).saturating_add(self.reserved);
