@@ -266,7 +266,7 @@ mod tests {
             let expected = [2.5, -1.0, 0.0, 0.0, -MOST_HEIGHT];
             let close = |(own, expected): (&f32, f32)| (own - expected).abs() <= 1e-6 * expected.abs();
             assert!(map.heights.iter().zip(expected).all(close), "{format:?}: {:?}", &map.heights[..5]);
-            assert_eq!(map.range.map(f32::round), [-MOST_HEIGHT, 3.0], "{format:?}");
+            assert!(map.range[0] == -MOST_HEIGHT && (map.range[1] - 2.5).abs() < 1e-5, "{format:?}: {:?}", map.range);
             let cut = write(&folder, "cut", &bytes.get_ref()[..bytes.get_ref().len() / 2]);
             let said = read_map(&cut, &Budget::unlimited(), &Progress::new()).expect_err("half an image");
             assert!(said.to_string().contains("can't be read as a height image"), "{said}");
