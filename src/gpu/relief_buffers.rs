@@ -70,15 +70,9 @@ pub(crate) fn height_maps(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer 
 /// Lists of varying length lie one after another in one buffer; `starts` holds where each begins, and then where the last
 /// ends.
 pub struct ReliefBuffers {
-    pub part_starts: wgpu::Buffer,
-    /// For each point, its corners, each with the bits of its weight in the point's direction.
-    pub parts: wgpu::Buffer,
-    pub factor_starts: wgpu::Buffer,
-    /// For each point, the factors of its edges.
-    pub factors: wgpu::Buffer,
-    pub corner_ranges: wgpu::Buffer,
-    /// For each corner, its patches.
-    pub corner_patches: wgpu::Buffer,
+    /// By their names in WGSL: for each point its corners, each with the bits of its weight in the point's direction, and the factors of
+    /// its edges; for each corner its patches.
+    lists: [(&'static str, wgpu::Buffer); 6],
     pub corner_count: u32,
 }
 
@@ -88,21 +82,24 @@ impl ReliefBuffers {
     pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Result<Self, GpuError> {
         let (corner_ranges, corner_patches) = patches_of_corners(mesh, topology);
         let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
-        Ok(Self {
-            part_starts: filled(gpu, "part starts", &dominance.part_starts)?,
-            parts: filled(gpu, "parts", &parts)?,
-            factor_starts: filled(gpu, "factor starts", &dominance.factor_starts)?,
-            factors: filled(gpu, "point factors", &dominance.factors)?,
-            corner_ranges: filled(gpu, "corner ranges", &corner_ranges)?,
-            corner_patches: filled(gpu, "corner patches", &corner_patches)?,
-            corner_count: mesh.corners.len() as u32,
-        })
+        let lists = [
+            ("part_starts", filled(gpu, "part starts", &dominance.part_starts)?),
+            ("parts", filled(gpu, "parts", &parts)?),
+            ("factor_starts", filled(gpu, "factor starts", &dominance.factor_starts)?),
+            ("point_factors", filled(gpu, "point factors", &dominance.factors)?),
+            ("corner_ranges", filled(gpu, "corner ranges", &corner_ranges)?),
+            ("corner_patches", filled(gpu, "corner patches", &corner_patches)?),
+        ];
+        Ok(Self { lists, corner_count: mesh.corners.len() as u32 })
+    }
+
+    /// The list of this name.
+    pub fn get(&self, name: &str) -> Option<&wgpu::Buffer> {
+        self.lists.iter().find(|(own, _)| *own == name).map(|(_, list)| list)
     }
 
     pub fn bytes(&self) -> u64 {
-        let corners = [&self.corner_ranges, &self.corner_patches];
-        let points = [&self.part_starts, &self.parts, &self.factor_starts, &self.factors];
-        bytes_of(corners) + bytes_of(points)
+        bytes_of(self.lists.iter().map(|(_, list)| list))
     }
 }
 

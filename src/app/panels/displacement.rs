@@ -51,12 +51,9 @@ impl App {
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
         let label = ui.label("Height map");
-        let (of_file, hover) = match &self.document.as_ref().map(|document| document.loaded.mesh.clone()) {
-            Some(mesh) if mesh.materials.iter().any(|material| material.height.is_some()) => {
-                ("As the file says", "The height images that the file gives its materials.")
-            }
-            _ => ("None", "The surface isn't displaced."),
-        };
+        let materials = self.document.iter().flat_map(|document| &document.loaded.mesh.materials);
+        let has_own = materials.into_iter().any(|material| material.height.is_some());
+        let of_file = if has_own { "As the file says" } else { "None" };
         let shown = heights.as_ref().map_or(of_file.to_owned(), HeightSource::title);
         let mut chosen = None;
         let combo = egui::ComboBox::from_id_salt("Height map").selected_text(shown).truncate();
@@ -64,7 +61,7 @@ impl App {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
             };
-            if entry(of_file, heights.is_none(), hover) {
+            if entry(of_file, heights.is_none(), "The height images that the file gives its materials, if any.") {
                 chosen = Some(None);
             }
             let is_material = heights == Some(HeightSource::Materials);

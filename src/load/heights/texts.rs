@@ -7,19 +7,21 @@ use super::{HeightSource, NamedImage};
 use geometry::mesh::HeightAmount;
 use geometry::tessellate::Tessellation;
 
+/// What is said of a text that names no image of a material.
+const FORM: &str = "write MATERIAL=IMAGE,scale=NUMBER,midlevel=NUMBER without either number, without the second, or with both, of at \
+                    most 1e9; or ./ in front of a path with an equals sign";
+
 impl HeightSource {
     /// Reads `material`, `file`, `MATERIAL=IMAGE,scale=NUMBER,midlevel=NUMBER`, or the path of an image. A path with an equals sign in it
-    /// is absolute, or begins with `./` or `../`.
+    /// is absolute, or begins with a point.
     ///
     /// # Errors
-    /// A clause that says what is wrong.
-    pub fn parse(text: OsString) -> Result<Self, String> {
-        let is_path =
-            |text: &str| Path::new(text).is_absolute() || ["./", "../"].iter().any(|start| text.starts_with(start));
-        match text.to_str().filter(|text| !is_path(text)) {
+    /// A clause that says what to write.
+    pub fn parse(text: OsString) -> Result<Self, &'static str> {
+        match text.to_str().filter(|text| !text.starts_with('.') && !Path::new(text).is_absolute()) {
             Some("material") => Ok(Self::Materials),
             Some("file") => Ok(Self::Model),
-            Some(text) if text.contains('=') => NamedImage::parse(text).map(|image| Self::Each(vec![image])),
+            Some(text) if text.contains('=') => Ok(Self::Each(vec![NamedImage::parse(text).ok_or(FORM)?])),
             _ => Ok(Self::File(text.into())),
         }
     }
@@ -29,11 +31,8 @@ impl HeightSource {
         match self {
             Self::Materials => vec!["material".to_owned()],
             Self::Model => vec!["file".to_owned()],
-            Self::File(path) => {
-                let text = path.display().to_string();
-                let is_misread = Self::parse(path.into()) != Ok(self.clone());
-                vec![if is_misread { format!("./{text}") } else { text }]
-            }
+            Self::File(path) if path.is_absolute() => vec![path.display().to_string()],
+            Self::File(path) => vec![format!("./{}", path.display())],
             Self::Each(images) => images.iter().map(NamedImage::text).collect(),
         }
     }
@@ -47,30 +46,22 @@ impl HeightSource {
 }
 
 impl NamedImage {
-    fn parse(text: &str) -> Result<Self, String> {
-        let (material, mut path) = text.split_once('=').unwrap_or_default();
-        let [mut scale, mut midlevel] = [None; 2];
+    fn parse(text: &str) -> Option<Self> {
+        let (material, mut path) = text.split_once('=').filter(|(material, _)| !material.is_empty())?;
+        let mut numbers = [None; 2];
         while let Some((before, option)) = path.rsplit_once(',') {
-            let (kept, number) = match option.split_once('=') {
-                Some(("scale", number)) => (&mut scale, number),
-                Some(("midlevel", number)) => (&mut midlevel, number),
-                _ => break,
+            let number = |name| option.strip_prefix(name);
+            let Some((k, number)) = number("scale=").map(|x| (0, x)).or(number("midlevel=").map(|x| (1, x))) else {
+                break;
             };
-            *kept = Some(number.parse().map_err(|_| format!("{option} is no number"))?);
+            numbers[k] = Some(number.parse().ok()?);
             path = before;
         }
-        if material.is_empty() || path.is_empty() {
-            return Err("write MATERIAL=IMAGE, or ./ in front of a path with an equals sign".to_owned());
-        }
-        let amount = match (scale, midlevel) {
-            (None, None) => None,
-            (None, Some(_)) => return Err("midlevel= needs scale=".to_owned()),
-            (Some(scale), midlevel) => {
-                let amount = HeightAmount::new(scale, midlevel.unwrap_or(Tessellation::default().midlevel));
-                Some(amount.ok_or("scale= and midlevel= are at most 1e9")?)
-            }
+        let amount = match numbers {
+            [None, None] => None,
+            [scale, midlevel] => Some(HeightAmount::new(scale?, midlevel.unwrap_or(Tessellation::default().midlevel))?),
         };
-        Ok(Self { material: material.to_owned(), path: path.into(), amount })
+        (!path.is_empty()).then(|| Self { material: material.to_owned(), path: path.into(), amount })
     }
 
     fn text(&self) -> String {
@@ -104,12 +95,16 @@ mod tests {
         for (text, expected) in cases {
             assert_eq!(HeightSource::parse(text.into()), Ok(expected.clone()), "{text}");
             let texts = expected.texts();
-            assert_eq!(HeightSource::parse((&texts[0]).into()), Ok(expected), "{texts:?}");
+            let is_file = matches!(expected, HeightSource::File(_));
+            assert!(is_file || HeightSource::parse((&texts[0]).into()) == Ok(expected), "{texts:?}");
         }
         let bad =
             ["=a.png", "wall=", "wall=,scale=1", "wall=a.png,scale=x", "wall=a.png,scale=inf", "wall=a.png,midlevel=0"];
         assert!(bad.iter().all(|text| HeightSource::parse(text.into()).is_err()));
-        assert_eq!(HeightSource::File("file".into()).texts(), ["./file"]);
+        for path in ["file", "a=b.png", "-x.png"] {
+            let texts = HeightSource::File(path.into()).texts();
+            assert_eq!(HeightSource::parse((&texts[0]).into()), Ok(HeightSource::File(format!("./{path}").into())));
+        }
     }
 
     #[test]
