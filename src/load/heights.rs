@@ -215,7 +215,7 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         let Files { budget, progress, .. } = self.files;
         let decode = || {
             let bytes = bytes().map_err(|reason| HeightError::Image { path: image.into(), reason })?;
-            map_of_bytes(Path::new(image), &bytes, self.reserved, budget, progress)
+            map_of_bytes(Path::new(image), &bytes, self.reserved, budget, &progress.quiet())
         };
         let map = match self.known.get(&key) {
             Some(known) => known.clone(),
