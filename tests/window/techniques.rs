@@ -105,7 +105,7 @@ fn a_file_is_displaced_by_the_height_images_of_its_materials() {
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.heights, None, "nothing was chosen");
     assert!(harness.query_by_role_and_label(Role::Slider, "Midlevel").is_none(), "the file says how far");
     assert!(copied(&mut harness).contains("--height file"));
-    choose(&mut harness, "Displace", "Off");
+    press(&mut harness, Key::D);
     press(&mut harness, Key::R);
     let app = harness.state();
     assert_eq!(app.settings().tessellation.displacement, Displacement::Off, "loading it again changes nothing");
