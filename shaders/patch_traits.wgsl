@@ -1,5 +1,5 @@
-// What `points` has of every patch behind the positions of points, as its w, and the height images that it names. The module declares
-// the buffers `params` and `points`.
+// What `points` has of every patch behind the positions of points, as its w, and the height images that it names. The module
+// declares the buffers `params` and `points`.
 
 @group(0) @binding(21) var<uniform> maps: array<HeightMap, MAX_MAPS>;
 

@@ -70,8 +70,8 @@ pub(crate) fn height_maps(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer 
 /// Lists of varying length lie one after another in one buffer; `starts` holds where each begins, and then where the last
 /// ends.
 pub struct ReliefBuffers {
-    /// By their names in WGSL: for each point its corners, each with the bits of its weight in the point's direction, and the factors of
-    /// its edges; for each corner its patches.
+    /// By their names in WGSL: for each point its corners, each with the bits of its weight in the point's direction, and the
+    /// factors of its edges; for each corner its patches.
     lists: [(&'static str, wgpu::Buffer); 6],
     pub corner_count: u32,
 }

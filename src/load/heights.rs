@@ -1,4 +1,4 @@
-//! Height maps for displacement: those that a model's file gives its materials, image files, or the materials' base colour images.
+//! Height maps for displacement: those that a model's file gives its materials, image files, or the base colour images.
 
 mod reading;
 mod texts;
@@ -136,7 +136,7 @@ impl HeightSource {
     }
 }
 
-/// Loads the heights of a source; without one those that the model's file gives its materials, if any, in which a flaw costs a warning.
+/// Loads the heights of a source; without one those that the model's file gives its materials, in which a flaw costs a warning.
 ///
 /// # Errors
 /// [`HeightError`].

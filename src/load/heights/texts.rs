@@ -8,12 +8,12 @@ use geometry::mesh::HeightAmount;
 use geometry::tessellate::Tessellation;
 
 /// What is said of a text that names no image of a material.
-const FORM: &str = "write MATERIAL=IMAGE,scale=NUMBER,midlevel=NUMBER without either number, without the second, or with both, of at \
-                    most 1e9; or ./ in front of a path with an equals sign";
+const FORM: &str = "write MATERIAL=IMAGE or MATERIAL=IMAGE,scale=S,midlevel=H with numbers of at most 1e9, or ./ in front of a \
+                    path with an equals sign";
 
 impl HeightSource {
-    /// Reads `material`, `file`, `MATERIAL=IMAGE,scale=NUMBER,midlevel=NUMBER`, or the path of an image. A path with an equals sign in it
-    /// is absolute, or begins with a point.
+    /// Reads `material`, `file`, `MATERIAL=IMAGE,scale=S,midlevel=H`, or the path of an image. A path with an equals sign in it is
+    /// absolute, or begins with a point.
     ///
     /// # Errors
     /// A clause that says what to write.
