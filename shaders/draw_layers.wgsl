@@ -13,6 +13,14 @@ const LAYER_FILTER: u32 = 1u;
 // Adds the light that comes from the layer itself.
 const LAYER_ADD: u32 = 2u;
 
+// What is seen of a place.
+struct Seen {
+    // Linear RGB, of as much of the place as the surface covers.
+    color: vec3<f32>,
+    // Factor of what is seen behind, in linear RGB.
+    behind: vec3<f32>,
+}
+
 // Whether a depth is beyond the last layer, in the direction in which the draw looks, and nothing hides it. `left` is the first
 // column of the half: the scissors of some software drivers let samples through in the column beside it.
 fn is_beyond_last(clip: vec4<f32>, sample: u32, left: f32) -> bool {
@@ -43,4 +51,47 @@ fn layer_output(seen: Seen) -> vec4<f32> {
         return vec4<f32>(seen.color, 1.0 - shown);
     }
     return vec4<f32>(seen.color, 1.0 - seen.behind.x);
+}
+
+// What is seen of a place that shows what is behind it. A body that refracts light shows the picture of what is behind it, at
+// another place: that takes the place of what is right behind.
+fn material_seen(place: SurfacePlace, frame_of_place: Frame) -> Seen {
+    let detail = place_detail(place);
+    let base = base_color(place, detail);
+    let normal = shown_normal(place, detail);
+    var look = look_at(place, detail, base.rgb, normal);
+    look.transmission = transmission_at(place, detail);
+    let coverage = select(1.0, clamp(base.a, 0.0, 1.0), material.blends > 0.5);
+    var color = coverage * surface_radiance(place, detail, base.rgb, look, normal);
+    var behind = vec3<f32>(1.0 - coverage);
+    if HAS_TRANSMISSION {
+        let through = coverage * transmitted_through(look, normal, place.to_eye);
+        if has_map(BEHIND) && LAYER_DRAW == LAYER_OVER {
+            let seen = seen_in_body(place, detail, look, normal, frame_of_place);
+            color += through * seen.rgb;
+            // In a transparent picture, light may come from where there is nothing.
+            behind += vec3<f32>(dot(through, vec3<f32>(1.0 / 3.0)) * (1.0 - seen.a));
+        } else {
+            behind += through;
+        }
+    }
+    return Seen(color, behind);
+}
+
+// What is seen of the picture behind a body, where the refracted ray leaves it (KHR_materials_volume, section
+// "Implementation"); and how much of it is covered. Roughness blurs by mip levels.
+fn seen_in_body(place: SurfacePlace, detail: PlaceDetail, look: LookAt, normal: vec3<f32>, at: Frame) -> vec4<f32> {
+    let thickness = material.thickness * map_texel(place, detail, SLOT_THICKNESS).g;
+    // An index of refraction of 0 stands for an infinite one.
+    let ray = refract(-place.to_eye, normal, select(1.0 / look.ior, 0.0, look.ior < 1.0));
+    let clip = at.clip_from_object * vec4<f32>(place.position + thickness * ray, 1.0);
+    let moved = vec2<f32>(at.shift / at.viewport.x, 0.0);
+    let on_picture = vec2<f32>(0.5, -0.5) * clip.xy / clip.w + 0.5 + moved;
+    // The blurriest level is one texel. A surface that doesn't refract doesn't blur.
+    let roughness = look.roughness * clamp(2.0 * look.ior - 2.0, 0.0, 1.0);
+    let texel_size = pow(at.viewport.x, roughness) / at.viewport;
+    let blurred = ImagePlace(on_picture, vec2<f32>(texel_size.x, 0.0), vec2<f32>(0.0, texel_size.y));
+    let seen = slot_texel(BEHIND, blurred);
+    // Beer and Lambert.
+    return vec4<f32>(seen.rgb * exp(-material.absorption * thickness), seen.a);
 }

@@ -27,7 +27,7 @@ fn lit_normal(in: LitVaryings) -> vec3<f32> {
 fn lit_place(in: LitVaryings, normal: vec3<f32>, front: bool) -> SurfacePlace {
     let to_eye = toward_eye(lit_frame.clip_from_object, lit_frame.viewport, unmoved(in.clip, lit_frame.shift).xy);
     var position: vec3<f32>;
-    if LIGHT_COUNT > 0u {
+    if LIGHT_COUNT > 0u || has_map(BEHIND) {
         position = fragment_place(lit_frame.clip_from_object, lit_frame.viewport, unmoved(in.clip, lit_frame.shift));
     }
     return surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye, position);

@@ -20,7 +20,7 @@ fn lit_layer(in: LitVaryings, normal: vec3<f32>, front: bool, sample: u32) -> ve
     if !is_last(in.clip, sample, lit_frame.left) {
         discard;
     }
-    return layer_output(material_seen(place));
+    return layer_output(material_seen(place, lit_frame));
 }
 
 @fragment

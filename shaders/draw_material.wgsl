@@ -1,7 +1,7 @@
 // Materials as glTF 2.0 describes them (specification, section 3.9), in the light of environment.wgsl.
 
 // What the mesh's materials need. Each part that isn't needed is left out when the pipeline is made. MAPS has a bit for each image
-// beside that of the base colour, by SLOT_*.
+// beside that of the base colour, by SLOT_* and BEHIND: 12 at most.
 override MAPS: u32 = 0xffffffffu;
 override HAS_DETAILS: bool = true;
 override HAS_COAT: bool = true;
@@ -19,33 +19,10 @@ override LIGHT_COUNT: u32 = MOST_LIGHTS;
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_texture: texture_2d<f32>;
 @group(1) @binding(2) var base_sampler: sampler;
-@group(1) @binding(3) var metallic_roughness_texture: texture_2d<f32>;
-@group(1) @binding(4) var metallic_roughness_sampler: sampler;
-@group(1) @binding(5) var normal_texture: texture_2d<f32>;
-@group(1) @binding(6) var normal_sampler: sampler;
-@group(1) @binding(7) var occlusion_texture: texture_2d<f32>;
-@group(1) @binding(8) var occlusion_sampler: sampler;
-@group(1) @binding(9) var emissive_texture: texture_2d<f32>;
-@group(1) @binding(10) var emissive_sampler: sampler;
-@group(1) @binding(11) var transmission_texture: texture_2d<f32>;
-@group(1) @binding(12) var transmission_sampler: sampler;
-@group(1) @binding(21) var sheen_color_texture: texture_2d<f32>;
-@group(1) @binding(22) var sheen_color_sampler: sampler;
-@group(1) @binding(23) var sheen_roughness_texture: texture_2d<f32>;
-@group(1) @binding(24) var sheen_roughness_sampler: sampler;
-@group(1) @binding(25) var coat_texture: texture_2d<f32>;
-@group(1) @binding(26) var coat_sampler: sampler;
-@group(1) @binding(27) var coat_roughness_texture: texture_2d<f32>;
-@group(1) @binding(28) var coat_roughness_sampler: sampler;
-@group(1) @binding(29) var coat_normal_texture: texture_2d<f32>;
-@group(1) @binding(30) var coat_normal_sampler: sampler;
-@group(1) @binding(31) var specular_texture: texture_2d<f32>;
-@group(1) @binding(32) var specular_sampler: sampler;
-@group(1) @binding(33) var specular_color_texture: texture_2d<f32>;
-@group(1) @binding(34) var specular_color_sampler: sampler;
 @group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
-// The order of Material.maps.
+// The bit in MAPS of the picture of what is behind a body that refracts light.
+const BEHIND: u32 = MAP_COUNT;
 
 // Shorter tangents, squared, say nothing about a direction.
 const LEAST_TANGENT: f32 = 1e-12;
@@ -59,14 +36,6 @@ struct ImagePlace {
 
 // Less of what is behind a place can't be seen: it is half a step of a picture's channels.
 const LEAST_SEEN: f32 = 1.0 / 512.0;
-
-// What is seen of a place.
-struct Seen {
-    // Linear RGB, of as much of the place as the surface covers.
-    color: vec3<f32>,
-    // Factor of what is seen behind, in linear RGB.
-    behind: vec3<f32>,
-}
 
 // What is seen at a pixel. Only varyings have derivatives that can be relied on: for pixels beside a triangle, which derivatives
 // are taken with, some drivers read no buffers.
@@ -82,7 +51,7 @@ struct SurfacePlace {
     normal: vec3<f32>,
     front: bool,
     to_eye: vec3<f32>,
-    // In object space, if LIGHT_COUNT isn't 0.
+    // In object space, if LIGHT_COUNT isn't 0 or there are bodies that refract light.
     position: vec3<f32>,
 }
 
@@ -171,11 +140,24 @@ fn texel(image: texture_2d<f32>, image_sampler: sampler, at: ImagePlace) -> vec4
 }
 
 // What an image other than that of the base colour says. The last mip level is the mean of an image.
-fn map_texel(image: texture_2d<f32>, image_sampler: sampler, at: ImagePlace) -> vec4<f32> {
+fn image_texel(image: texture_2d<f32>, image_sampler: sampler, at: ImagePlace) -> vec4<f32> {
     if IS_DRAFT {
         return textureLoad(image, vec2<i32>(0), textureNumLevels(image) - 1u);
     }
     return texel(image, image_sampler, at);
+}
+
+// What the image of a bit in MAPS says.
+fn slot_texel(slot: u32, at: ImagePlace) -> vec4<f32> {
+    return placed_texel(countOneBits(MAPS & ((1u << slot) - 1u)), at);
+}
+
+// What a map says at a place; 1 without the map.
+fn map_texel(place: SurfacePlace, detail: PlaceDetail, slot: u32) -> vec4<f32> {
+    if !has_map(slot) {
+        return vec4<f32>(1.0);
+    }
+    return slot_texel(slot, map_place(place, detail, slot));
 }
 
 // The unit normal that a normal map makes of a unit shading normal (glTF 2.0, section 3.9.3), on the front. The tangent is made
@@ -199,62 +181,51 @@ fn map_direction(texel: vec3<f32>, scale: f32) -> vec3<f32> {
 fn look_at(place: SurfacePlace, detail: PlaceDetail, base: vec3<f32>, normal: vec3<f32>) -> LookAt {
     var look: LookAt;
     look.base_color = base;
-    look.metallic = material.metallic;
-    look.roughness = material.roughness;
-    look.specular_color = material.specular_color;
-    look.specular = material.specular;
+    let metal_and_rough = map_texel(place, detail, SLOT_METALLIC_ROUGHNESS);
+    look.metallic = material.metallic * metal_and_rough.b;
+    look.roughness = material.roughness * metal_and_rough.g;
+    look.specular_color = material.specular_color * map_texel(place, detail, SLOT_SPECULAR_COLOR).rgb;
+    look.specular = material.specular * map_texel(place, detail, SLOT_SPECULAR).a;
     look.ior = material.ior;
-    look.occlusion = 1.0;
-    if has_map(SLOT_METALLIC_ROUGHNESS) {
-        let at = map_place(place, detail, SLOT_METALLIC_ROUGHNESS);
-        let numbers = map_texel(metallic_roughness_texture, metallic_roughness_sampler, at);
-        look.roughness *= numbers.g;
-        look.metallic *= numbers.b;
-    }
-    if has_map(SLOT_SPECULAR) {
-        look.specular *= map_texel(specular_texture, specular_sampler, map_place(place, detail, SLOT_SPECULAR)).a;
-    }
-    if has_map(SLOT_SPECULAR_COLOR) {
-        let at = map_place(place, detail, SLOT_SPECULAR_COLOR);
-        look.specular_color *= map_texel(specular_color_texture, specular_color_sampler, at).rgb;
-    }
-    if has_map(SLOT_OCCLUSION) {
-        let occlusion = map_texel(occlusion_texture, occlusion_sampler, map_place(place, detail, SLOT_OCCLUSION)).r;
-        look.occlusion = 1.0 + material.occlusion_strength * (occlusion - 1.0);
-    }
+    look.occlusion = 1.0 + material.occlusion_strength * (map_texel(place, detail, SLOT_OCCLUSION).r - 1.0);
     // The surface's map of normals doesn't change the coat's, which has one of its own (KHR_materials_clearcoat).
     var coat_normal = place.normal;
     if HAS_COAT {
-        look.coat = material.coat;
-        look.coat_roughness = material.coat_roughness;
-        if has_map(SLOT_CLEARCOAT) {
-            look.coat *= map_texel(coat_texture, coat_sampler, map_place(place, detail, SLOT_CLEARCOAT)).r;
-        }
-        if has_map(SLOT_CLEARCOAT_ROUGHNESS) {
-            let at = map_place(place, detail, SLOT_CLEARCOAT_ROUGHNESS);
-            look.coat_roughness *= map_texel(coat_roughness_texture, coat_roughness_sampler, at).g;
-        }
+        look.coat = material.coat * map_texel(place, detail, SLOT_CLEARCOAT).r;
+        look.coat_roughness = material.coat_roughness * map_texel(place, detail, SLOT_CLEARCOAT_ROUGHNESS).g;
         if has_map(SLOT_CLEARCOAT_NORMAL) && HAS_DETAILS && !IS_DRAFT {
-            let at = map_place(place, detail, SLOT_CLEARCOAT_NORMAL);
-            let direction = map_direction(texel(coat_normal_texture, coat_normal_sampler, at).rgb, material.coat_normal_scale);
+            let direction = map_direction(map_texel(place, detail, SLOT_CLEARCOAT_NORMAL).rgb, material.coat_normal_scale);
             coat_normal = mapped_normal(coat_normal, detail.tangent, detail.bitangent_sign, direction);
         }
     }
     look.coat_normal = facing_normal(place, coat_normal);
     if HAS_SHEEN {
-        look.sheen_color = material.sheen_color;
-        look.sheen_roughness = material.sheen_roughness;
-        if has_map(SLOT_SHEEN_COLOR) {
-            let at = map_place(place, detail, SLOT_SHEEN_COLOR);
-            look.sheen_color *= map_texel(sheen_color_texture, sheen_color_sampler, at).rgb;
-        }
-        if has_map(SLOT_SHEEN_ROUGHNESS) {
-            let at = map_place(place, detail, SLOT_SHEEN_ROUGHNESS);
-            look.sheen_roughness *= map_texel(sheen_roughness_texture, sheen_roughness_sampler, at).a;
-        }
+        look.sheen_color = material.sheen_color * map_texel(place, detail, SLOT_SHEEN_COLOR).rgb;
+        look.sheen_roughness = material.sheen_roughness * map_texel(place, detail, SLOT_SHEEN_ROUGHNESS).a;
         look.sheen_albedo = environment_sheen(clamp(dot(normal, place.to_eye), 0.0, 1.0), look.sheen_roughness);
     }
+    if HAS_ANISOTROPY {
+        look.anisotropy = material.anisotropy;
+        var along = material.anisotropy_direction;
+        if has_map(SLOT_ANISOTROPY) {
+            let numbers = map_texel(place, detail, SLOT_ANISOTROPY);
+            look.anisotropy *= numbers.b;
+            along = mat2x2<f32>(along, vec2<f32>(-along.y, along.x)) * (2.0 * numbers.rg - 1.0);
+        }
+        let stretch = stretch_direction(place, detail, along, normal);
+        // Without a direction, highlights are round.
+        look.anisotropy = select(look.anisotropy, 0.0, dot(stretch, stretch) < LEAST_TANGENT);
+        look.direction = stretch * inverseSqrt(max(dot(stretch, stretch), LEAST_TANGENT));
+    }
     return look;
+}
+
+// A direction of tangent space in the plane across the shown normal, of any length: it is 0 where tangents say nothing.
+fn stretch_direction(place: SurfacePlace, detail: PlaceDetail, along: vec2<f32>, normal: vec3<f32>) -> vec3<f32> {
+    let tangent = detail.tangent - place.normal * dot(detail.tangent, place.normal);
+    let bitangent = detail.bitangent_sign * cross(place.normal, tangent);
+    let direction = along.x * tangent + along.y * bitangent;
+    return direction - normal * dot(direction, normal);
 }
 
 // Radiance towards the eye of what the lights of the file shine on.
@@ -275,11 +246,7 @@ fn transmission_at(place: SurfacePlace, detail: PlaceDetail) -> f32 {
     if !HAS_TRANSMISSION {
         return 0.0;
     }
-    var transmission = material.transmission;
-    if has_map(SLOT_TRANSMISSION) {
-        transmission *= map_texel(transmission_texture, transmission_sampler, map_place(place, detail, SLOT_TRANSMISSION)).r;
-    }
-    return transmission;
+    return material.transmission * map_texel(place, detail, SLOT_TRANSMISSION).r;
 }
 
 // Whether the surface is there, but doesn't hide all that is behind it. Such places are drawn in layers, and all others before.
@@ -306,8 +273,7 @@ fn facing_normal(place: SurfacePlace, front_normal: vec3<f32>) -> vec3<f32> {
 fn shown_normal(place: SurfacePlace, detail: PlaceDetail) -> vec3<f32> {
     var normal = place.normal;
     if has_map(SLOT_NORMAL) && HAS_DETAILS && !IS_DRAFT {
-        let texel_of_normal = texel(normal_texture, normal_sampler, map_place(place, detail, SLOT_NORMAL)).rgb;
-        let direction = map_direction(texel_of_normal, material.normal_scale);
+        let direction = map_direction(map_texel(place, detail, SLOT_NORMAL).rgb, material.normal_scale);
         normal = mapped_normal(normal, detail.tangent, detail.bitangent_sign, direction);
     }
     return facing_normal(place, normal);
@@ -321,10 +287,7 @@ fn surface_radiance(
     look: LookAt,
     normal: vec3<f32>,
 ) -> vec3<f32> {
-    var emitted = material.emissive;
-    if has_map(SLOT_EMISSIVE) {
-        emitted *= map_texel(emissive_texture, emissive_sampler, map_place(place, detail, SLOT_EMISSIVE)).rgb;
-    }
+    let emitted = material.emissive * map_texel(place, detail, SLOT_EMISSIVE).rgb;
     var radiance = ambient_reflection(look, normal, place.to_eye) + emitted * coat_transmission(look, place.to_eye);
     if LIGHT_COUNT > 0u {
         radiance += lights_reflection(look, normal, place);
@@ -345,20 +308,4 @@ fn material_color(place: SurfacePlace) -> vec4<f32> {
         hides = hides && transmission_at(place, detail) < select(LEAST_SEEN, 0.5, IS_DRAFT);
     }
     return vec4<f32>(color, f32(hides));
-}
-
-// What is seen of a place that shows what is behind it.
-fn material_seen(place: SurfacePlace) -> Seen {
-    let detail = place_detail(place);
-    let base = base_color(place, detail);
-    let normal = shown_normal(place, detail);
-    var look = look_at(place, detail, base.rgb, normal);
-    look.transmission = transmission_at(place, detail);
-    let coverage = select(1.0, clamp(base.a, 0.0, 1.0), material.blends > 0.5);
-    let color = coverage * surface_radiance(place, detail, base.rgb, look, normal);
-    var behind = vec3<f32>(1.0 - coverage);
-    if HAS_TRANSMISSION {
-        behind += coverage * transmitted_through(look, normal, place.to_eye);
-    }
-    return Seen(color, behind);
 }

@@ -9,15 +9,10 @@ fn from_srgb(color: vec3<f32>) -> vec3<f32> {
 
 // As in src/inspect/render/scale.rs, in linear light.
 fn scale_color(number: f32) -> vec3<f32> {
-    return color_at_place(log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least));
-}
-
-// The same on an even scale.
-fn even_scale_color(number: f32) -> vec3<f32> {
-    return color_at_place((number - frame.scale_least) / (frame.scale_most - frame.scale_least));
-}
-
-fn color_at_place(place: f32) -> vec3<f32> {
+    var place = (number - frame.scale_least) / (frame.scale_most - frame.scale_least);
+    if frame.scale_least > 0.0 {
+        place = log(number / frame.scale_least) / log(frame.scale_most / frame.scale_least);
+    }
     let at = clamp(place, 0.0, 1.0) * f32(SCALE_STOPS - 1u);
     let below = min(u32(at), SCALE_STOPS - 2u);
     return from_srgb(mix(frame.scale[below].rgb, frame.scale[below + 1u].rgb, at - f32(below)));
@@ -71,22 +66,16 @@ fn deviation_color(in: Varyings) -> vec4<f32> {
     return vec4<f32>(scale_color(max(number, frame.scale_least)), f32(distance >= 0.0));
 }
 
-// The mean curvature of the patch itself, without displacement, in 1 / object unit.
-fn curvature_at(in: Varyings) -> f32 {
-    let place = patch_place(in.domain.xy);
-    let surface = params.surface;
-    let net = load_net(in.patch_index);
-    let second = patch_second_derivatives(surface, net, place.x, place.y);
-    return mean_curvature(patch_tangents(surface, net, place.x, place.y), second);
-}
-
 // The colour that an overlay gives the surface in place of the material's, and 1 if there is one.
 fn meaning(in: Varyings, change: Changes, to_edges: vec3<f32>, edge_heights: vec3<f32>) -> vec4<f32> {
     if LOOK == LOOK_CURVATURE {
-        return vec4<f32>(even_scale_color(curvature_at(in)), 1.0);
+        let place = patch_place(in.domain.xy);
+        let net = load_net(in.patch_index);
+        return vec4<f32>(scale_color(patch_curvature(frame.kind, params.surface, net, place.x, place.y)), 1.0);
     }
     if LOOK == LOOK_TEXEL_DENSITY {
-        let density = texel_density(textureDimensions(base_texture), change.uv_right, change.uv_below);
+        let in_px = spanned_area(change.uv_right, change.uv_below);
+        let density = texel_density(textureDimensions(base_texture), select(in.size, in_px, frame.kind != 0u));
         return vec4<f32>(scale_color(max(density, frame.scale_least)), f32(density > 0.0));
     }
     if (frame.overlays & OVERLAY_FACTORS) != 0u && in.factors.w > 0.0 {
@@ -121,7 +110,7 @@ fn changes(in: Varyings) -> Changes {
 // The place on the zebra's stripes that is seen at a place of the picture, in px.
 fn zebra_place(normal: vec3<f32>, px: vec2<f32>) -> f32 {
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, px);
-    return reflected_place(frame.clip_from_object, normalize(normal), to_eye);
+    return frame.zebra_stripes * reflected_place(frame.clip_from_object, frame.zebra_axis, normalize(normal), to_eye);
 }
 
 // The unit normal of the patch itself, without displacement, or the shading normal where it has none.
@@ -152,7 +141,7 @@ fn unlit(in: Varyings, normal: vec3<f32>, change: Changes) -> vec4<f32> {
     if (frame.overlays & OVERLAY_UV_CHECKER) != 0u {
         let right = change.uv_right;
         let below = change.uv_below;
-        return vec4<f32>(checker_color(in.uv, sqrt(right * right + below * below)), 1.0);
+        return vec4<f32>(checker_color(frame.checker_squares, in.uv, sqrt(right * right + below * below)), 1.0);
     }
     return vec4<f32>(0.0);
 }

@@ -56,7 +56,7 @@ fn cut_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> 
 fn lit_surface_place(in: Varyings, normal: vec3<f32>, front: bool) -> SurfacePlace {
     let to_eye = toward_eye(frame.clip_from_object, frame.viewport, unmoved(in.clip, frame.shift).xy);
     var position: vec3<f32>;
-    if LIGHT_COUNT > 0u {
+    if LIGHT_COUNT > 0u || has_map(BEHIND) {
         position = fragment_place(frame.clip_from_object, frame.viewport, unmoved(in.clip, frame.shift));
     }
     return surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye, position);

@@ -32,7 +32,7 @@ struct Varyings {
     @location(7) @interpolate(flat) factors: vec4<f32>,
     // 1 if they are all below 2.
     @location(8) @interpolate(flat) low: u32,
-    // Size of the drawn triangle in px.
+    // Size of the drawn triangle in px; or under texel density, the area of texture coordinates on a square object unit of it.
     @location(9) @interpolate(flat) size: f32,
     // Number of the emitted triangle in its chunk.
     @location(10) @interpolate(flat) triangle: u32,

@@ -16,7 +16,7 @@ fn surface_depth_fragment(
 
 fn surface_layer(in: Varyings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
     let place = lit_surface_place(in, normal, front);
-    let own = material_seen(place);
+    let own = material_seen(place, frame);
     // Lines and marks aren't seen through.
     let color = surface_color(in, normal, front, vec4<f32>(own.color, 1.0));
     if !is_last(in.clip, sample, frame.left) {

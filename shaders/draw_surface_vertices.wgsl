@@ -121,5 +121,11 @@ fn pulled_vertex(@builtin(vertex_index) index: u32) -> Varyings {
     if (frame.overlays & OVERLAY_TRIANGLE_SIZE) != 0u {
         out.size = size_px(vertex_position(first), vertex_position(first + 1u), vertex_position(first + 2u));
     }
+    if LOOK == LOOK_TEXEL_DENSITY {
+        let surface = facing(vertex_position(first), vertex_position(first + 1u), vertex_position(first + 2u));
+        let uv = drawn_vertex(first).uv;
+        let on_texture = spanned_area(drawn_vertex(first + 1u).uv - uv, drawn_vertex(first + 2u).uv - uv);
+        out.size = on_texture / max(length(surface), 1e-37);
+    }
     return with_factors(out, key_patch(key));
 }

@@ -34,10 +34,19 @@ struct Frame {
     coarseness: f32,
     // By how many columns all that is drawn is moved to the right.
     shift: f32,
+    // The kind of the numbers that colours stand for: CURVATURE_*, or under texel density 0 for texels along an object unit and
+    // 1 for those in a px.
+    kind: u32,
+    // The unit direction along the zebra's stripes, to the right and up in the view.
+    zebra_axis: vec2<f32>,
+    // Stripes over half a turn of the normal.
+    zebra_stripes: f32,
+    // Squares of the checker in one unit of u or v.
+    checker_squares: f32,
 }
 
 // Images of a material beside that of the base colour.
-const MAP_COUNT: u32 = 12u;
+const MAP_COUNT: u32 = 14u;
 
 struct Material {
     // Linear RGBA.
@@ -67,9 +76,16 @@ struct Material {
     transmission: f32,
     // 0 without a normal map of the coat.
     coat_normal_scale: f32,
+    // How much longer highlights are along a direction than across it.
+    anisotropy: f32,
     // Linear RGB of the sheen; 0 without one.
     sheen_color: vec3<f32>,
     sheen_roughness: f32,
+    // What the body behind the surface absorbs in an object unit, and how far light goes through it.
+    absorption: vec3<f32>,
+    thickness: f32,
+    // The direction of long highlights: along the tangent, and along the bitangent.
+    anisotropy_direction: vec2<f32>,
     maps: array<MapPlace, MAP_COUNT>,
 }
 
@@ -98,21 +114,21 @@ const FOUND_SOURCE: u32 = 2u;
 
 const OVERLAY_WIREFRAME: u32 = 1u;
 const OVERLAY_PATCHES: u32 = 2u;
-const OVERLAY_BARYCENTRIC: u32 = 4u;
-const OVERLAY_ADJACENCY: u32 = 8u;
-const OVERLAY_FOLDS: u32 = 16u;
-const OVERLAY_BACK_FACES: u32 = 32u;
-const OVERLAY_FACTORS: u32 = 64u;
-const OVERLAY_TRIANGLE_SIZE: u32 = 128u;
-const OVERLAY_LOW_FACTORS: u32 = 256u;
-const OVERLAY_DEVIATION: u32 = 512u;
-const OVERLAY_EXCESS: u32 = 1024u;
-const OVERLAY_CLAY: u32 = 2048u;
-const OVERLAY_ZEBRA: u32 = 4096u;
-const OVERLAY_SHADING_NORMALS: u32 = 8192u;
-const OVERLAY_UV_CHECKER: u32 = 16384u;
-const OVERLAY_SILHOUETTE: u32 = 32768u;
-const OVERLAY_SECTION: u32 = 65536u;
+const OVERLAY_ADJACENCY: u32 = 4u;
+const OVERLAY_FOLDS: u32 = 8u;
+const OVERLAY_BACK_FACES: u32 = 16u;
+const OVERLAY_CLAY: u32 = 32u;
+const OVERLAY_ZEBRA: u32 = 128u;
+const OVERLAY_SHADING_NORMALS: u32 = 256u;
+const OVERLAY_UV_CHECKER: u32 = 2048u;
+const OVERLAY_BARYCENTRIC: u32 = 8192u;
+const OVERLAY_FACTORS: u32 = 16384u;
+const OVERLAY_TRIANGLE_SIZE: u32 = 32768u;
+const OVERLAY_LOW_FACTORS: u32 = 65536u;
+const OVERLAY_EXCESS: u32 = 131072u;
+const OVERLAY_DEVIATION: u32 = 262144u;
+const OVERLAY_SILHOUETTE: u32 = 524288u;
+const OVERLAY_SECTION: u32 = 1048576u;
 
 // An emitted vertex as draws get it: its two halves (see Vertex in types.wgsl).
 struct EmittedVertex {

@@ -14,6 +14,9 @@ struct Surroundings {
     tone_curve: u32,
 }
 
+// Whether highlights may be longer along a direction.
+override HAS_ANISOTROPY: bool = true;
+
 // Levels of the cube map: from a mirror's to that of roughness 1.
 const ENVIRONMENT_LEVELS: u32 = 6u;
 
@@ -63,13 +66,38 @@ fn environment_sheen(facing: f32, roughness: f32) -> f32 {
     return dfg_texel(facing, roughness).b;
 }
 
+// Round highlights that make up a long one.
+const LEANS: u32 = 16u;
+
+// Radiance that a surface with long highlights reflects: the mean of round ones, of microfacets that lean along the direction.
+// Each stands for the same part of them: the slopes of GGX along a direction are those of angles whose sines are spread evenly.
+// Each is so much rougher that no gaps are left.
+fn long_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
+    let squares = stretched_alphas(look) * stretched_alphas(look);
+    let more = max(squares.x - squares.y, 0.0);
+    let roughness = sqrt(sqrt(squares.y + more / f32(LEANS * LEANS)));
+    var sum = vec4<f32>(0.0);
+    for (var index = 0u; index < LEANS; index++) {
+        let sine = (2.0 * f32(index) + 1.0) / f32(LEANS) - 1.0;
+        let leaning = normalize(normal - sqrt(more) * sine * inverseSqrt(1.0 - sine * sine) * look.direction);
+        let direction = dominant_direction(leaning, to_eye, roughness);
+        // At least a little, so that there is a mean where all lean away.
+        let weight = max(dot(normal, direction), 1e-4);
+        sum += weight * vec4<f32>(environment_radiance(direction, roughness), 1.0);
+    }
+    return sum.rgb / sum.a;
+}
+
 // Radiance towards the eye from a surface under this light. `normal` and `to_eye` are of unit length.
 fn ambient_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     var light: AmbientLight;
     light.diffuse = environment_irradiance(normal);
     light.facing = clamp(dot(normal, to_eye), 0.0, 1.0);
     light.reflected = environment_radiance(dominant_direction(normal, to_eye, look.roughness), look.roughness);
-    light.dfg = environment_dfg(light.facing, look.roughness);
+    if HAS_ANISOTROPY {
+        light.reflected = select(light.reflected, long_reflection(look, normal, to_eye), look.anisotropy > 0.0);
+    }
+    light.dfg = environment_dfg(light.facing, mean_roughness(look));
     light.coat_facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
     let coat_direction = dominant_direction(look.coat_normal, to_eye, look.coat_roughness);
     light.coat_reflected = environment_radiance(coat_direction, look.coat_roughness);
@@ -88,7 +116,7 @@ fn coat_transmission(look: LookAt, to_eye: vec3<f32>) -> f32 {
 fn transmitted_through(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>) -> vec3<f32> {
     let facing = clamp(dot(normal, to_eye), 0.0, 1.0);
     let coat_facing = clamp(dot(look.coat_normal, to_eye), 0.0, 1.0);
-    return transmitted(look, environment_dfg(facing, look.roughness), environment_dfg(coat_facing, look.coat_roughness));
+    return transmitted(look, environment_dfg(facing, mean_roughness(look)), environment_dfg(coat_facing, look.coat_roughness));
 }
 
 // What the screen shows of radiance towards the eye, in linear RGB.

@@ -6,7 +6,7 @@
 @group(0) @binding(0) var<storage, read> params: Params;
 @group(0) @binding(1) var<storage, read> points: array<vec4<f32>>;
 @group(0) @binding(2) var<storage, read> curves: array<Curve>;
-@group(0) @binding(3) var<storage, read> curve_nets: array<CurveNet>;
+@group(0) @binding(3) var<storage, read> curve_net_words: array<vec4<f32>>;
 @group(0) @binding(4) var<storage, read> factor_curves: array<u32>;
 // The bits of the factors of edges; under LOD by error then what search_state.wgsl says.
 @group(0) @binding(5) var<storage, read_write> edge_factors: array<u32>;
@@ -15,21 +15,27 @@ fn curve_factor(index: u32) -> f32 {
     let curve = curves[index];
     let a = points[curve.points[0]].xyz;
     let b = points[curve.points[1]].xyz;
-    let net = curve_nets[index];
+    let net = CurveNet(curve_net_words[2u * index].xyz, curve_net_words[2u * index + 1u].xyz);
+    let detail = counted_detail(u32(curve_net_words[2u * index].w) % CURVE_SURFACE_STEP);
+    let view = magnified(params.view, detail);
+    if params.lod == LOD_UNIFORM {
+        // One number of segments everywhere.
+        return select(params.factor * detail, params.factor, params.partitioning == PARTITIONING_SUBTRIANGULATION);
+    }
     if params.lod == LOD_PAPER {
-        return paper_edge_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
+        return paper_edge_factor(view, params.pixels_per_segment, a, net.ab, net.ba, b);
     }
     if params.lod == LOD_DISTANCE {
-        return distance_factor(params.view, params.factor, params.near, params.far, a, b);
+        return distance_factor(view, params.factor * detail, params.near, params.far, a, b);
     }
     if params.lod == LOD_ERROR {
         if params.surface == SURFACE_FLAT {
             return 1.0;
         }
-        return least_edge_factor(params.view, params.tolerance, params.partitioning, a, net.ab, net.ba, b);
+        return least_edge_factor(view, params.tolerance, params.partitioning, a, net.ab, net.ba, b);
     }
     if params.lod == LOD_EDGE_LENGTH {
-        return edge_length_factor(params.view, params.pixels_per_segment, a, net.ab, net.ba, b);
+        return edge_length_factor(view, params.pixels_per_segment, a, net.ab, net.ba, b);
     }
     // An LOD that has no branch above gets factors of 1, which no test takes for its own.
     return 1.0;
@@ -37,9 +43,6 @@ fn curve_factor(index: u32) -> f32 {
 
 // LOD's factor of an edge, or under LOD by error the least that it may get.
 fn lod_factor(index: u32) -> f32 {
-    if params.lod == LOD_UNIFORM {
-        return params.factor;
-    }
     var factor = 1.0;
     for (var curve = factor_curves[index]; curve < factor_curves[index + 1u]; curve++) {
         factor = max(factor, curve_factor(curve));

@@ -1,4 +1,4 @@
-// The control points of every curve, then the one at the centre of every patch.
+// The control points of every curve, with what types.wgsl says behind the first, then the one at the centre of every patch.
 
 // In storage, not a uniform: some software drivers compile a shader again for every value of a uniform that it branches on.
 @group(0) @binding(0) var<storage, read> params: Params;
@@ -8,7 +8,7 @@
 @group(0) @binding(3) var<storage, read> curves: array<Curve>;
 @group(0) @binding(4) var<storage, read> curve_sides: array<vec2<u32>>;
 @group(0) @binding(5) var<storage, read> patches: array<Patch>;
-@group(0) @binding(6) var<storage, read_write> curve_nets: array<CurveNet>;
+@group(0) @binding(6) var<storage, read_write> curve_net_words: array<vec4<f32>>;
 
 @compute @workgroup_size(256)
 fn curve_nets_main(invocation: Invocation) {
@@ -17,6 +17,9 @@ fn curve_nets_main(invocation: Invocation) {
         return;
     }
     let curve = curves[index];
+    let style = curve_net_words[2u * index].w;
+    let own = u32(style) / CURVE_SURFACE_STEP;
+    let surface = select(own - 1u, params.chosen_surface, own == 0u);
     let a = points[curve.points[0]].xyz;
     let b = points[curve.points[1]].xyz;
     // The mean over the curve's sides of each side's own proposal.
@@ -28,7 +31,7 @@ fn curve_nets_main(invocation: Invocation) {
         let side = curve_sides[curve.first_side + i];
         let at_a = corners[side.x].normal;
         let at_b = corners[side.y].normal;
-        let proposed = side_control_points(params.surface, params.alpha, a, b, at_a, at_b);
+        let proposed = side_control_points(surface, params.alpha, a, b, at_a, at_b);
         ab += proposed[0];
         ba += proposed[1];
         around_a = add_normal(around_a, at_a);
@@ -36,10 +39,19 @@ fn curve_nets_main(invocation: Invocation) {
     }
     let share = 1.0 / f32(curve.side_count);
     var net = CurveNet(ab * share, ba * share);
-    if params.surface == SURFACE_PN_CREASE {
+    if surface == SURFACE_PN_CREASE {
         net = CurveNet(crease_control_point(a, b, around_a, net.ab), crease_control_point(b, a, around_b, net.ba));
     }
-    curve_nets[index] = net;
+    curve_net_words[2u * index] = vec4<f32>(net.ab, style);
+    curve_net_words[2u * index + 1u] = vec4<f32>(net.ba, 0.0);
+}
+
+fn patch_at(index: u32) -> Patch {
+    return patches[index];
+}
+
+fn curve_net_at(index: u32) -> CurveNet {
+    return CurveNet(curve_net_words[2u * index].xyz, curve_net_words[2u * index + 1u].xyz);
 }
 
 @compute @workgroup_size(256)

@@ -63,11 +63,13 @@ fn user_surface_points_main(invocation: Invocation) {
         side,
     );
     let made = edge_points(edge, triangle);
-    if runs_against {
-        curve_nets[reference >> 1u] = CurveNet(made.ba, made.ab);
-    } else {
-        curve_nets[reference >> 1u] = CurveNet(made.ab, made.ba);
-    }
+    set_curve_net(reference >> 1u, select(made.ab, made.ba, runs_against), select(made.ba, made.ab, runs_against));
+}
+
+// What is beside them, the style of the parts there, stays.
+fn set_curve_net(index: u32, ab: vec3<f32>, ba: vec3<f32>) {
+    curve_nets[index].ab = ab;
+    curve_nets[index].ba = ba;
 }
 
 // Whether no coordinate is infinite or NaN, whatever a compiler makes of comparisons with these.
@@ -89,7 +91,7 @@ fn user_surface_finish_main(invocation: Invocation) {
     }
     let a = points[curves[index].points[0]].xyz;
     let b = points[curves[index].points[1]].xyz;
-    curve_nets[index] = CurveNet(straight_control_point(a, b), straight_control_point(b, a));
+    set_curve_net(index, straight_control_point(a, b), straight_control_point(b, a));
     if !is_void {
         atomicAdd(&report.not_numbers, 1u);
     }

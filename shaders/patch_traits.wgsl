@@ -6,8 +6,30 @@
 // Added to the number of the height image if the patch has a texture.
 const TEXTURED: u32 = 512u;
 
+// Between them and the detail of the patch's part.
+const DETAIL_STEP: u32 = 1024u;
+
+// The least detail, in which details are counted; none stands for a detail of 1. See src/geometry/mesh/part_style.rs.
+const LEAST_DETAIL: f32 = 1.0 / 64.0;
+
 fn patch_traits(patch_index: u32) -> u32 {
-    return u32(points[params.point_count + patch_index].w);
+    return u32(points[params.point_count + patch_index].w) % DETAIL_STEP;
+}
+
+fn counted_detail(count: u32) -> f32 {
+    return select(f32(count) * LEAST_DETAIL, 1.0, count == 0u);
+}
+
+// Returns how many times as fine as others LOD makes a patch.
+fn detail_of(patch_index: u32) -> f32 {
+    return counted_detail(u32(points[params.point_count + patch_index].w) / DETAIL_STEP);
+}
+
+// Returns the view in which lengths are so many times as many px.
+fn magnified(view: LodView, times: f32) -> LodView {
+    var own = view;
+    own.half_viewport *= times;
+    return own;
 }
 
 // Returns the number of a patch's height image: 1 for the first, 0 for none.

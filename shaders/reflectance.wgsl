@@ -1,6 +1,6 @@
 // How surfaces reflect light: the materials of glTF 2.0 (specification, appendix B) with the extensions KHR_materials_ior,
-// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_transmission and KHR_materials_sheen. Nothing here reads a texture or
-// a buffer. src/inspect/render/reflectance.rs has the same functions.
+// KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_transmission, KHR_materials_volume, KHR_materials_sheen and
+// KHR_materials_anisotropy. Nothing here reads a texture or a buffer. src/inspect/render/reflectance.rs has the same functions.
 
 const PI: f32 = 3.14159265;
 
@@ -21,6 +21,9 @@ struct LookAt {
     // The unit normal of the coat, and how much of the surface it covers.
     coat_normal: vec3<f32>,
     coat: f32,
+    // The unit direction across the normal that highlights are longer along, and by how much, 0 to 1.
+    direction: vec3<f32>,
+    anisotropy: f32,
     // Perceptual roughness of the surface and of the coat, 0 to 1.
     roughness: f32,
     coat_roughness: f32,
@@ -69,21 +72,38 @@ fn largest_component(color: vec3<f32>) -> f32 {
     return max(color.x, max(color.y, color.z));
 }
 
-// Density of microfacets whose normal is `half_way` (Trowbridge and Reitz; Walter et al. 2007, equation 33). The sine comes from a
-// cross product: 1 - cos^2 would cancel where surfaces are smooth.
-fn ggx_distribution(normal: vec3<f32>, half_way: vec3<f32>, alpha: f32) -> f32 {
+// Density of microfacets whose normal is `half_way` (Trowbridge and Reitz; Walter et al. 2007, equation 33). `alphas` are
+// squares of the perceptual roughness along a unit direction across the normal, and across both (Heitz 2014, equation 85). The
+// sine comes from a cross product: 1 - cos^2 would cancel where surfaces are smooth.
+fn ggx_distribution(normal: vec3<f32>, half_way: vec3<f32>, alphas: vec2<f32>, direction: vec3<f32>) -> f32 {
     let cosine = max(dot(normal, half_way), 0.0);
     let across = cross(normal, half_way);
-    let spread = cosine * cosine * alpha * alpha + dot(across, across);
-    return alpha * alpha / (PI * spread * spread);
+    let aside = dot(across, direction);
+    let ratio = alphas.x / alphas.y;
+    let spread = cosine * cosine * alphas.x * alphas.x + dot(across, across) + (ratio * ratio - 1.0) * aside * aside;
+    return ratio * alphas.x * alphas.x / (PI * spread * spread);
 }
 
-// Smith's masking and shadowing, correlated by height, divided by 4 times both cosines (Heitz 2014, equation 99).
-fn ggx_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
-    let square = alpha * alpha;
-    let eye_part = lit * sqrt(facing * facing * (1.0 - square) + square);
-    let light_part = facing * sqrt(lit * lit * (1.0 - square) + square);
+// Smith's masking and shadowing, correlated by height, divided by 4 times both cosines (Heitz 2014, equation 99). `along` are the
+// cosines of the angles of light and eye to the direction.
+fn ggx_visibility(lit: f32, facing: f32, alphas: vec2<f32>, along: vec2<f32>) -> f32 {
+    let square = alphas.y * alphas.y;
+    let more = (alphas.x * alphas.x - square) * along * along;
+    let eye_part = lit * sqrt(facing * facing * (1.0 - square) + square + more.y);
+    let light_part = facing * sqrt(lit * lit * (1.0 - square) + square + more.x);
     return 0.5 / max(eye_part + light_part, 1e-7);
+}
+
+// Squares of the perceptual roughness along the direction of long highlights and across it (KHR_materials_anisotropy).
+fn stretched_alphas(look: LookAt) -> vec2<f32> {
+    let alpha = look.roughness * look.roughness;
+    return vec2<f32>(mix(alpha, 1.0, look.anisotropy * look.anisotropy), alpha);
+}
+
+// The perceptual roughness whose directional albedo is about that of a surface with long highlights: tests say how near it is.
+fn mean_roughness(look: LookAt) -> f32 {
+    let alphas = stretched_alphas(look);
+    return select(look.roughness, sqrt(sqrt(0.5 * dot(alphas, alphas))), look.anisotropy > 0.0);
 }
 
 // The part of an even light from all around that microfacets reflect at once: the split sum (Karis 2013).
@@ -178,7 +198,8 @@ fn direct_reflection(look: LookAt, normal: vec3<f32>, to_eye: vec3<f32>, to_ligh
     base = select(base, base * sheen_scaling(look) + sheen, has_sheen(look));
     let coat_fresnel = COAT_F0 + (1.0 - COAT_F0) * fifth_power(1.0 - abs(dot(look.coat_normal, to_eye)));
     let coat = look.coat * coat_fresnel;
-    let coat_lobe = direct_lobe(look.coat_normal, to_eye, to_light, half_way, look.coat_roughness);
+    let coat_alphas = vec2<f32>(look.coat_roughness * look.coat_roughness);
+    let coat_lobe = direct_lobe(look.coat_normal, to_eye, to_light, half_way, coat_alphas, look.direction);
     return select(base, base * (1.0 - coat) + coat * coat_lobe, look.coat > 0.0);
 }
 
@@ -188,15 +209,17 @@ fn direct_lobe(
     to_eye: vec3<f32>,
     to_light: vec3<f32>,
     half_way: vec3<f32>,
-    roughness: f32,
+    alphas: vec2<f32>,
+    direction: vec3<f32>,
 ) -> f32 {
     let lit = dot(normal, to_light);
     let facing = dot(normal, to_eye);
     if lit <= 0.0 || facing <= 0.0 {
         return 0.0;
     }
-    let alpha = max(roughness * roughness, LEAST_ALPHA);
-    return ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit;
+    let rough = max(alphas, vec2<f32>(LEAST_ALPHA));
+    let along = vec2<f32>(dot(direction, to_light), dot(direction, to_eye));
+    return ggx_distribution(normal, half_way, rough, direction) * ggx_visibility(lit, facing, rough, along) * lit;
 }
 
 // Reflection by a white sheen. Where it would reflect more of an even light than there is, which smooth ones do that are seen from
@@ -222,7 +245,7 @@ fn direct_base_reflection(
     half_way: vec3<f32>,
     schlick: f32,
 ) -> vec3<f32> {
-    let lobe = direct_lobe(normal, to_eye, to_light, half_way, look.roughness);
+    let lobe = direct_lobe(normal, to_eye, to_light, half_way, stretched_alphas(look), look.direction);
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (vec3<f32>(look.specular) - f0) * schlick;
     let lit = select(0.0, max(dot(normal, to_light), 0.0), dot(normal, to_eye) > 0.0);

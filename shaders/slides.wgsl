@@ -10,10 +10,11 @@ fn is_plain(patch_index: u32) -> bool {
 // Returns a patch as it is seen.
 fn load_seen(patch_index: u32) -> SeenPatch {
     let net = load_net(patch_index);
-    var seen = seen_patch(params.view, net);
+    let view = magnified(params.view, detail_of(patch_index));
+    var seen = seen_patch(view, net);
     if is_plain(patch_index) {
-        seen.off_plane = plane_error(params.view, net);
-        seen.off_line = line_error(params.view, net);
+        seen.off_plane = plane_error(view, net);
+        seen.off_line = line_error(view, net);
     }
     if params.displacement != 0u {
         let directions = array<vec3<f32>, 3>(
@@ -23,7 +24,7 @@ fn load_seen(patch_index: u32) -> SeenPatch {
         );
         // Where no image displaces a patch, its relief says so.
         let height_scale = map_scale(maps[max(map_of(patch_index), 1u) - 1u]);
-        seen.relief = seen_relief(params.view, seen.scale, directions, height_scale, reliefs[patch_index]);
+        seen.relief = seen_relief(view, seen.scale, directions, height_scale, reliefs[patch_index]);
     }
     return seen;
 }

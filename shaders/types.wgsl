@@ -5,6 +5,7 @@ struct Params {
     view: LodView,
     factor: f32,
     pixels_per_segment: f32,
+    // As which patches are evaluated: flat if all of them are.
     surface: u32,
     partitioning: u32,
     lod: u32,
@@ -27,6 +28,8 @@ struct Params {
     // In object units: how far white is above black in images that don't say it.
     height_scale: f32,
     midlevel: f32,
+    // That of parts which have none of their own.
+    chosen_surface: u32,
 }
 
 // A value of Params.lod that no LOD has: the factors of every patch were given.
@@ -88,6 +91,10 @@ struct CurveNet {
     ab: vec3<f32>,
     ba: vec3<f32>,
 }
+
+// Where a buffer of curve nets has room behind `ab`, it says what the parts beside the curve have of their own: the count of their detail
+// (see patch_traits.wgsl), and so many times the number of their surface, from 1, or 0 for that of the settings.
+const CURVE_SURFACE_STEP: u32 = 2048u;
 
 // What patches share where they meet, so that displacement doesn't tear them apart. One buffer holds, one after another:
 // - for each point, the direction in which it moves, the level at which its height is looked up, and its dominant corner;

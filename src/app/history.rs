@@ -2,7 +2,6 @@
 //! neither is in the way of the other.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 
 use super::App;
 use super::jobs::job_list::Work;
@@ -121,11 +120,10 @@ impl App {
         self.jobs.load().is_some_and(|load| load.keep_view) || self.jobs.opens_companions()
     }
 
-    /// Takes over which parts of a mesh that was opened are shown: what the command line says, or all. This isn't a step of undo: all steps
-    /// have this mesh's preparation from now on, and no files that were about another one.
+    /// Takes over how a mesh that was opened is prepared. This isn't a step of undo: all steps have this mesh's preparation from
+    /// now on, and no files that were about another one.
     pub(super) fn take_preparation(&mut self) {
         let Undoable { preparation, settings, .. } = self.undoable();
-        self.parts = Arc::new(preparation.parts.clone());
         self.takes_back = false;
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
@@ -159,11 +157,12 @@ impl App {
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
         let Some(Undoable { settings, preparation, companions: files }) = step else { return };
-        [Work::ReferenceShape, Work::LeftMesh, Work::Matcap, Work::Light]
+        use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
+        [ReferenceShape, LeftMesh, Matcap, Environment]
             .into_iter()
-            .for_each(|work| self.jobs.stop(work));
+            .for_each(|companion| self.jobs.stop(Work::Companion(companion)));
         if self.given.is_none() {
-            self.jobs.stop(Work::Factors);
+            self.jobs.stop(Work::Companion(Factors));
         }
         if self.jobs.load().is_some_and(|load| load.keep_view) {
             self.jobs.stop(Work::Mesh);
@@ -175,11 +174,8 @@ impl App {
             }
         }
         self.put_settings(settings);
-        self.parts = Arc::new(preparation.parts.clone());
         let preparation = Preparation { import: settings.import, ..preparation };
-        if self.preparation() != preparation {
-            self.prepare(context, |own| *own = preparation);
-        }
+        self.prepare(context, |own| *own = preparation);
         self.takes_back = true;
     }
 
@@ -189,7 +185,7 @@ impl App {
         self.replace_again::<LodShader>();
         self.replace_again::<SurfaceShader>();
         self.replace_by_factors();
-        if !self.jobs.has(Work::Light) {
+        if !self.jobs.has(Work::Companion(CompanionFile::Environment)) {
             // A file of light may be gone.
             self.cancel_environment();
         }

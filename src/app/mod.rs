@@ -28,19 +28,16 @@ use inspect::engine::{Engine, Loaded};
 use inspect::measure::{Cracks, Sizes};
 use inspect::render::Camera;
 use inspect::settings::{Settings, SplitSide};
+use load::Source;
 use load::files::Limits;
-use load::{ShownParts, Source};
 
 use commands::Commands;
 use dialogs::Dialogs;
 use document::Document;
 use history::{History, Undoable, ViewHistory};
-use jobs::companion_files::OpenFile;
-use jobs::environment_job::Light;
+use jobs::companion_files::{ChosenReferenceShape, LeftMesh, Light, OpenFile};
 use jobs::given_factors::GivenFactors;
 use jobs::job_list::{Jobs, Work};
-use jobs::left_mesh::LeftMesh;
-use jobs::reference_shape::ChosenReferenceShape;
 use jobs::user_shader_job::OpenShader;
 use painting::{Painting, panel_frame};
 use panels::Panels;
@@ -57,8 +54,6 @@ pub struct App {
     render_state: egui_wgpu::RenderState,
     painting: Painting,
     settings: Settings,
-    /// Which parts of the file are to be shown.
-    parts: Arc<ShownParts>,
     /// The meshes that were dropped on the window together.
     dropped: Vec<PathBuf>,
     history: History<Undoable>,
@@ -117,7 +112,6 @@ impl App {
             render_state,
             painting,
             settings: if source.is_some() { Settings::opening() } else { Settings::greeting() },
-            parts: Arc::default(),
             dropped: Vec::new(),
             history: History::default(),
             takes_back: false,

@@ -30,6 +30,7 @@ sections! {
     LevelOfDetail => "Level of detail", true;
     Displacement => "Displacement", false;
     Parts => "Parts", true;
+    MorphTargets => "Morph targets", true;
     Look => "Look", false;
     Import => "Import", false;
     Advanced => "Advanced", false;

@@ -49,6 +49,22 @@ pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
     ui.end_row();
 }
 
+/// A row with a name and a list whose entries `show` makes.
+pub(super) fn list_row(ui: &mut egui::Ui, name: &str, shown: String, hover: &str, show: impl FnOnce(&mut egui::Ui)) {
+    let label = ui.label(name).on_hover_text(hover);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).truncate().show_ui(ui, show);
+    combo.response.labelled_by(label.id).on_hover_text(hover);
+    ui.end_row();
+}
+
+/// A row with nothing but a button. Returns whether it was clicked.
+pub(super) fn button_row(ui: &mut egui::Ui, text: &str, hover: &str) -> bool {
+    ui.label("");
+    let is_clicked = ui.button(text).on_hover_text(hover).clicked();
+    ui.end_row();
+    is_clicked
+}
+
 /// A row with a name and a right-aligned number.
 pub(super) fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
     ui.label(name).on_hover_text(hover);
@@ -81,12 +97,12 @@ pub(super) fn unclicked(ui: &mut egui::Ui, text: RichText) -> egui::Response {
 const LIST_ROWS: f32 = 6.0;
 
 /// A list of many rows. Only the visible ones are made. The keys Up, Down, Home and End go from row to row. If there are other rows
-/// than in the last frame, which is told by their count and by `first`, the list shows the first of them again.
+/// than in the last frame, which two numbers of `rows` tell, the list shows the first of them again.
 pub(super) fn list(
     ui: &mut egui::Ui,
     name: &str,
     count: usize,
-    first: u32,
+    rows: (usize, u32),
     mut row: impl FnMut(&mut egui::Ui, usize) -> egui::Response,
 ) {
     let height = ui.text_style_height(&egui::TextStyle::Monospace).max(ui.spacing().interact_size.y);
@@ -100,9 +116,9 @@ pub(super) fn list(
     // The row that the last frame's key asked for, and how far the list was scrolled then.
     let asked: Option<(usize, f32)> = ui.data_mut(|data| data.remove_temp(id));
     let before: Option<(usize, u32)> = ui.data(|data| data.get_temp(id.with("rows")));
-    ui.data_mut(|data| data.insert_temp(id.with("rows"), (count, first)));
+    ui.data_mut(|data| data.insert_temp(id.with("rows"), rows));
     let area = match asked {
-        _ if before.is_some_and(|before| before != (count, first)) => area.vertical_scroll_offset(0.0),
+        _ if before.is_some_and(|before| before != rows) => area.vertical_scroll_offset(0.0),
         Some((index, offset)) => {
             let top = index as f32 * pitch;
             area.vertical_scroll_offset(offset.clamp((top + pitch - shown).max(0.0), top))
@@ -154,7 +170,7 @@ pub(super) fn found_list(
     row: impl Fn(usize) -> FoundRow,
 ) -> Option<usize> {
     let mut clicked = None;
-    list(ui, name, count, first, |ui, index| {
+    list(ui, name, count, (count, first), |ui, index| {
         let FoundRow { columns, is_selected, hover } = row(index);
         let response = ui.selectable_label(is_selected, RichText::new(columns).monospace()).on_hover_text(hover);
         if response.clicked() {

@@ -8,11 +8,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::interrupt::stop_on_interrupt;
 use super::options::{CameraOption, whole_from};
 use super::{
     AdapterOption, CliError, ProgressPrinter, SurfaceOptions, WeldOption, file_error, file_of, keep_apart, load_apart,
-    make_folder, options, refuse, write_text,
+    make_folder, options, refuse, stop_on_interrupt, write_text,
 };
 use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
 use inspect::engine::{Engine, Loaded};

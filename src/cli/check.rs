@@ -16,10 +16,9 @@ use base64::engine::general_purpose::STANDARD;
 use clap::ValueEnum;
 
 use super::gate_options::FailOnOption;
-use super::interrupt::stop_on_interrupt;
 use super::{
-    AdapterOption, CliError, ProgressPrinter, file_error, file_of, keep_apart, make_folder, note, options, write_bytes,
-    write_text,
+    AdapterOption, CliError, ProgressPrinter, file_error, file_of, keep_apart, make_folder, note, options,
+    stop_on_interrupt, write_bytes, write_text,
 };
 use geometry::cores::in_ranges;
 use inspect::engine::Engine;

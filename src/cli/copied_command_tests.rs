@@ -4,7 +4,8 @@ use std::ffi::OsString;
 use std::path::Path;
 
 use clap::Parser;
-use geometry::tessellate::{Displacement, Tessellation};
+use geometry::mesh::PartStyle;
+use geometry::tessellate::{Displacement, Surface, Tessellation};
 use glam::{Vec2, Vec3};
 use inspect::engine::Preparation;
 use inspect::render::Camera;
@@ -92,7 +93,15 @@ fn options_with_other_values_are_written() {
         heights,
         variant: Some("-matte".to_owned()),
         scene: Some("Night sky".to_owned()),
-        parts: ShownParts { hidden: vec!["-left door".to_owned(), "b, c".to_owned()], only: vec!["d".to_owned()] },
+        parts: ShownParts {
+            hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
+            only: vec!["d".to_owned()],
+            styles: vec![
+                ("-a:b".to_owned(), PartStyle { surface: Some(Surface::PhongAen), detail: 0.25 }),
+                ("d".to_owned(), PartStyle { surface: None, detail: 2.0 }),
+            ],
+            morphs: [("-a = b".to_owned(), -0.1), ("Smile".to_owned(), 0.7)].into(),
+        },
         import: Import::default(),
         limits,
     };
@@ -110,7 +119,7 @@ fn options_with_other_values_are_written() {
     };
     let args = parsed(&shown.line());
     assert_eq!(args.file, Source::File("./-x.glb".into()));
-    assert_eq!(args.shot.reference_shape.reference_shape, Some(Source::File("./shape:y".into())));
+    assert_eq!(args.shot.reference_shape, Some(Source::File("./shape:y".into())));
     let heights = Some(HeightSource::File("./material".into()));
     assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
     assert_eq!((args.shot.select, args.shot.surface.view.orthographic), (Some(7), true));
@@ -119,11 +128,8 @@ fn options_with_other_values_are_written() {
     assert_eq!(args.shot.surface.tessellation().height_scale, -0.5);
     let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
     let args = parsed(&moving.line());
-    assert_eq!(
-        (args.shot.surface.animation.animation.as_deref(), args.shot.surface.animation.time),
-        (Some("-run, fast"), 0.1)
-    );
-    assert_eq!(args.shot.reference_shape.reference_shape, None, "an animation has no reference surface");
+    assert_eq!((args.shot.surface.animation.as_deref(), args.shot.surface.time), (Some("-run, fast"), 0.1));
+    assert_eq!(args.shot.reference_shape, None, "an animation has no reference surface");
 }
 
 #[test]

@@ -50,28 +50,18 @@ impl GateOptions {
         )
     }
 
-    /// Writes pictures of the failed gates' worst places, if they were asked for. `stem` begins their names.
+    /// Writes pictures of the failed gates' worst places, if they were asked for, into a folder that is made if it isn't there;
+    /// none of a gate that is about no place. `stem` begins their names.
     pub(super) fn write_evidence(&self, shot: &mut Shot, judged: &[Judgement], stem: &Path) -> Result<(), CliError> {
         let Some(folder) = self.evidence.as_deref() else { return Ok(()) };
+        let stem = stem.file_stem().unwrap_or_default().to_string_lossy();
         for judgement in judged.iter().filter(|judgement| !judgement.passed) {
-            write_evidence_of(shot, judgement, folder, stem)?;
+            let Some(picture) = shot.evidence(judgement, &Progress::new())? else { continue };
+            make_folder(folder)?;
+            write_picture(&folder.join(format!("{stem}-{}.png", judgement.kind.name())), &picture.into())?;
         }
         Ok(())
     }
-}
-
-/// Writes a picture of a failed gate's worst place into a folder, which is made if it isn't there; nothing if it is about no place.
-/// `stem` begins its name.
-pub(super) fn write_evidence_of(
-    shot: &mut Shot,
-    judgement: &Judgement,
-    folder: &Path,
-    stem: &Path,
-) -> Result<(), CliError> {
-    let Some(picture) = shot.evidence(judgement, &Progress::new())? else { return Ok(()) };
-    make_folder(folder)?;
-    let stem = stem.file_stem().unwrap_or_default().to_string_lossy();
-    Ok(write_picture(&folder.join(format!("{stem}-{}.png", judgement.kind.name())), &picture.into())?)
 }
 
 /// Returns a sentence for each gate that failed on the mesh with this name.

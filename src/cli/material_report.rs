@@ -76,6 +76,13 @@ impl MaterialInfo {
         add(look.transmission > 0.0, format!("transmission {}", look.transmission));
         let sheen = numbers(&look.sheen_color);
         add(look.sheen_color != usual.sheen_color, format!("sheen {sheen} of roughness {}", look.sheen_roughness));
+        let (stretch, angle) = (look.anisotropy, look.anisotropy_rotation.to_degrees());
+        add(stretch > 0.0, format!("highlights longer by {stretch} at {angle} degrees from the tangent"));
+        let color = numbers(&look.attenuation_color);
+        let absorbs = look.attenuation_color != usual.attenuation_color && look.attenuation_distance.is_finite();
+        let left = format!(", which leaves {color} of light in {} object units", look.attenuation_distance);
+        let left = if absorbs { left } else { String::new() };
+        add(look.thickness > 0.0, format!("{} object units thick{left}", look.thickness));
         add(self.alpha == "blend", "blended".to_owned());
         let cutoff = self.alpha_cutoff;
         add(cutoff.is_some(), format!("cut out below alpha {}", cutoff.unwrap_or_default()));
@@ -86,20 +93,12 @@ impl MaterialInfo {
 }
 
 fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
-    let strength = match slot {
-        Slot::Normal => Some(look.normal_scale),
-        Slot::Occlusion => Some(look.occlusion_strength),
-        Slot::ClearcoatNormal => Some(look.clearcoat_normal_scale),
-        Slot::MetallicRoughness
-        | Slot::Emissive
-        | Slot::Transmission
-        | Slot::SheenColor
-        | Slot::SheenRoughness
-        | Slot::Clearcoat
-        | Slot::ClearcoatRoughness
-        | Slot::Specular
-        | Slot::SpecularColor => None,
-    };
+    let own_numbers = [
+        (Slot::Normal, look.normal_scale),
+        (Slot::Occlusion, look.occlusion_strength),
+        (Slot::ClearcoatNormal, look.clearcoat_normal_scale),
+    ];
+    let strength = own_numbers.into_iter().find(|(own, _)| *own == slot).map(|(_, number)| number);
     let uv_set = match map.uv {
         MapUv::Own => None,
         MapUv::Set(set, _) => Some(set),
@@ -151,9 +150,11 @@ mod tests {
         (look.normal_scale, look.clearcoat, look.alpha, look.unlit) = (0.5, 1.0, Alpha::Mask(0.25), true);
         look.transmission = 0.75;
         (look.sheen_color, look.sheen_roughness) = ([0.5, 0.0, 1.0], 0.25);
+        (look.anisotropy, look.anisotropy_rotation) = (0.5, std::f32::consts::PI);
+        (look.thickness, look.attenuation_distance, look.attenuation_color) = (2.0, 0.5, [1.0, 0.5, 0.25]);
         let info = MaterialInfo::new(&material);
         let text = info.to_string();
-        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, sheen 0.5 0 1 of roughness 0.25, cut out below alpha 0.25, unlit";
+        let look = "metallic 0, roughness 0.5, base colour 0.5 0.25 0 1, clear coat 1 of roughness 0, transmission 0.75, sheen 0.5 0 1 of roughness 0.25, highlights longer by 0.5 at 180 degrees from the tangent, 2 object units thick, which leaves 1 0.5 0.25 of light in 0.5 object units, cut out below alpha 0.25, unlit";
         assert!(text.contains(&format!("\n  look          {look}\n")), "{text}");
         assert!(text.ends_with("\n  map           normal 2 x 1 px, on TEXCOORD_1, strength 0.5\n"), "{text}");
         let json = serde_json::to_value(&info).unwrap();

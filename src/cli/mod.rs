@@ -2,8 +2,7 @@
 
 mod adapters;
 mod adjacency;
-mod animation;
-mod camera_report;
+mod camera_and_light_report;
 mod chart;
 mod check;
 pub mod compare;
@@ -11,27 +10,20 @@ pub mod compare;
 mod copied_command_tests;
 mod domain;
 mod factors;
-mod factors_option;
 mod gallery;
 mod gate_options;
 mod info;
-mod interrupt;
-mod light_report;
-mod lod_shader_option;
 mod material_report;
-mod mesh_report;
 mod options;
 mod output_guard;
+mod own_factors_and_surface;
 #[cfg(test)]
 mod page_tests;
 mod posed;
-mod reference;
-mod reference_shape;
 mod render;
 mod shaders;
 mod shot_options;
 mod stability;
-mod surface_shader_option;
 mod tessellate;
 mod turntable;
 mod view_files;
@@ -39,21 +31,19 @@ mod view_files;
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use clap::{Parser, Subcommand};
 use thiserror::Error;
 
 pub(crate) use adapters::AdapterOption;
-pub(crate) use animation::AnimationOption;
-pub(crate) use factors_option::FactorsOption;
-pub(crate) use lod_shader_option::LodShaderOption;
 use output_guard::{file_of, files_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
-pub(crate) use reference_shape::ReferenceSurfaceOption;
+pub(crate) use own_factors_and_surface::{FactorsOption, LodShaderOption, SurfaceShaderOption};
 pub use render::{preview, run_with as render_with};
-pub(crate) use surface_shader_option::SurfaceShaderOption;
 pub use tessellate::run_with as tessellate_with;
 
 use geometry::names::{on_one_line, shown};
@@ -265,7 +255,7 @@ pub fn run(command: Command) -> ExitCode {
         }
         Err(error @ CliError::Interrupted { .. }) => {
             fail(&error);
-            ExitCode::from(interrupt::INTERRUPTED)
+            ExitCode::from(INTERRUPTED)
         }
         Err(CliError::Gates(sentences)) => {
             sentences.iter().for_each(|sentence| note(sentence));
@@ -306,6 +296,23 @@ fn load_apart(source: &Source, preparation: &Preparation, written: &[Option<&Pat
     let loaded = load(source, preparation)?;
     keep_apart(loaded.files.iter().map(|path| Some(path.as_path())), written.iter().copied())?;
     Ok(loaded)
+}
+
+/// The exit code after Ctrl-C: 128 + SIGINT, as shells return it.
+const INTERRUPTED: u8 = 130;
+
+/// Returns a flag that Ctrl-C sets. A second Ctrl-C ends the program. `piece` is what the command ends after, such as "setting".
+fn stop_on_interrupt(piece: &'static str) -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let set = stop.clone();
+    // Without a handler, Ctrl-C ends the program at once, and what was written until then stays.
+    let _ = ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::exit(i32::from(INTERRUPTED));
+        }
+        note(&format!("ending after this {piece}; Ctrl-C again ends at once"));
+    });
+    stop
 }
 
 /// Reports the progress of a long command on standard error, at most once a second.

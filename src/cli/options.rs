@@ -2,7 +2,6 @@
 
 mod cameras;
 mod declared;
-mod lod_camera;
 mod opening;
 mod values;
 mod view;
@@ -10,13 +9,13 @@ mod view;
 use clap::Args;
 use glam::Vec2;
 
-use super::{AnimationOption, CliError, note, refuse};
-use geometry::mesh::FileCamera;
+use super::{CliError, note, refuse};
 use geometry::mesh::crease_band::WIDEST;
+use geometry::mesh::{FileCamera, Moment, PartStyle};
 use geometry::progress::Progress;
 use geometry::tessellate::{Displacement, LodView, Surface, Tessellation, tolerance_within_budget};
 use gpu::Timing;
-use inspect::engine::{Engine, Preparation};
+use inspect::engine::{Engine, Loaded, Preparation};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
 use inspect::settings::options::TOLERANCE_RANGE;
@@ -31,12 +30,11 @@ use declared::GivenTessellation;
 pub(crate) use declared::{
     Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,
 };
-pub(crate) use lod_camera::LodCameraOption;
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
     CameraOption, ending_in, heights, model, picture, picture_or_page, size, source, whole, whole_from, within,
 };
-pub(crate) use view::{MeshAt, ViewOptions};
+pub(crate) use view::{LodCameraOption, MeshAt, ViewOptions};
 
 /// The options about LOD, which can't be given with something that takes its place.
 pub(crate) const LOD_OPTIONS: [&str; 5] = ["lod", "factor", "pixels", "distances", "max_triangles"];
@@ -59,8 +57,12 @@ pub struct SurfaceOptions {
     pub arena: u64,
     #[command(flatten)]
     pub weld: WeldOption,
-    #[command(flatten)]
-    pub animation: AnimationOption,
+    /// Show the mesh in a pose of this animation; `pnaen info` lists the animations
+    #[arg(long, value_name = "NAME")]
+    pub animation: Option<String>,
+    /// Time in the animation, in s; after its end the pose is that of the end
+    #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = values::seconds, default_value_t = 0.0, allow_hyphen_values = true)]
+    pub time: f64,
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
     pub size: [u32; 2],
@@ -102,7 +104,7 @@ impl SurfaceOptions {
             "--partitioning subtriangulation has the same number of segments everywhere: it needs --lod uniform",
         )?;
         refuse(
-            self.weld.crease_band > 0.0 && self.animation.animation.is_some(),
+            self.weld.crease_band > 0.0 && self.animation.is_some(),
             "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
         )?;
         let usual = Tessellation::default();
@@ -133,7 +135,7 @@ impl SurfaceOptions {
         Tessellation {
             displacement: displacement.unwrap_or(Displacement::usual(!self.height.is_empty())),
             // A pose may turn a part inside out, and its back is then seen.
-            cull_back_faces: tessellation.cull_back_faces && self.animation.animation.is_none(),
+            cull_back_faces: tessellation.cull_back_faces && self.animation.is_none(),
             ..tessellation
         }
     }
@@ -146,7 +148,7 @@ impl SurfaceOptions {
     /// The settings of a picture with these options.
     pub(crate) fn settings_of(&self, picture: &Settings) -> Settings {
         // A pose may turn a part inside out in either half.
-        let is_still = self.animation.animation.is_none();
+        let is_still = self.animation.is_none();
         let left = Tessellation { cull_back_faces: picture.left.cull_back_faces && is_still, ..picture.left };
         Settings { import: self.weld.import.0, left, ..picture.with(self.tessellation()) }
     }
@@ -184,6 +186,25 @@ impl SurfaceOptions {
             engine.count(scene, &settings.inputs(view), &mut Timing::Off)?;
             Ok(scene.tessellator.totals().1)
         })
+    }
+
+    /// Returns the chosen moment, or none at rest. Warns on standard error about a time beyond the end.
+    pub fn moment(&self, loaded: &Loaded) -> Result<Option<Moment>, CliError> {
+        let Some(name) = &self.animation else { return Ok(None) };
+        let rig = loaded.mesh.rig.as_deref();
+        let found = rig.and_then(|rig| rig.clip(name).map(|clip| (clip, rig.clips[clip].duration)));
+        let Some((clip, duration)) = found else {
+            let (file, name) = (loaded.source.to_string(), name.clone());
+            let clips: Vec<_> = rig.iter().flat_map(|rig| &rig.clips).map(|clip| clip.name.clone()).collect();
+            let has = if clips.is_empty() { "none".to_owned() } else { clips.join(", ") };
+            return Err(CliError::NoAnimation { file, name, has });
+        };
+        if self.time > duration {
+            // Files have times in f32: an f64 would print digits that the file doesn't have.
+            let end = duration as f32;
+            note(&format!("{name} ends at {end} s; the pose at its end is shown"));
+        }
+        Ok(Some(Moment { clip, time: self.time.min(duration) }))
     }
 
     /// Memory for output on the device, in bytes.
@@ -255,20 +276,30 @@ impl WeldOption {
     }
 }
 
-/// Which parts of a file are read.
+/// Which parts of a file are read, and in which shape.
 #[derive(Clone, Debug, Default, Args)]
 pub struct PartOptions {
-    /// Leave out the part of the file that has this name; may be given several times. `info` lists the parts
+    /// Leave out the part, group or material of this name or path; may be given several times. `info` lists them
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     hide_part: Vec<String>,
-    /// Show only the part of the file that has this name, and others that are given so
+    /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
+    /// Give the part of this name a surface of its own, or LOD that is 1/64 to 16 times as fine: several times as a whole, and for
+    /// each part once, as `NAME:surface=flat` or `NAME:surface=phong-aen,detail=2`. Where parts with different surfaces meet, the edge
+    /// has the one that comes first among those of `--surface`, and the finest detail
+    #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
+    part: Vec<(String, PartStyle)>,
+    /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.
+    /// `info` lists the targets
+    #[arg(long, value_name = "NAME=WEIGHT", allow_hyphen_values = true, value_parser = values::morph)]
+    morph: Vec<(String, f32)>,
 }
 
 impl PartOptions {
     pub fn shown(&self) -> ShownParts {
-        ShownParts { hidden: self.hide_part.clone(), only: self.show_part.clone() }
+        let (hidden, only) = (self.hide_part.clone(), self.show_part.clone());
+        ShownParts { hidden, only, styles: self.part.clone(), morphs: self.morph.iter().cloned().collect() }
     }
 }
 

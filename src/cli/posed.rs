@@ -29,7 +29,7 @@ impl<'a> Posed<'a> {
         written: &[Option<&Path>],
     ) -> Result<Self, CliError> {
         let loaded = load_apart(file, &surface.preparation(), written)?;
-        let moment = surface.animation.moment(&loaded)?;
+        let moment = surface.moment(&loaded)?;
         let bounds = bounds_through(&loaded.mesh, moment.map(|moment| moment.clip));
         Ok(Self { surface, posed: loaded.posed(moment), loaded, moment, bounds })
     }

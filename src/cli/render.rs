@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::gate_options::{GateOptions, failures};
 use super::options::{CamerasOption, Declared};
-use super::reference::{self, ReferenceOptions};
 use super::shot_options::ShotOptions;
 use super::view_files::{View, ViewFiles};
-use super::{AdapterOption, CliError, LimitOption, OpeningOptions, SurfaceOptions, options, to_json, write_text};
+use super::{AdapterOption, CliError, LimitOption, OpeningOptions, SurfaceOptions, note, options, to_json, write_text};
 use geometry::progress::Progress;
 use gpu::GpuError;
 use inspect::engine::Engine;
@@ -34,8 +33,15 @@ pub struct Args {
     /// Whether stats include the largest distance on screen between the triangles and the surface, sampled on the CPU
     #[arg(long, value_name = "BOOL", default_value_t = true, action = clap::ArgAction::Set)]
     pub measure_error: bool,
-    #[command(flatten)]
-    pub reference: ReferenceOptions,
+    /// Fail if the picture isn't the same as this one, and write a picture of the difference beside it. If the same adapter,
+    /// driver and processor drew both, all px must be equal. With --cameras, a folder, or a name with {} where each view's
+    /// name goes
+    #[arg(long, value_name = "PNG")]
+    pub reference: Option<PathBuf>,
+    /// Largest mean difference of a square of 8 x 8 px that passes, in steps of 255, whatever drew the reference; without it,
+    /// 1.5 if something else drew it
+    #[arg(long, value_name = "STEPS", value_parser = options::within(0.0..=255.0), requires = "reference")]
+    pub threshold: Option<f32>,
     #[command(flatten)]
     pub gates: GateOptions,
     #[command(flatten)]
@@ -66,7 +72,8 @@ pub fn preview(
         stats: None,
         measure_error: true,
         cameras: CamerasOption::default(),
-        reference: ReferenceOptions::default(),
+        reference: None,
+        threshold: None,
         gates: GateOptions::default(),
         adapter,
     };
@@ -117,12 +124,32 @@ fn conclude(args: &Args, Found { stats, judgements, mut failed }: Found) -> Resu
         };
         write_text(path, &text)?;
     }
-    let compared = reference::conclude(judgements);
+    let compared = compared(judgements);
     if failed.is_empty() {
         return compared;
     }
     failed.extend(compared.err().map(|different| different.to_string()));
     Err(CliError::Gates(failed))
+}
+
+/// Tells on standard error how pictures compare with their references.
+fn compared(all: Vec<Result<String, ShotError>>) -> Result<(), CliError> {
+    let count = all.len();
+    let mut differing = Vec::new();
+    for said in all {
+        match said {
+            Ok(said) => note(&said),
+            Err(error) => differing.push(error),
+        }
+    }
+    if count == 1 {
+        return differing.pop().map_or(Ok(()), |error| Err(error.into()));
+    }
+    differing.iter().for_each(|error| note(&error.to_string()));
+    match differing.len() {
+        0 => Ok(()),
+        different => Err(CliError::ManyDifferent { different, all: count }),
+    }
 }
 
 /// What came of the pictures.
@@ -147,13 +174,13 @@ impl Args {
 
     /// Reads the reference pictures at these places, each of which may be none.
     fn references(&self, places: &[Option<PathBuf>]) -> Result<Vec<Option<Reference>>, CliError> {
-        let read = |path: &Path| Reference::read(path, self.reference.threshold);
+        let read = |path: &Path| Reference::read(path, self.threshold);
         Ok(places.iter().map(|place| place.as_deref().map(read).transpose()).collect::<Result<_, _>>()?)
     }
 
     /// The reference picture of a view, if there are references.
     fn reference_of(&self, view: &View) -> Option<PathBuf> {
-        let place = self.reference.reference.as_deref()?;
+        let place = self.reference.as_deref()?;
         let name = view.named.as_ref().map(|named| named.name.as_str());
         Some(ViewFiles::new(place, ENDINGS, &self.cameras).of(name))
     }

@@ -179,8 +179,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         write_text("-".as_ref(), &format!("\n{LEGEND}\n"))?;
     }
     failed.extend(failures(&args.gates.gates.fail_on, &rows));
-    if let (Some(folder), Some(engine)) = (&args.gates.evidence, &engine) {
-        evidence::write(folder, engine, &subjects, &failed)?;
+    if let Some(engine) = engine.as_ref().filter(|_| args.gates.evidence.is_some()) {
+        evidence::write(&args.gates, engine, &subjects, &failed)?;
     }
     let mut said: Vec<String> = failed.into_iter().map(|failure| failure.sentence).collect();
     said.extend(broken_promises(&rows));

@@ -3,8 +3,8 @@
 use egui::{Key, ThemePreference};
 
 use super::{
-    Action, CameraAction, Change, Command, CompanionFile, Direction, FileAction, Menu, Need, Purpose, QUIT, Submenu,
-    Written, ctrl, ctrl_shift, plain, shift,
+    Action, CameraAction, Change, Command, CompanionFile, Direction, FileAction, Menu, Need, Place, Purpose, QUIT,
+    Submenu, Written, ctrl, ctrl_shift, plain, shift,
 };
 use geometry::mesh::Shape;
 use inspect::render::Standpoint;
@@ -38,15 +38,15 @@ macro_rules! declared {
         $(needs $($need:ident)+)? => $action:expr, $text:expr;
     )+) => {
         vec![$(
-            Command::new($action, $name)
-                .text($text)
+            Command::new($action, $name, $text)
                 $(.keys([$($key),+]))?
-                $(.menu(Menu::$menu, $group))?
-                $(.submenu(Submenu::$submenu))?
+                $(.at(Place::Menu(Menu::$menu, $group)))?
+                $(.at(Place::Submenu(Submenu::$submenu)))?
                 $(.needs(&[$(Need::$need),+]))?
         ),+]
     };
 }
+pub(super) use declared;
 
 fn file() -> Vec<Command> {
     let beside = |file| FileAction::Ask(Purpose::CompanionFile(file));
@@ -89,9 +89,8 @@ fn file() -> Vec<Command> {
     };
     commands.extend(Shape::ALL.map(|shape| {
         let text = format!("Opens the shape {}, made in code.", shape.name());
-        Command::new(FileAction::OpenShape(shape), format!("Shape: {}", shape.title()))
-            .text(text)
-            .submenu(Submenu::Shapes)
+        let name = format!("Shape: {}", shape.title());
+        Command::new(FileAction::OpenShape(shape), name, text).at(Place::Submenu(Submenu::Shapes))
     }));
     commands.extend(writing());
     commands

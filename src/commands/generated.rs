@@ -4,9 +4,10 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut};
 
+use super::fixed::declared;
 use super::{
-    Action, Availability, CameraAction, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Submenu, alt,
-    plain, shift,
+    Action, Availability, CameraAction, Change, Command, FileAction, MOST_BOOKMARKS, Need, Place, Preparing, Submenu,
+    alt, plain, shift,
 };
 use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
@@ -36,7 +37,7 @@ fn values(option: &'static Declaration, needs: &'static [Need]) -> Vec<Command> 
     let values = option.kind.descriptions();
     let values = values.iter().map(|value| (Some(value.name), value.label, value.text));
     let command = |(value, name, text): (Option<&'static str>, &'static str, &'static str)| {
-        Command::new(Change::Option(option.name, value), format!("{label}: {name}")).text(text).needs(needs)
+        Command::new(Change::Option(option.name, value), format!("{label}: {name}"), text).needs(needs)
     };
     unset.chain(values).map(command).collect()
 }
@@ -67,18 +68,15 @@ fn left_surfaces() -> Vec<Command> {
     let unset = options::SPLIT_LEFT.unset.iter().map(|unset| (None, unset.label, unset.text));
     let surfaces = Surface::ALL.iter().map(|surface| (Some(*surface), surface.label(), surface.text()));
     let command = |(surface, name, text): (_, &str, &'static str)| {
-        Command::new(Change::LeftSurface(surface), format!("Left of the split: {name}"))
-            .text(text)
-            .needs(&[Need::Split])
+        Command::new(Change::LeftSurface(surface), format!("Left of the split: {name}"), text).needs(&[Need::Split])
     };
-    let swap = Command::new(Change::SwapHalves, "Swap left and right")
-        .text("Exchanges the tessellations left and right of the split.")
-        .needs(&[Need::Split]);
-    let blink = Command::new(Change::BlinkHalves, "Blink left and right")
-        .text("Shows the left half in all of the picture, and then the right one. S brings the divider back.")
-        .keys([plain(Key::J)])
-        .needs(&[Need::Split]);
-    unset.chain(surfaces).map(command).chain([swap, blink]).collect()
+    let both = declared! {
+        "Swap left and right" needs Split => Change::SwapHalves,
+            "Exchanges the tessellations left and right of the split.";
+        "Blink left and right" [plain(Key::J)] needs Split => Change::BlinkHalves,
+            "Shows the left half in all of the picture, and then the right one. S brings the divider back.";
+    };
+    unset.chain(surfaces).map(command).chain(both).collect()
 }
 
 /// The key that switches an overlay. Those that look at the surface by itself have Shift and a letter, the zebra that of its
@@ -117,7 +115,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
 fn colors_and_overlays() -> Vec<Command> {
     let (material, colors) = (Colors::default(), "Colours");
     let own = format!("{colors}: {}", material.label());
-    let mut all = vec![Command::new(Change::MaterialColors, own).text(material.text())];
+    let mut all = vec![Command::new(Change::MaterialColors, own, material.text())];
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
         let (name, needs_coordinates) = match overlays.control(overlay) {
@@ -127,7 +125,7 @@ fn colors_and_overlays() -> Vec<Command> {
             Control::Switch(_) => (format!("Overlay: {}", overlay.label()), false),
         };
         let needs: &[Need] = if needs_coordinates { &[Need::TextureCoordinates] } else { &[] };
-        let command = Command::new(Change::Overlay(overlay), name).text(overlay.text());
+        let command = Command::new(Change::Overlay(overlay), name, overlay.text());
         command.keys([overlay_key(overlay)]).needs(needs)
     }));
     all
@@ -135,35 +133,32 @@ fn colors_and_overlays() -> Vec<Command> {
 
 /// Commands that change the mesh's preparation and load it again.
 fn mesh() -> Vec<Command> {
-    let exact = "Joins corners whose positions are exactly equal.";
-    let mut all = vec![Command::new(Preparing::Weld(0.0), "Weld: Exact").text(exact).needs(&[Need::Document])];
+    let mut all = declared! {
+        "Weld: Exact" needs Document => Preparing::Weld(0.0), "Joins corners whose positions are exactly equal.";
+    };
     all.extend(TOLERANCES.map(|tolerance| {
         let text = format!("Joins positions within {tolerance:e} of the bounding diagonal.");
-        Command::new(Preparing::Weld(tolerance), format!("Weld: {tolerance:e}")).text(text).needs(&[Need::Document])
+        Command::new(Preparing::Weld(tolerance), format!("Weld: {tolerance:e}"), text).needs(&[Need::Document])
     }));
     let on = format!("Makes a band of small triangles along creases, {CREASE_BAND} of the bounding diagonal wide.");
-    all.extend([
-        Command::new(Preparing::CreaseBand(CREASE_BAND), "Crease band: On").text(on).needs(&[Need::Document]),
-        Command::new(Preparing::CreaseBand(0.0), "Crease band: Off")
-            .text("Leaves creases as the mesh has them.")
-            .needs(&[Need::Document]),
-        Command::new(Preparing::NoHeights, "Height map: None")
-            .text("Removes the height map. What the file itself gives its materials stays.")
-            .needs(&[Need::Document]),
-        Command::new(Preparing::HeightsFromMaterials, "Height map: Material")
-            .text("Displaces the mesh by the brightness of each material's base colour image.")
-            .needs(&[Need::Document]),
-    ]);
+    all.extend(declared! {
+        "Crease band: On" needs Document => Preparing::CreaseBand(CREASE_BAND), on;
+        "Crease band: Off" needs Document => Preparing::CreaseBand(0.0), "Leaves creases as the mesh has them.";
+        "Height map: None" needs Document => Preparing::NoHeights,
+            "Removes the height map. What the file itself gives its materials stays.";
+        "Height map: Material" needs Document => Preparing::HeightsFromMaterials,
+            "Displaces the mesh by the brightness of each material's base colour image.";
+    });
     all
 }
 
 fn clips(now: &Availability) -> Vec<Command> {
-    let rest = "Shows the mesh as it is without any clip.";
-    let mut all =
-        vec![Command::new(Action::AnimationClip(None), "Animation: Rest pose").text(rest).needs(&[Need::Clips])];
+    let mut all = declared! {
+        "Animation: Rest pose" needs Clips => Action::AnimationClip(None), "Shows the mesh as it is without any clip.";
+    };
     all.extend(now.clips.iter().take(CLIPS).enumerate().map(|(i, clip)| {
         let name = format!("Animation: {}", shortened(clip, 40));
-        Command::new(Action::AnimationClip(Some(i)), name).text("Shows this clip from its start.").needs(&[Need::Clips])
+        Command::new(Action::AnimationClip(Some(i)), name, "Shows this clip from its start.").needs(&[Need::Clips])
     }));
     all
 }
@@ -172,7 +167,7 @@ fn recent(now: &Availability) -> Vec<Command> {
     let open = |path: &PathBuf| {
         let name = format!("Recent: {}", path.file_name().unwrap_or_default().to_string_lossy());
         let text = format!("Opens {}.", path.display());
-        Command::new(FileAction::OpenRecent(path.clone()), name).text(text).submenu(Submenu::OpenRecent)
+        Command::new(FileAction::OpenRecent(path.clone()), name, text).at(Place::Submenu(Submenu::OpenRecent))
     };
     now.recent.iter().map(open).collect()
 }
@@ -180,9 +175,8 @@ fn recent(now: &Availability) -> Vec<Command> {
 fn file_cameras(now: &Availability) -> Vec<Command> {
     let go = |(index, name): (usize, &String)| {
         let text = "Looks through this camera of the file: with its place, direction and height of view.";
-        Command::new(CameraAction::OfFile(index), format!("Camera: {}", shortened(name, 40)))
-            .text(text)
-            .submenu(Submenu::FileCameras)
+        let name = format!("Camera: {}", shortened(name, 40));
+        Command::new(CameraAction::OfFile(index), name, text).at(Place::Submenu(Submenu::FileCameras))
     };
     now.file_cameras.iter().enumerate().map(go).collect()
 }
@@ -193,10 +187,8 @@ const BOOKMARK_KEYS: [Key; MOST_BOOKMARKS] =
 fn bookmarks(now: &Availability) -> Vec<Command> {
     let go = |(index, key): (usize, Key)| {
         let text = format!("Goes to the view of bookmark {}.", index + 1);
-        Command::new(CameraAction::Bookmark(index), format!("Bookmark {}", index + 1))
-            .text(text)
-            .keys([alt(key)])
-            .submenu(Submenu::Bookmarks)
+        let command = Command::new(CameraAction::Bookmark(index), format!("Bookmark {}", index + 1), text);
+        command.keys([alt(key)]).at(Place::Submenu(Submenu::Bookmarks))
     };
     BOOKMARK_KEYS.into_iter().enumerate().take(now.bookmarks).map(go).collect()
 }

@@ -3,7 +3,6 @@
 
 mod availability;
 mod change;
-mod files;
 mod fixed;
 mod generated;
 #[cfg(test)]
@@ -16,12 +15,12 @@ use std::sync::LazyLock;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use geometry::mesh::Shape;
+use geometry::names::every;
 use inspect::render::Standpoint;
 
 pub use availability::{Availability, Need};
 pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
 pub use change::Change;
-pub use files::{CompanionFile, Purpose, Written};
 pub use fixed::ENVIRONMENT;
 pub(crate) use fixed::{
     CLOSE_ENVIRONMENT, CLOSE_LOD_SHADER, CLOSE_SURFACE_SHADER, HEIGHT_IMAGE, LEFT_MESH, MATCAP_IMAGE,
@@ -105,6 +104,49 @@ pub enum FileAction {
     SavePicture,
     SaveTurntable,
     Quit,
+}
+
+/// What can be open beside the mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CompanionFile {
+    /// The reference surface.
+    ReferenceShape,
+    /// The mesh left of the split.
+    LeftMesh,
+    Factors,
+    LodShader,
+    SurfaceShader,
+    /// A picture of a lit sphere.
+    Matcap,
+    Environment,
+}
+
+impl CompanionFile {
+    pub const ALL: [Self; 7] =
+        every![CompanionFile: ReferenceShape, LeftMesh, Factors, LodShader, SurfaceShader, Matcap, Environment];
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    Chart,
+    Picture,
+    /// A turntable as PNG files.
+    Folder,
+    Gif,
+    Factors,
+    Adjacency,
+    Stats,
+    /// The tessellated mesh.
+    Mesh,
+}
+
+/// What the window asks a file for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Purpose {
+    Open,
+    Heights,
+    CompanionFile(CompanionFile),
+    Write(Written),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -222,31 +264,17 @@ pub struct Command {
 
 impl Command {
     /// A command that is always possible, without keys, and in no menu.
-    fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>) -> Self {
-        Self {
-            action: action.into(),
-            name: name.into(),
-            text: Cow::Borrowed(""),
-            keys: Vec::new(),
-            place: None,
-            needs: &[],
-        }
-    }
-
-    fn text(self, text: impl Into<Cow<'static, str>>) -> Self {
-        Self { text: text.into(), ..self }
+    fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>, text: impl Into<Cow<'static, str>>) -> Self {
+        let (action, name, text) = (action.into(), name.into(), text.into());
+        Self { action, name, text, keys: Vec::new(), place: None, needs: &[] }
     }
 
     fn keys(self, keys: impl Into<Vec<KeyboardShortcut>>) -> Self {
         Self { keys: keys.into(), ..self }
     }
 
-    fn menu(self, menu: Menu, group: u8) -> Self {
-        Self { place: Some(Place::Menu(menu, group)), ..self }
-    }
-
-    fn submenu(self, submenu: Submenu) -> Self {
-        Self { place: Some(Place::Submenu(submenu)), ..self }
+    fn at(self, place: Place) -> Self {
+        Self { place: Some(place), ..self }
     }
 
     fn needs(self, needs: &'static [Need]) -> Self {

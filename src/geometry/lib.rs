@@ -9,5 +9,6 @@ pub mod names;
 pub mod near;
 pub mod numbers;
 pub mod progress;
+mod surface_kind;
 pub mod tessellate;
 pub mod view;

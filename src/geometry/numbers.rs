@@ -6,7 +6,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 pub fn counted(number: u64, thing: &str) -> String {
     let plural = match number {
         1 => "",
-        _ if thing.ends_with("ch") => "es",
+        _ if thing.ends_with("ch") || thing.ends_with("sh") => "es",
         _ => "s",
     };
     format!("{} {thing}{plural}", grouped(number))

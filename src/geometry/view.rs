@@ -2,18 +2,17 @@
 
 use glam::{DVec4, Mat4, Vec2, Vec3, dvec3, vec2, vec4};
 
+use crate::choice::choices;
 use crate::mesh::Topology;
 use crate::numbers::ulp_at;
 
-/// What the depth of a clip space is on the near plane, after the division by w, and where it goes from there.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum DepthRange {
-    /// 0 on the near plane, 1 far away: Direct3D, Vulkan, Metal and WebGPU.
-    ZeroToOne,
-    /// 1 on the near plane, 0 far away: the same with depth reversed.
-    Reversed,
-    /// -1 on the near plane, 1 far away: OpenGL.
-    MinusOneToOne,
+choices! {
+    /// What the depth of a clip space is on the near plane, after the division by w, and where it goes from there.
+    pub enum DepthRange {
+        ZeroToOne => "zero-to-one", "0 to 1", "0 on the near plane, 1 far away (Direct3D, Vulkan, Metal, WebGPU).";
+        Reversed => "reversed", "1 to 0", "1 on the near plane, 0 far away (the same with depth reversed).";
+        MinusOneToOne => "minus-one-to-one", "-1 to 1", "-1 on the near plane, 1 far away (OpenGL).";
+    }
 }
 
 impl DepthRange {

@@ -54,7 +54,9 @@ pub struct Params {
     /// In object units: how far white is above black in images that don't say it.
     pub height_scale: f32,
     pub midlevel: f32,
-    pub _pad: [u32; 3],
+    /// The surface of parts which have none of their own.
+    pub chosen_surface: u32,
+    pub _pad: [u32; 2],
 }
 
 /// The run of patches that one scan covers, and how much fits the arena.

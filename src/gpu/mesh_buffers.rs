@@ -4,7 +4,8 @@ use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
 use super::relief_buffers::{ReliefBuffers, height_maps, shares};
 use super::{Gpu, GpuError};
-use geometry::mesh::{CurveItems, Curves, Dominance, Mesh, Sharing, Topology, patch_reliefs};
+use geometry::mesh::{CurveItems, CurveStyle, Curves, Dominance, Mesh, PartStyle, Sharing, Topology, patch_reliefs};
+use geometry::tessellate::Surface;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
 pub const SEARCH_COUNTERS: u32 = 10;
@@ -36,7 +37,7 @@ pub struct MeshBuffers {
     pub maps: wgpu::Buffer,
     /// None without heights.
     pub relief: Option<ReliefBuffers>,
-    pub sharing: Sharing,
+    pub grouping: Grouping,
     pub point_count: u32,
     pub patch_count: u32,
     pub factor_count: u32,
@@ -44,15 +45,44 @@ pub struct MeshBuffers {
     pub material_count: u32,
 }
 
+/// How the sides of edges are grouped into curves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grouping {
+    pub sharing: Sharing,
+    /// The surface of parts that have none of their own, if the mesh has others.
+    pub surface: Option<Surface>,
+}
+
+impl Default for Grouping {
+    fn default() -> Self {
+        Self { sharing: Sharing::AllSides, surface: None }
+    }
+}
+
+impl Grouping {
+    /// That of a mesh under a surface.
+    pub fn new(mesh: &Mesh, sharing: Sharing, surface: Surface) -> Self {
+        Self { sharing, surface: (!mesh.part_styles.is_empty()).then_some(surface) }
+    }
+
+    /// The curves of the mesh's edges.
+    pub fn curves(self, mesh: &Mesh, topology: &Topology) -> Curves {
+        match self.surface {
+            Some(surface) => Curves::of_surface(mesh, topology, self.sharing, surface),
+            None => Curves::build(mesh, topology, self.sharing),
+        }
+    }
+}
+
 impl MeshBuffers {
-    /// Uploads a mesh, its sides grouped into curves as `sharing` says.
+    /// Uploads a mesh, its sides grouped into curves.
     ///
     /// # Errors
     /// A buffer would be larger than the adapter binds.
-    pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Result<Self, GpuError> {
+    pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, grouping: Grouping) -> Result<Self, GpuError> {
         let heights = mesh.heights.as_deref();
-        let is_listed = sharing != Sharing::AllSides || heights.is_some();
-        let lists = is_listed.then(|| Curves::build(mesh, topology, sharing));
+        let is_listed = grouping != Grouping::default() || heights.is_some();
+        let lists = is_listed.then(|| grouping.curves(mesh, topology));
         let grouped = CurveItems { topology, lists: lists.as_ref() };
         let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
         let dominance = heights.zip(grouped.lists);
@@ -71,14 +101,17 @@ impl MeshBuffers {
             curve_sides: filled_by(gpu, "sides", grouped.side_count(), |i| grouped.side(i))?,
             factor_curves: filled_by(gpu, "edges", factor_count + 1, |i| grouped.factor_curve(i))?,
             material_patches: filled(gpu, "materials", &material_patches)?,
-            curve_nets: empty::<CurveNet>(gpu, "curve nets", grouped.curve_count())?,
+            curve_nets: match grouped.lists.filter(|lists| !lists.styles.is_empty()) {
+                None => empty::<CurveNet>(gpu, "curve nets", grouped.curve_count())?,
+                Some(lists) => filled_by(gpu, "curve nets", lists.styles.len(), |i| styled_net(&lists.styles[i]))?,
+            },
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 1)?,
             shares: filled(gpu, "shares", &all_shares)?,
             reliefs: filled(gpu, "reliefs", &patch_reliefs(heights, mesh, topology))?,
             maps: height_maps(gpu, heights),
             relief,
-            sharing,
+            grouping,
             point_count: topology.points.len() as u32,
             patch_count: topology.patches.len() as u32,
             factor_count: grouped.factor_count(),
@@ -102,6 +135,23 @@ impl MeshBuffers {
 /// `TEXTURED` in `shaders/patch_traits.wgsl`: added to the number of a patch's height image if the patch has a texture.
 pub const TEXTURED: u32 = 512;
 
+/// `DETAIL_STEP` there: what the count of the detail of the patch's part is multiplied by.
+pub const DETAIL_STEP: u32 = 1024;
+
+/// `CURVE_SURFACE_STEP` in `shaders/types.wgsl`: what the number of a curve's surface is multiplied by.
+pub const CURVE_SURFACE_STEP: u32 = 2048;
+
+/// How many times the least detail a detail is.
+fn detail_count(detail: f32) -> u32 {
+    (detail / PartStyle::LEAST) as u32
+}
+
+/// Room for a curve's control points, with its style behind the first.
+fn styled_net(style: &CurveStyle) -> CurveNet {
+    let style = detail_count(style.detail) + CURVE_SURFACE_STEP * (style.surface as u32 + 1);
+    CurveNet { _pad: style as f32, ..bytemuck::Zeroable::zeroed() }
+}
+
 /// The positions of points, then room for the centres of patches beside their traits.
 fn points(gpu: &Gpu, mesh: &Mesh, topology: &Topology) -> Result<wgpu::Buffer, GpuError> {
     let heights = mesh.heights.as_deref();
@@ -109,7 +159,12 @@ fn points(gpu: &Gpu, mesh: &Mesh, topology: &Topology) -> Result<wgpu::Buffer, G
         let material = topology.material_of(patch);
         let map = heights.and_then(|heights| heights.map_of(material)).map_or(0, |map| map + 1);
         let is_textured = mesh.materials.get(material).is_some_and(|material| material.texture.is_some());
-        if is_textured { map + TEXTURED } else { map }
+        let detail = if mesh.part_styles.is_empty() {
+            0
+        } else {
+            detail_count(mesh.style_of(topology.patches[patch as usize].triangle).detail)
+        };
+        map + if is_textured { TEXTURED } else { 0 } + DETAIL_STEP * detail
     };
     filled_by(gpu, "points", topology.points.len() + topology.patches.len(), |i| match topology.points.get(i) {
         Some(point) => point.extend(0.0).to_array(),

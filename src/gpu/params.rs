@@ -4,7 +4,7 @@ use super::MeshBuffers;
 use super::layout::{LOD_GIVEN, LodView, Params};
 use super::user_lod::Given;
 use geometry::mesh::Mesh;
-use geometry::tessellate::{self, Clip, Inputs, Lod, LodReads};
+use geometry::tessellate::{self, Clip, Inputs, Lod, LodReads, Surface};
 
 /// The parameters for these inputs. A parameter that has no effect under them is 0, so that a change of it recomputes nothing.
 /// `given` is what takes the place of LOD. `culls_back`: patches that face away are left out.
@@ -30,11 +30,12 @@ pub(super) fn params_of(
     let heights = tessellate::displacing_heights(mesh, inputs);
     let amount =
         heights.filter(|heights| heights.follow_settings()).map(|heights| tessellate::usual_amount(heights, inputs));
+    let surface = inputs.tessellation.surface;
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
         factor: if reads.factor { inputs.tessellation.factor } else { 0.0 },
         pixels_per_segment: if reads.pixels { inputs.tessellation.pixels } else { 0.0 },
-        surface: inputs.tessellation.surface as u32,
+        surface: mesh.evaluated_surface(surface) as u32,
         partitioning: inputs.tessellation.partitioning as u32,
         lod: lod.map_or(LOD_GIVEN, |lod| lod as u32),
         clip: inputs.tessellation.clip as u32,
@@ -48,11 +49,12 @@ pub(super) fn params_of(
         far: if reads.distances { inputs.tessellation.far } else { 0.0 },
         culls_back: u32::from(culls_back),
         convention: inputs.tessellation.convention as u32,
-        alpha: if inputs.tessellation.surface.is_phong() { inputs.tessellation.alpha } else { 0.0 },
+        alpha: if mesh.surfaces(surface).any(Surface::is_phong) { inputs.tessellation.alpha } else { 0.0 },
         normals: inputs.tessellation.normals as u32,
         displacement: heights.map_or(0, |_| inputs.tessellation.displacement as u32),
         height_scale: amount.map_or(0.0, |amount| amount.scale),
         midlevel: amount.map_or(0.0, |amount| amount.midlevel),
-        _pad: [0; 3],
+        chosen_surface: surface as u32,
+        _pad: [0; 2],
     }
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
-use super::Gpu;
+use super::{Gpu, GpuError};
 
 /// How long one pass took.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,6 +137,18 @@ impl<'a> Recorder<'a> {
         }
         index
     }
+}
+
+/// Records passes that aren't timed, and submits them.
+///
+/// # Errors
+/// Those of `record`. Nothing is submitted then.
+pub fn submit_untimed<T>(gpu: &Gpu, record: impl FnOnce(&mut Recorder) -> Result<T, GpuError>) -> Result<T, GpuError> {
+    let mut timing = Timing::Off;
+    let mut recorder = Recorder::new(gpu, &mut timing);
+    let recorded = record(&mut recorder)?;
+    recorder.submit();
+    Ok(recorded)
 }
 
 /// How long each pass took that ran since the last call. A pass that ran several times in the last submission that had it (or,

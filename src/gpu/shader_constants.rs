@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{EdgeKind, Slot};
-use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use geometry::mesh::{EdgeKind, Look, Slot};
+use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// All values of an enum, with their numbers.
 macro_rules! numbered {
@@ -17,9 +17,10 @@ macro_rules! numbered {
 pub fn enum_constants(file: &str) -> String {
     match file {
         "convention" => constants("CONVENTION", numbered!(Convention)),
+        "curvature" => constants("CURVATURE", numbered!(CurvatureKind)),
         "cull" => constants("CLIP", numbered!(Clip)),
         "displace" => constants("DISPLACEMENT", numbered!(Displacement)),
-        "draw_material" => constants("SLOT", numbered!(Slot)),
+        "draw_material" => constants("SLOT", numbered!(Slot)) + &images(),
         "draw_surface_color" => constants("EDGE", numbered!(EdgeKind)),
         "factors" => constants("PARTITIONING", numbered!(Partitioning)),
         "lod" => constants("LOD", numbered!(Lod)),
@@ -29,6 +30,28 @@ pub fn enum_constants(file: &str) -> String {
         "types" => constants("EDGES", numbered!(Edges)),
         _ => String::new(),
     }
+}
+
+/// The binding of the image in one of the places that shaders have for those of a material beside that of the base colour. That
+/// of its sampler comes next.
+pub fn image_binding(place: usize) -> u32 {
+    36 + 2 * place as u32
+}
+
+/// The images in these places, and what the one in a place says.
+fn images() -> String {
+    let (mut bound, mut cases) = (String::new(), String::new());
+    for place in 0..Look::MOST_IMAGES {
+        let image = image_binding(place);
+        bound += &format!("@group(1) @binding({image}) var image_{place}: texture_2d<f32>;\n");
+        bound += &format!("@group(1) @binding({}) var sampler_{place}: sampler;\n", image + 1);
+        cases += &format!("case {place}u: {{ return image_texel(image_{place}, sampler_{place}, at); }}\n");
+    }
+    let otherwise = "default: { return vec4<f32>(1.0); }";
+    bound
+        + &format!(
+            "fn placed_texel(place: u32, at: ImagePlace) -> vec4<f32> {{ switch place {{\n{cases}{otherwise}\n}} }}\n"
+        )
 }
 
 /// One line for each value: the prefix and its name in capitals, and its number.

@@ -12,6 +12,7 @@ use glam::Mat4;
 use super::arena::Arena;
 use super::buffer::{filled, uniform_buffer};
 use super::layout::{Chunk, Params};
+use super::mesh_buffers::Grouping;
 use super::minimum::Minimum;
 use super::params::params_of;
 use super::pass_inputs::BoundPasses;
@@ -20,7 +21,7 @@ use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
 use super::slab::SlabBuffers;
 use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, UserReport, hull};
-use geometry::mesh::{Mesh, Pose, Sharing, Topology};
+use geometry::mesh::{Mesh, Pose, Topology};
 use geometry::tessellate::{Clip, Convention, Edges, HullFactors, Inputs, PosedMesh, Solid};
 
 pub use output::ChunkBuffers;
@@ -153,7 +154,7 @@ impl Tessellator {
         images: Option<HeightImages>,
         make_arena: impl FnOnce(&MeshBuffers) -> Result<Arena, GpuError>,
     ) -> Result<Self, GpuError> {
-        let buffers = MeshBuffers::new(gpu, &mesh, &topology, Sharing::AllSides)?;
+        let buffers = MeshBuffers::new(gpu, &mesh, &topology, Grouping::default())?;
         let arena = make_arena(&buffers)?;
         let mut slabs = Vec::new();
         for first_patch in (0..buffers.patch_count.max(1)).step_by(SLAB_PATCHES as usize) {
@@ -202,9 +203,9 @@ impl Tessellator {
     /// The mesh's curves under another surface are larger than the adapter binds.
     pub fn set(&mut self, inputs: &Inputs) -> Result<(), GpuError> {
         let inputs = &self.with_user_surface(inputs);
-        let sharing = self.sharing(inputs);
-        if sharing != self.buffers.sharing {
-            self.upload(sharing)?;
+        let grouping = self.grouping(inputs);
+        if grouping != self.buffers.grouping {
+            self.upload(grouping)?;
         }
         self.inputs = Some(*inputs);
         self.convention = inputs.tessellation.convention;
@@ -239,7 +240,7 @@ impl Tessellator {
         match (posed.pose(), &mut self.rig) {
             (Some(pose), Some(rig)) => rig.set_pose(&self.gpu, pose)?,
             (Some(pose), None) => self.rig = Some(RigBuffers::new(&self.gpu, &rig, &self.topology, pose)?),
-            (None, _) => self.upload(self.buffers.sharing)?,
+            (None, _) => self.upload(self.buffers.grouping)?,
         }
         self.posed = posed.clone();
         self.forget();
@@ -252,8 +253,8 @@ impl Tessellator {
     }
 
     /// Uploads the mesh as it is at rest.
-    fn upload(&mut self, sharing: Sharing) -> Result<(), GpuError> {
-        self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, sharing)?;
+    fn upload(&mut self, grouping: Grouping) -> Result<(), GpuError> {
+        self.buffers = MeshBuffers::new(&self.gpu, &self.mesh, &self.topology, grouping)?;
         self.is_deformed = false;
         self.nets_done = None;
         self.unbind();
@@ -307,18 +308,6 @@ impl Tessellator {
         self.counts_done
     }
 
-    /// Whether [`Self::count`] has to run before anything can be emitted.
-    pub fn needs_count(&self) -> bool {
-        !self.counts_done && self.pending.is_none()
-    }
-
-    /// Asks for the counts after the recorder was submitted; [`Self::poll_counts`] says when they are here.
-    pub fn request_counts(&mut self) {
-        if let Some(pending) = &mut self.pending {
-            pending.request();
-        }
-    }
-
     /// Takes the counts if the device has finished them. True once they are known.
     ///
     /// # Errors
@@ -354,7 +343,7 @@ impl Tessellator {
 
     /// The factors that LOD gave, and whether they are the edges' or the sides'.
     pub fn edge_factors(&self) -> (&wgpu::Buffer, Edges) {
-        let published = self.buffers.sharing.is_per_patch();
+        let published = self.buffers.grouping.sharing.is_per_patch();
         (&self.buffers.edge_factors, if published { Edges::AsPublished } else { Edges::PerEdge })
     }
 

@@ -113,11 +113,7 @@ impl Engine {
     /// The device was lost, or a shader of the user's own took too long.
     pub fn count(&self, scene: &mut Scene, inputs: &Inputs, timing: &mut Timing) -> Result<(), GpuError> {
         scene.tessellator.set(inputs)?;
-        if scene.tessellator.needs_count() {
-            let mut recorder = Recorder::new(&self.gpu, timing);
-            scene.tessellator.count(&mut recorder)?;
-            recorder.submit();
-        }
+        scene.tessellator.count(timing)?;
         scene.tessellator.read_counts()?;
         match scene.tessellator.stopped_shader() {
             Some(name) => Err(GpuError::UserShaderTimedOut(name)),

@@ -43,13 +43,20 @@ impl SceneNodes {
         }
     }
 
-    /// Includes the nodes above those that are marked. `order` has parents before children.
-    pub(super) fn include_parents(marked: &mut [bool], order: &[usize], parents: &[Option<usize>]) {
+    /// Marks nodes, and those above them. `order` has all nodes, parents before children.
+    pub(super) fn carrying(
+        nodes: impl IntoIterator<Item = usize>,
+        order: &[usize],
+        parents: &[Option<usize>],
+    ) -> Vec<bool> {
+        let mut marked = vec![false; parents.len()];
+        nodes.into_iter().for_each(|node| marked[node] = true);
         for &node in order.iter().rev() {
             if let Some(parent) = parents[node].filter(|_| marked[node]) {
                 marked[parent] = true;
             }
         }
+        marked
     }
 
     /// Returns the transform from each node's own space to the scene's.

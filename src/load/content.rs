@@ -3,7 +3,7 @@
 use memchr::memmem::find;
 
 use super::format::Format;
-use super::text_lines::{Lines, first_word, number, of_utf16, words};
+use super::text_lines::{Lines, first_word, of_utf16, parsed, words};
 use super::unread_formats::{self, UnreadFormat};
 use super::{off, stl};
 
@@ -84,7 +84,7 @@ fn is_obj(text: &[u8]) -> bool {
 pub(super) fn has_vertex(text: &[u8]) -> bool {
     lines(text).any(|line| {
         let mut words = words(line);
-        words.next() == Some(b"v") && words.by_ref().take(3).filter(|word| number(word).is_ok()).count() == 3
+        words.next() == Some(b"v") && words.by_ref().take(3).filter(|word| parsed::<f32>(word).is_some()).count() == 3
     })
 }
 

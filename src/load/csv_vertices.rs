@@ -11,7 +11,6 @@ use super::memory_budget::Budget;
 use super::text_lines::line_at;
 use crate::files::{FileError, Limits, read_file};
 use geometry::casts::to_usize;
-use geometry::mesh::build_limits::MemoryRefused;
 use geometry::names::{shortened, shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
@@ -34,46 +33,7 @@ pub enum CsvError {
     #[error(transparent)]
     File(#[from] FileError),
     #[error("{}: {fault}", shown_path(path))]
-    Broken { path: PathBuf, fault: CsvFault },
-}
-
-/// What is wrong with a CSV file.
-#[derive(Debug, PartialEq, Error)]
-pub enum CsvFault {
-    #[error("it has no lines; export the vertices again")]
-    Empty,
-    #[error("it is a text in UTF-16; save it as UTF-8")]
-    Utf16,
-    #[error(
-        "its first line, {line:?}, isn't a header; expected the names of columns, such as VTX, IDX, POSITION.x, POSITION.y, \
-         POSITION.z"
-    )]
-    Header { line: String },
-    #[error("none of its columns are positions; it has {}; name the one that is with --position-column", listed(known))]
-    NoPosition { known: Vec<String> },
-    #[error("several of its columns may be positions: {}; name one with --position-column", listed(found))]
-    Several { found: Vec<String> },
-    #[error("it has no column {asked}.x, .y and .z; it has {}", listed(known))]
-    NoColumn { asked: String, known: Vec<String> },
-    #[error("its only position, {column}, {}", IN_CLIP_SPACE)]
-    ClipSpace { column: String },
-    #[error("line {line}: {fault}")]
-    Line { line: u64, fault: LineFault },
-    #[error("its vertices {0}; split it into several files")]
-    TooLarge(#[from] MemoryRefused),
-    #[error("{0}")]
-    Unreadable(String),
-}
-
-/// What is wrong with a line.
-#[derive(Debug, PartialEq, Error)]
-pub enum LineFault {
-    #[error("{column} is {text:?}; expected a number, such as 0.25")]
-    Number { column: String, text: String },
-    #[error("it has {has} values, but {column} is value {needs}; export the vertices again")]
-    Short { has: usize, column: String, needs: usize },
-    #[error("w of {column} is {w}, so that it {}", IN_CLIP_SPACE)]
-    ClipSpace { column: String, w: f32 },
+    Broken { path: PathBuf, fault: String },
 }
 
 /// What is said of positions that the rasterizer gets.
@@ -81,12 +41,12 @@ const IN_CLIP_SPACE: &str = "is in clip space, which can't be compared without t
      position in object space, and name that column with --position-column";
 
 /// Names columns.
-fn listed(columns: &[String]) -> String {
+fn listed(attributes: &[&Attribute]) -> String {
     const NAMED: usize = 20;
-    if columns.is_empty() {
+    if attributes.is_empty() {
         return "none with x, y and z".to_owned();
     }
-    let names: Vec<String> = columns.iter().take(NAMED).map(|name| shown(name)).collect();
+    let names: Vec<String> = attributes.iter().take(NAMED).map(|attribute| shown(&attribute.name)).collect();
     names.join(", ")
 }
 
@@ -122,8 +82,7 @@ pub fn read_vertices(
     let broken = |fault| CsvError::Broken { path: path.to_owned(), fault };
     let lines = Lines::open(&bytes).map_err(broken)?;
     let attribute = chosen(&lines.attributes(), column).map_err(broken)?;
-    let read = lines.read(&attribute, &Budget::new(bytes.len(), limits.memory), progress)?;
-    read.map_err(broken)
+    lines.read(&attribute, &Budget::new(bytes.len(), limits.memory), progress, broken)
 }
 
 /// The lines of a file behind its header.
@@ -135,24 +94,28 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    fn open(text: &'a [u8]) -> Result<Self, CsvFault> {
+    /// # Errors
+    /// What is wrong with the file.
+    fn open(text: &'a [u8]) -> Result<Self, String> {
         if text.is_empty() {
-            return Err(CsvFault::Empty);
+            return Err("it has no lines; export the vertices again".to_owned());
         }
         if text.starts_with(&[0xff, 0xfe]) || text.starts_with(&[0xfe, 0xff]) {
-            return Err(CsvFault::Utf16);
+            return Err("it is a text in UTF-16; save it as UTF-8".to_owned());
         }
         let first = text.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
         let count = |separator: &u8| first.iter().filter(|byte| *byte == separator).count();
         let separator = SEPARATORS.into_iter().rev().max_by_key(count).unwrap_or(b',');
         let mut reader = ReaderBuilder::new().flexible(true).trim(Trim::All).delimiter(separator).from_reader(text);
-        let header = reader.byte_headers().map_err(|error| CsvFault::Unreadable(error.to_string()))?;
+        let header = reader.byte_headers().map_err(|error| error.to_string())?;
         let names: Vec<String> = header.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect();
         let is_number = |name: &String| name.parse::<f64>().is_ok();
         if names.iter().all(|name| name.is_empty() || is_number(name))
             || names.iter().filter(|name| is_number(name)).count() > 2
         {
-            return Err(CsvFault::Header { line: shortened(&String::from_utf8_lossy(first), 60) });
+            let line = shortened(&String::from_utf8_lossy(first), 60);
+            let expected = "the names of columns, such as VTX, IDX, POSITION.x, POSITION.y, POSITION.z";
+            return Err(format!("its first line, {line:?}, isn't a header; expected {expected}"));
         }
         Ok(Self { text, reader, header: names, separator })
     }
@@ -175,13 +138,14 @@ impl<'a> Lines<'a> {
         found.into_iter().filter_map(whole).collect()
     }
 
-    /// Reads the positions of all vertices. The outer error says that reading was cancelled.
+    /// Reads the positions of all vertices. `broken` makes an error of what is wrong.
     fn read(
         mut self,
         attribute: &Attribute,
         budget: &Budget,
         progress: &Progress,
-    ) -> Result<Result<CsvVertices, CsvFault>, Cancelled> {
+        broken: impl Fn(String) -> CsvError,
+    ) -> Result<CsvVertices, CsvError> {
         let mut vertices = CsvVertices::default();
         let mut decimals = 0;
         let mut record = ByteRecord::new();
@@ -190,25 +154,21 @@ impl<'a> Lines<'a> {
                 progress.check()?;
                 // A list that grows is copied to one that is twice as long.
                 let room = vertices.positions.capacity() * size_of::<Vec3>() + 2 * LINES * size_of::<Vec3>();
-                if let Err(refused) = budget.check(2 * room as u64) {
-                    return Ok(Err(refused.into()));
-                }
+                budget
+                    .check(2 * room as u64)
+                    .map_err(|refused| broken(format!("its vertices {refused}; split it into several files")))?;
             }
-            match self.reader.read_byte_record(&mut record) {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(error) => return Ok(Err(CsvFault::Unreadable(error.to_string()))),
+            if !self.reader.read_byte_record(&mut record).map_err(|error| broken(error.to_string()))? {
+                break;
             }
             if record.len() == 1 && record[0].is_empty() {
                 continue;
             }
-            match self.position(&record, attribute, &mut decimals) {
-                Ok(position) => vertices.positions.push(position),
-                Err(fault) => {
-                    let byte = record.position().map_or(0, |at| to_usize(at.byte()));
-                    return Ok(Err(CsvFault::Line { line: line_at(self.text, byte) as u64, fault }));
-                }
-            }
+            let position = self.position(&record, attribute, &mut decimals).map_err(|fault| {
+                let byte = record.position().map_or(0, |at| to_usize(at.byte()));
+                broken(format!("line {}: {fault}", line_at(self.text, byte)))
+            });
+            vertices.positions.push(position?);
         }
         let surplus = vertices.positions.len() % 3;
         if surplus > 0 {
@@ -219,16 +179,20 @@ impl<'a> Lines<'a> {
             ));
         }
         vertices.resolution = if decimals > 0 { 0.5 * 10.0_f64.powi(-decimals) } else { 0.0 };
-        Ok(Ok(vertices))
+        Ok(vertices)
     }
 
     /// The position on one line. Counts the decimals that numbers have.
-    fn position(&self, record: &ByteRecord, attribute: &Attribute, decimals: &mut i32) -> Result<Vec3, LineFault> {
+    fn position(&self, record: &ByteRecord, attribute: &Attribute, decimals: &mut i32) -> Result<Vec3, String> {
         let value = |column: usize, decimals: &mut i32| {
             let name = || shown(&self.header[column]);
-            let short = || LineFault::Short { has: record.len(), column: name(), needs: column + 1 };
+            let (has, needs) = (record.len(), column + 1);
+            let short = || format!("it has {has} values, but {} is value {needs}; export the vertices again", name());
             let text = record.get(column).ok_or_else(short)?;
-            let fault = || LineFault::Number { column: name(), text: shortened(&String::from_utf8_lossy(text), 40) };
+            let fault = || {
+                let text = shortened(&String::from_utf8_lossy(text), 40);
+                format!("{} is {text:?}; expected a number, such as 0.25", name())
+            };
             number(text, self.separator, decimals).ok_or_else(fault)
         };
         let [x, y, z] = attribute.columns;
@@ -236,7 +200,7 @@ impl<'a> Lines<'a> {
         if let Some(w) = attribute.w.filter(|_| is_in_clip_space(&attribute.name)) {
             let w = value(w, &mut 0)?;
             if w.is_finite() && w != 1.0 {
-                return Err(LineFault::ClipSpace { column: attribute.name.clone(), w });
+                return Err(format!("w of {} is {w}, so that it {IN_CLIP_SPACE}", attribute.name));
             }
         }
         Ok(position)
@@ -285,12 +249,14 @@ fn is_in_clip_space(name: &str) -> bool {
 }
 
 /// Chooses the attribute that is the position.
-fn chosen(attributes: &[Attribute], asked: Option<&str>) -> Result<Attribute, CsvFault> {
-    let names = |of: &[&Attribute]| of.iter().map(|attribute| attribute.name.clone()).collect();
+///
+/// # Errors
+/// Which there are, if that isn't clear.
+fn chosen(attributes: &[Attribute], asked: Option<&str>) -> Result<Attribute, String> {
     let all: Vec<&Attribute> = attributes.iter().collect();
     if let Some(asked) = asked {
         let found = attributes.iter().find(|attribute| attribute.name.eq_ignore_ascii_case(asked));
-        let missing = || CsvFault::NoColumn { asked: asked.to_owned(), known: names(&all) };
+        let missing = || format!("it has no column {asked}.x, .y and .z; it has {}", listed(&all));
         return found.cloned().ok_or_else(missing);
     }
     let is_position = |name: &str| {
@@ -302,9 +268,15 @@ fn chosen(attributes: &[Attribute], asked: Option<&str>) -> Result<Attribute, Cs
     let found: Vec<&Attribute> = others.into_iter().filter(|attribute| is_position(&attribute.name)).collect();
     match (&found[..], clip.first()) {
         ([one], _) => Ok((*one).clone()),
-        ([], Some(clip)) => Err(CsvFault::ClipSpace { column: clip.name.clone() }),
-        ([], None) => Err(CsvFault::NoPosition { known: names(&all) }),
-        (several, _) => Err(CsvFault::Several { found: names(several) }),
+        ([], Some(clip)) => Err(format!("its only position, {}, {IN_CLIP_SPACE}", clip.name)),
+        ([], None) => {
+            let (has, help) = (listed(&all), "name the one that is with --position-column");
+            Err(format!("none of its columns are positions; it has {has}; {help}"))
+        }
+        (several, _) => Err(format!(
+            "several of its columns may be positions: {}; name one with --position-column",
+            listed(several)
+        )),
     }
 }
 

@@ -5,16 +5,15 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::cage_faces::{CageFaces, OfFace};
 use super::import::Import;
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
-use super::notes::{Notes, counted, counts};
-use super::parts::{Part, Parts};
+use super::notes::{Notes, counts};
+use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
-use super::recent_corners::{RecentCorners, VertexNumbers};
+use super::recent_corners::RecentCorners;
 use super::tangents;
-use super::triangle_block::{self, TriangleBlock};
 use super::uri::Files;
 use super::warnings::repair_warnings;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
@@ -23,7 +22,7 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, Mesh, Slot};
+use geometry::mesh::{CornerDetail, Material, Slot};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -59,7 +58,6 @@ pub(super) struct FaceBuilder<'a> {
     pub parts: Parts,
     pub builder: MeshBuilder,
     recent: RecentCorners,
-    block: TriangleBlock,
     /// The colours of corners, if the file has any, or if corners may need tangents.
     colors: Option<DetailTable>,
     are_colored: bool,
@@ -92,17 +90,6 @@ counts! {
     }
 }
 
-/// A mesh, and what belongs to it.
-pub(super) struct Finished {
-    pub mesh: Mesh,
-    /// Each corner's number.
-    pub numbers: Vec<u32>,
-    pub notes: Notes,
-    pub parts: Vec<Part>,
-    /// Whether all of it is refined.
-    pub is_refined: bool,
-}
-
 impl<'a> FaceBuilder<'a> {
     /// Starts a mesh, whose normals are made, and whose parts are left out, as was selected.
     pub(super) fn new(file: &ModelFile, memory: &'a Budget) -> Self {
@@ -114,7 +101,6 @@ impl<'a> FaceBuilder<'a> {
             parts: Parts::new(&file.selected),
             builder: MeshBuilder::with_crease_angle(import.crease_angle),
             recent: RecentCorners::default(),
-            block: TriangleBlock::default(),
             colors: None,
             are_colored: false,
             materials: 0,
@@ -154,12 +140,12 @@ impl<'a> FaceBuilder<'a> {
         self.import.lacking_normals(if self.cage.is_some() { 0 } else { count }, what)
     }
 
-    /// Says which part the next faces belong to, by its name.
+    /// Says which part the next faces belong to, as [`Parts::enter`] does.
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
-    pub(super) fn enter_part(&mut self, name: &[u8]) -> Result<(), ReadError> {
-        self.parts.enter(name, self.memory)?;
+    pub(super) fn enter_part(&mut self, path: &[u8], level: usize) -> Result<(), ReadError> {
+        self.parts.enter(path, level, self.memory)?;
         self.builder.enter_part(self.parts.current());
         Ok(())
     }
@@ -275,80 +261,17 @@ impl<'a> FaceBuilder<'a> {
         self.store(material, corners, bad_uvs == self.found.bad_uvs)
     }
 
-    /// Stores a face as triangles.
+    /// Stores a face as triangles, if there is room for them.
     fn store(&mut self, material: usize, corners: &[NumberedCorner], is_remembered: bool) -> Result<(), ReadError> {
-        self.make_room(material, corners.len() - 2)?;
-        self.builder.make_room(corners.len(), self.memory)?;
-        self.cut(material, corners, is_remembered);
-        Ok(())
-    }
-
-    /// Adds triangles of vertices that have numbers in the file, without a list of the corners of each. `corner_of` returns a
-    /// vertex's corner, and its [colour](Self::number). Returns how many were added: the next one has a corner that needs a repair, or
-    /// its part is hidden, and [`add`](Self::add) must add it.
-    ///
-    /// # Errors
-    /// As [`add`](Self::add).
-    pub(super) fn add_triangles(
-        &mut self,
-        material: usize,
-        triangles: &[[VertexNumbers; 3]],
-        corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
-    ) -> Result<usize, ReadError> {
-        let mut added = 0;
-        if !self.parts.is_hidden() && self.cage.is_none() {
-            for some in triangles.chunks(triangle_block::BLOCK) {
-                let mut block = std::mem::take(&mut self.block);
-                let count = self.add_block(&mut block, material, some, &corner_of)?;
-                self.block = block;
-                added += count;
-                if count < some.len() {
-                    break;
-                }
-            }
-        }
-        Ok(added)
-    }
-
-    /// Adds some triangles as [`add_triangles`](Self::add_triangles) does.
-    fn add_block(
-        &mut self,
-        block: &mut TriangleBlock,
-        material: usize,
-        triangles: &[[VertexNumbers; 3]],
-        corner_of: impl Fn(VertexNumbers) -> Option<(InputCorner, Vec4)>,
-    ) -> Result<usize, ReadError> {
-        block.clear();
-        let mut recent = std::mem::take(&mut self.recent);
-        let is_sound = |(corner, _): &(InputCorner, Vec4)| is_near(corner) && corner.uv.is_finite();
-        let mut count = 0;
-        for &triangle in triangles {
-            let is_added = block.push(triangle, &mut recent, |vertex| {
-                let Some((corner, color)) = corner_of(vertex).filter(is_sound) else { return Ok(None) };
-                let normal = corner.normal.filter(|_| !self.import.makes_normals());
-                Ok::<_, ReadError>(Some((InputCorner { normal, ..corner }, self.number(color)?)))
-            })?;
-            if !is_added {
-                break;
-            }
-            count += 1;
-        }
-        self.builder.make_room(block.corners.len(), self.memory)?;
-        block.store(&mut recent, |corners, stored| self.builder.corners(corners, stored));
-        self.recent = recent;
-        self.parts.leave_out(count);
-        self.make_room(material, count)?;
-        block.triangles().for_each(|corners| self.builder.stored_triangle(material, corners));
-        Ok(count)
-    }
-
-    /// Counts triangles, and makes room for them.
-    fn make_room(&mut self, material: usize, triangles: usize) -> Result<(), ReadError> {
+        let triangles = corners.len() - 2;
         self.triangles += triangles;
         if self.triangles as u64 > MAX_TRIANGLES {
             return Err(ReadError::TooMany { limit: MAX_TRIANGLES, what: "triangles" });
         }
-        Ok(self.builder.make_room_for_triangles(material, triangles, self.memory)?)
+        self.builder.make_room_for_triangles(material, triangles, self.memory)?;
+        self.builder.make_room(corners.len(), self.memory)?;
+        self.cut(material, corners, is_remembered);
+        Ok(())
     }
 
     /// Cuts a face into triangles. Corners are remembered for faces with the same vertices, unless they were repaired.
@@ -385,16 +308,15 @@ impl<'a> FaceBuilder<'a> {
         self.end_cage(None, progress)?;
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
         let are_colored = self.are_colored;
-        let Finished { mut mesh, numbers, mut notes, parts, is_refined } =
-            self.finish_numbered(name, holds, progress)?;
+        let (mut loaded, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
         let has_normals = |material: &Material| material.look.maps[Slot::Normal as usize].is_some();
-        if let Some(colors) = colors.filter(|_| are_colored || mesh.materials.iter().any(has_normals)) {
-            tangents::with_details(&mut mesh, colors, &numbers, &mut notes, memory, progress)?;
+        if let Some(colors) = colors.filter(|_| are_colored || loaded.mesh.materials.iter().any(has_normals)) {
+            tangents::with_details(&mut loaded.mesh, colors, &numbers, &mut notes, memory, progress)?;
         }
-        Ok(LoadedMesh { mesh, warnings: notes.into_warnings(), parts, file_bytes, is_refined, ..LoadedMesh::default() })
+        Ok(LoadedMesh { warnings: notes.into_warnings(), file_bytes, ..loaded })
     }
 
-    /// Builds the mesh as [`finish`](Self::finish) does, with what the reader adds to it.
+    /// Builds the mesh as [`finish`](Self::finish) does; returns each corner's number too, and the notes, for what the reader adds.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
@@ -403,13 +325,14 @@ impl<'a> FaceBuilder<'a> {
         name: &str,
         holds: String,
         progress: &Progress,
-    ) -> Result<Finished, ReadError> {
+    ) -> Result<(LoadedMesh, Vec<u32>, Notes), ReadError> {
         self.end_cage(None, progress)?;
+        self.parts.enter_materials(&mut self.builder, self.memory)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));
         let holds = named.unwrap_or(holds);
         // No more corners are stored.
-        (self.recent, self.block) = Default::default();
+        self.recent = RecentCorners::default();
         if self.builder.is_empty() {
             let small = match self.found.too_small {
                 0 => String::new(),
@@ -421,12 +344,11 @@ impl<'a> FaceBuilder<'a> {
         let flawed = self.flawed().map(|flawed| format!("{flawed}; they are left out."));
         self.notes.extend(flawed);
         self.notes.extend(self.found.sentences());
-        let (parts, beyond, places) = self.parts.into_list();
-        self.notes.extend(counted([(beyond, "parts beyond the first 65,536, which can't be hidden")]));
         let (mut mesh, numbers) = self.builder.finish_bound(name.to_owned(), self.memory, progress)?;
-        mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
+        let parts = self.parts.finish(&mut mesh, &mut self.notes);
         self.notes.extend(repair_warnings(&mesh.repairs, &self.import));
-        Ok(Finished { mesh, numbers, notes: self.notes, parts, is_refined: self.is_refined == Some(true) })
+        let (contents, is_refined) = (Contents { parts, ..Contents::default() }, self.is_refined == Some(true));
+        Ok((LoadedMesh { mesh, contents, is_refined, ..LoadedMesh::default() }, numbers, self.notes))
     }
 
     /// Says how many faces have impossible positions, and how many have numbers of positions that aren't there, if any.

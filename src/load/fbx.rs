@@ -21,7 +21,6 @@ mod surfaces;
 mod textures;
 mod vertices;
 
-use super::face_builder::Finished;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
@@ -62,7 +61,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(bytes);
     let mut notes = Notes::default();
     left_out::warn(&scene, &mut notes);
-    let mut placed = Placed::new(&scene, import.show_hidden, &budget, &mut notes)?;
+    let mut placed = Placed::new(&scene, file, &budget, &mut notes)?;
     let clips = clips::read(&scene, &placed, &budget, &progress.part(0.3, 0.4), &mut notes)?;
     placed.grow(&clips);
     let mut warnings = Vec::new();
@@ -72,28 +71,21 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let mut surfaces = Surfaces::new(&scene, &placed, file, &files, binder)?;
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.4 + 0.4 * i as f32 / placed.shown.len() as f32);
-        surfaces.add(node, progress)?;
+        surfaces.add(node, &file.selected, progress)?;
     }
     let holds = left_out::holds(&scene, &placed);
     let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64);
+    let morph_targets = morphs::file_weights(&scene);
     drop(placed);
     drop(scene);
     progress.set(0.8);
-    let finished = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
-    let Finished { mut mesh, numbers, mut notes, parts, is_refined } = finished;
-    RigBuilder::complete(&mut mesh, numbers, details, binder, &mut notes, &budget, progress)?;
+    let (mut loaded, numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
+    RigBuilder::complete(&mut loaded.mesh, numbers, details, binder, &mut notes, &budget, progress)?;
+    loaded.contents.morph_targets = morph_targets;
     let (files, file_bytes) = (files.named(), budget.files());
-    Ok(LoadedMesh {
-        mesh,
-        warnings: notes.into_warnings(),
-        parts,
-        files,
-        file_bytes,
-        is_refined,
-        ..LoadedMesh::default()
-    })
+    Ok(LoadedMesh { warnings: notes.into_warnings(), files, file_bytes, ..loaded })
 }
 
 #[cfg(test)]

@@ -26,9 +26,11 @@ mod json;
 mod lenient;
 mod lights;
 mod material_lists;
+pub mod material_members;
 mod material_source;
 mod materials;
 mod meshopt;
+mod morph_targets;
 mod node_parts;
 mod nodes;
 mod primitive;
@@ -54,15 +56,15 @@ use std::sync::Arc;
 use ::gltf::{Document, Node, Semantic};
 use glam::DMat4;
 
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::Notes;
 use super::rig_builder::{RigBuilder, SkinJoints};
-use super::selection::choice;
 use super::uri::Files;
 use super::warnings::repair_warnings;
 use super::{notes, rig_builder};
+use geometry::casts::to_f32;
 use geometry::mesh::Borrowed;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::MeshBuilder;
@@ -130,12 +132,13 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;
     }
-    let Scene { materials, builder, mut primitives, binder, details, .. } = scene;
+    let Scene { materials, mut builder, mut primitives, binder, details, .. } = scene;
+    let of_materials = parsed.parts.list.enter_materials(&mut builder, &budget);
+    of_materials.map_err(GltfError::too_large("the list of materials"))?;
     if builder.is_empty() {
         let mut holds = match reach.hidden {
-            0 if parsed.parts.is_cut => {
-                let names: Vec<_> = parsed.parts.list.iter().map(|part| part.name.clone()).collect();
-                format!("its named parts are hidden; {}", choice(&names, "it has no named parts"))
+            0 if parsed.parts.is_cut || parsed.parts.list.are_hidden() => {
+                format!("its named parts are hidden; {}", parsed.parts.list.names())
             }
             0 => primitives.holds(document),
             hidden => {
@@ -143,11 +146,8 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
                 format!("KHR_node_visibility hides the {hidden} {said}")
             }
         };
-        holds += if parsed.scenes.names.len() > 1 { "; --scene shows another of its scenes" } else { "" };
+        holds += if parsed.contents.scenes.len() > 1 { "; --scene shows another of its scenes" } else { "" };
         return Err(GltfError::Empty { holds });
-    }
-    if parsed.parts.beyond > 0 {
-        notes.push(format!("named nodes beyond the first 65,536, which can't be hidden: {}.", parsed.parts.beyond));
     }
     notes.append(accessors.notes.take());
     notes.append(materials.into_notes());
@@ -163,6 +163,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
+    let parts = parsed.parts.list.finish(&mut mesh, notes);
     RigBuilder::complete(&mut mesh, bindings, details, binder, notes, &budget, progress)?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
         [rig.lights, rig.cameras] = mounts;
@@ -175,9 +176,9 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     notes.append(of_cameras);
     let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
-    let scenes::Scenes { names: scenes, shown: scene } = parsed.scenes;
-    let (files, file_bytes, variants, parts) = (files.named(), budget.files(), parsed.variants, parsed.parts.list);
-    Ok(LoadedMesh { mesh, warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: false })
+    let contents = Contents { parts, ..parsed.contents };
+    let (files, file_bytes) = (files.named(), budget.files());
+    Ok(LoadedMesh { mesh, warnings, contents, files, file_bytes, is_refined: false })
 }
 
 /// The scene that is being read, and the mesh that is being built from it.
@@ -185,7 +186,7 @@ struct Scene<'a> {
     document: &'a Document,
     /// The transform from each node's own space to the scene's, in which the meshes are built.
     global: &'a [DMat4],
-    /// The part of each node that is one.
+    /// The part of each node that has a mesh.
     parts: &'a HashMap<usize, u32>,
     /// By node, the instances of its mesh.
     instances: &'a HashMap<usize, InstancingExtension>,
@@ -237,13 +238,15 @@ impl<'a> Scene<'a> {
         let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin));
         let global = self.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
         let global = nodes::below(global, instance);
+        // Vertices of a skin don't move with their node.
+        let scale = if skin.is_some() { 1.0 } else { to_f32(global.determinant().abs().cbrt()) };
         for primitive in mesh.primitives() {
             progress.check()?;
             let _scope = Borrowed::from(self.accessors.budget);
             if self.primitives.skip(&primitive) {
                 continue;
             }
-            let material = self.materials.resolve(&primitive.material(), &mut self.builder);
+            let material = self.materials.resolve(&primitive.material(), scale, &mut self.builder);
             let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
                 mesh,

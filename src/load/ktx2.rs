@@ -67,14 +67,8 @@ impl<'a> Ktx2<'a> {
             word.map(|word| u32::from_le_bytes(*word)).ok_or_else(|| short("its KTX2 header", at as u64 + 4, bytes))
         };
         let long = |at: usize| Ok::<_, String>(u64::from(word(at)?) | u64::from(word(at + 4)?) << 32);
-        let [format, width, height, depth, layers, faces, count, scheme] = {
-            let words = [12, 20, 24, 28, 32, 36, 40, 44].map(word);
-            let mut read = [0; 8];
-            for (to, from) in read.iter_mut().zip(words) {
-                *to = from?;
-            }
-            read
-        };
+        let (format, [width, height]) = (word(12)?, [word(20)?, word(24)?]);
+        let (depth, layers, faces, count, scheme) = (word(28)?, word(32)?, word(36)?, word(40)?, word(44)?);
         if width == 0 || height == 0 {
             return Err(format!("its KTX2 header says {width} x {height} px"));
         }

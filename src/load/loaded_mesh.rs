@@ -2,7 +2,10 @@
 
 use std::path::PathBuf;
 
+use serde::Serialize;
+
 use super::parts::Part;
+use super::selection::MorphWeights;
 use geometry::mesh::Mesh;
 
 /// A mesh as its file describes it.
@@ -12,6 +15,18 @@ pub struct LoadedMesh {
     pub mesh: Mesh,
     /// What was left out or repaired, one sentence each.
     pub warnings: Vec<String>,
+    pub contents: Contents,
+    /// Whether all of it is a refined subdivision surface.
+    pub is_refined: bool,
+    /// The files that the mesh's own file names and that were read, with links resolved.
+    pub files: Vec<PathBuf>,
+    /// The size of all files together in bytes, the mesh's own included; 0 for a mesh that was made in code.
+    pub file_bytes: u64,
+}
+
+/// What a file offers to choose from.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Contents {
     /// The names of its material variants (KHR_materials_variants).
     pub variants: Vec<String>,
     /// The names of its scenes. A scene without a name is called `scene 0`, by its number in the file.
@@ -20,12 +35,8 @@ pub struct LoadedMesh {
     pub scene: Option<usize>,
     /// The parts of the file that have triangles, also those that were left out. Only some formats have any.
     pub parts: Vec<Part>,
-    /// Whether all of it is a refined subdivision surface.
-    pub is_refined: bool,
-    /// The files that the mesh's own file names and that were read, with links resolved.
-    pub files: Vec<PathBuf>,
-    /// The size of all files together in bytes, the mesh's own included; 0 for a mesh that was made in code.
-    pub file_bytes: u64,
+    /// The weights that the file gives its morph targets at rest, whichever were chosen.
+    pub morph_targets: MorphWeights,
 }
 
 /// Most tests of the readers look only at the mesh.

@@ -9,8 +9,9 @@ use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
+use super::parts::Part;
 use super::read_error::ReadError;
-use super::selection::{Selection, choice};
+use super::selection::{Selection, ShownParts, choice, is_material, is_part_of};
 use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
@@ -71,8 +72,8 @@ pub enum LoadError {
     /// The shape is made in code, where Y is up.
     #[error("{shape} is made in code with Y up, in metres: omit --up and --unit")]
     Shape { shape: String },
-    /// The file doesn't have the "material variant", the "scene" or the "part" of this name, but others. `none` is said if there are no
-    /// others.
+    /// The file doesn't have the "material variant", "scene", "part" or "morph target" of this name, but others. `none` is said
+    /// if there are no others.
     #[error("{} has no {what} {}; {}", shown_path(path), shown(name), choice(known, none))]
     Absent { path: PathBuf, what: &'static str, name: String, known: Vec<String>, none: &'static str },
 }
@@ -124,11 +125,7 @@ pub fn load_selected(
     progress: &Progress,
 ) -> Result<LoadedMesh, LoadError> {
     progress.set(0.0);
-    // Reading a folder, a device or a pipe would fail later, or never end.
     let file = std::fs::metadata(path).map_err(|source| FileError::Io { path: path.to_owned(), source })?;
-    if !file.is_file() {
-        return Err(LoadError::NotAFile { path: path.to_owned() });
-    }
     let before = Stamp::new(&file);
     let mut judged = None;
     let judge = |start: &[u8]| Judged::new(path, start, file.len()).map(|found| judged = Some(found));
@@ -142,34 +139,51 @@ pub fn load_selected(
         mesh.warnings.push(NOT_REFINED.to_owned());
     }
     before.check(path)?;
-    check_selected(path, selected, &mesh)?;
+    check_selected(path, selected, &mut mesh)?;
     progress.set(1.0);
     Ok(mesh)
 }
 
-/// Checks that a mesh has the variant, the scene and the parts that were named.
+/// Checks that a mesh has the variant, scene, parts and morph targets that were named, and gives its parts their styles.
 ///
 /// # Errors
 /// [`LoadError::Absent`].
-pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &LoadedMesh) -> Result<(), LoadError> {
+pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &mut LoadedMesh) -> Result<(), LoadError> {
+    let known = &loaded.contents;
     let absent = |what, name: &str, known, none| {
         Err(LoadError::Absent { path: path.to_owned(), what, name: name.to_owned(), known, none })
     };
-    if let Some(scene) = selected.scene.filter(|scene| scenes::number(&loaded.scenes, scene).is_none()) {
-        return absent("scene", scene, loaded.scenes.clone(), "it has no scenes, so omit --scene");
+    if let Some(scene) = selected.scene.filter(|scene| scenes::number(&known.scenes, scene).is_none()) {
+        return absent("scene", scene, known.scenes.clone(), "it has no scenes, so omit --scene");
     }
-    let is_unknown = |name: &&String| loaded.parts.iter().all(|part| part.name != **name);
-    if let Some(part) = selected.hidden.iter().chain(selected.only).find(is_unknown) {
-        let known = loaded.parts.iter().map(|part| part.name.clone()).collect();
-        return absent("part", part, known, "it has no named parts, so omit --hide-part and --show-part");
-    }
-    match selected.variant.filter(|variant| loaded.variants.iter().all(|known| known != variant)) {
-        None => Ok(()),
-        Some(variant) => {
-            let none = "it has no variants, so omit --variant";
-            absent("material variant", variant, loaded.variants.clone(), none)
+    if let Some(ShownParts { hidden, only, styles, morphs }) = selected.parts {
+        // The materials of parts that are left out aren't known.
+        let is_cut = known.parts.iter().any(|part| part.is_hidden && !is_material(&part.name));
+        let may_be = |name: &str| is_cut && is_material(name);
+        let is_unknown = |name: &&String| !may_be(name) && known.parts.iter().all(|part| !is_part_of(&part.name, name));
+        // Materials have no styles.
+        let is_styled = |name: &&String| is_material(name) || is_unknown(name);
+        let unknown = styles.iter().map(|(name, _)| name).find(is_styled);
+        if let Some(part) = hidden.iter().chain(only).find(is_unknown).or(unknown) {
+            let known = known.parts.iter().map(|part| part.name.clone()).collect();
+            return absent("part", part, known, "it has no named parts, so omit --hide-part, --show-part and --part");
+        }
+        if let Some(name) = morphs.keys().find(|name| !known.morph_targets.contains_key(*name)) {
+            let known = known.morph_targets.keys().cloned().collect();
+            return absent("morph target", name, known, "it has no morph targets, so omit --morph");
+        }
+        if !styles.is_empty() {
+            let style = |part: &Part| {
+                styles.iter().rev().find(|(name, _)| is_part_of(&part.name, name)).map(|(_, style)| *style)
+            };
+            loaded.mesh.part_styles = known.parts.iter().map(|part| style(part).unwrap_or_default()).collect();
         }
     }
+    if let Some(variant) = selected.variant.filter(|variant| known.variants.iter().all(|known| known != variant)) {
+        let none = "it has no variants, so omit --variant";
+        return absent("material variant", variant, known.variants.clone(), none);
+    }
+    Ok(())
 }
 
 /// What a file is read as.

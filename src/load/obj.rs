@@ -25,15 +25,13 @@ use super::face_builder::{FaceBuilder, NumberedCorner, linear_color, read_faces}
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::counted;
-use super::parts::DEFAULT_PART;
 use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::{Line, Lines, first_word, in_utf8};
-use super::triangle_block::BLOCK;
 use super::uri::Files;
 use geometry::mesh::mesh_builder::InputCorner;
 
-use faces::{FacePiece, Found, NONE, StatementCounts};
+use faces::{FacePiece, Found, StatementCounts};
 use materials::Materials;
 use pieces::{Piece, in_pieces};
 use smoothing::Smoothing;
@@ -206,13 +204,6 @@ impl Counts {
     }
 }
 
-/// Returns how many of the first faces are triangles, if the corners of the first begin with this one.
-fn triangles(faces: &[Found], start: usize) -> usize {
-    let ends = (1..).map(|triangles| start + 3 * triangles);
-    let is_triangle = |(face, own): &(&Found, usize)| matches!(face, Found::Face { end, .. } if *end as usize == *own);
-    faces.iter().zip(ends).take_while(is_triangle).count()
-}
-
 /// Reads the faces of a file.
 struct Reader<'v, 'a> {
     vertices: &'v Vertices,
@@ -232,67 +223,39 @@ impl Reader<'_, '_> {
     fn take_piece(&mut self, made: FacePiece) -> Result<(), ReadError> {
         let FacePiece { found, corners, counts, error } = made;
         self.found.statements += counts;
-        let (mut start, mut found) = (0, found.as_slice());
-        while let [first, others @ ..] = found {
-            let run = triangles(found, start);
-            if run > 0 {
-                let (faces, others) = found.split_at(run);
-                let end = start + 3 * run;
-                self.take_triangles(faces, corners[start..end].as_chunks().0)?;
-                (start, found) = (end, others);
-                continue;
-            }
-            match first {
+        let mut start = 0;
+        for found in found {
+            match found {
                 Found::Face { line, end } => {
                     self.found.faces += 1;
-                    self.add_face(&corners[start..*end as usize], FilePosition::Line(*line))?;
-                    start = *end as usize;
+                    self.add_face(&corners[start..end as usize], FilePosition::Line(line))?;
+                    start = end as usize;
                 }
                 Found::Absent { line } => {
                     self.found.faces += 1;
                     self.begin_parts()?;
-                    self.faces.leave_out(FilePosition::Line(*line));
+                    self.faces.leave_out(FilePosition::Line(line));
                 }
-                Found::Smoothing(group) => self.smoothing.iter_mut().for_each(|smoothing| smoothing.group = *group),
-                Found::Object(name) => self.enter_part(0, name)?,
-                Found::Group(name) => self.enter_part(1, name)?,
-                Found::Material(name) => self.materials.enter(name),
+                Found::Smoothing(group) => self.smoothing.iter_mut().for_each(|smoothing| smoothing.group = group),
+                Found::Object(name) => self.enter_part(0, &name)?,
+                Found::Group(name) => self.enter_part(1, &name)?,
+                Found::Material(name) => self.materials.enter(&name),
             }
-            found = others;
         }
         error.map_or(Ok(()), Err)
-    }
-
-    /// Takes faces that are triangles, and their corners.
-    fn take_triangles(&mut self, faces: &[Found], triangles: &[[VertexNumbers; 3]]) -> Result<(), ReadError> {
-        self.found.faces += faces.len();
-        self.begin_parts()?;
-        let mut next = 0;
-        while next < faces.len() {
-            next += self.add_triangles(&triangles[next..])?;
-            if let (Some(Found::Face { line, .. }), Some(triangle)) = (faces.get(next), triangles.get(next)) {
-                self.add_face(triangle, FilePosition::Line(*line))?;
-                next += 1;
-            }
-        }
-        Ok(())
     }
 
     /// Begins an object (0) or a group (1). A part is a group of an object.
     fn enter_part(&mut self, kind: usize, name: &[u8]) -> Result<(), ReadError> {
         self.part[kind] = name.to_vec();
         let [object, group] = &self.part;
-        match (object.is_empty(), group.is_empty()) {
-            (true, true) => self.faces.enter_part(DEFAULT_PART),
-            (true, false) => self.faces.enter_part(group),
-            (false, _) if group.is_empty() || group == object => self.faces.enter_part(object),
-            (false, _) => self.faces.enter_part(&[object, &b"/"[..], group].concat()),
-        }
+        let path = if object == group { object.clone() } else { [object, &b"/"[..], group].concat() };
+        self.faces.enter_part(&path, 0)
     }
 
     /// Enters the part of faces that belong to none, if there was none before.
     fn begin_parts(&mut self) -> Result<(), ReadError> {
-        if self.faces.parts.have_begun() { Ok(()) } else { self.faces.enter_part(DEFAULT_PART) }
+        if self.faces.parts.have_begun() { Ok(()) } else { self.faces.enter_part(b"", 0) }
     }
 
     /// Adds a face with these corners.
@@ -318,24 +281,6 @@ impl Reader<'_, '_> {
         self.faces.add(material, &mut corners, place)?;
         self.corners = corners;
         Ok(())
-    }
-
-    /// Adds triangles whose corners are as the file has them. Returns how many were added; the general way must add the next one,
-    /// unless there are [`BLOCK`].
-    fn add_triangles(&mut self, triangles: &[[VertexNumbers; 3]]) -> Result<usize, ReadError> {
-        let lacks_normals = |triangle: &[VertexNumbers; 3]| triangle.iter().any(|[.., normal]| *normal == NONE);
-        let material = self.materials.current(&mut self.faces)?;
-        if self.materials.moves(material) {
-            return Ok(0);
-        }
-        let mut plain = &triangles[..triangles.len().min(BLOCK)];
-        if self.smoothing.is_some() {
-            plain = &plain[..plain.iter().position(lacks_normals).unwrap_or(plain.len())];
-        }
-        let vertices = self.vertices;
-        let added = self.faces.add_triangles(material, plain, |vertex| Some(corner_of(vertices, vertex)))?;
-        self.found.without_normals += plain[..added].iter().filter(|triangle| lacks_normals(triangle)).count();
-        Ok(added)
     }
 }
 

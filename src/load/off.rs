@@ -12,7 +12,7 @@ use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::{counted, counts};
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
+use super::text_lines::{Line, Lines, first_word, parsed, shown, words};
 use super::uri::Files;
 use geometry::casts::to_byte;
 use geometry::mesh::Material;
@@ -60,7 +60,7 @@ fn gather<'a>(
     let most = header.faces.min(bytes.len() / LEAST_FACE);
     faces.expect(most, vertices.positions.len().min(most.saturating_mul(4)));
     let (corners, colors, found) = (Vec::new(), Vec::new(), Counts::default());
-    let mut reader = Reader { faces, material, vertices: &vertices, corners, colors, is_colored: false, found };
+    let mut reader = Reader { faces, material, vertices: &vertices, corners, colors, found };
     let cut_short = reader.read(&header, &mut rows)?;
     let Reader { mut faces, found, .. } = reader;
     faces.notes.extend(cut_short);
@@ -225,7 +225,7 @@ impl Vertices {
     fn add(&mut self, kind: VertexKind, row: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
         let (mut numbers, mut count) = ([f32::NAN; MAX_NUMBERS], 0_usize);
         for (slot, word) in numbers.iter_mut().zip(words(row)) {
-            *slot = number(word).unwrap_or(f32::NAN);
+            *slot = parsed(word).unwrap_or(f32::NAN);
             count += 1;
         }
         let [x, y, z, w, ..] = numbers;
@@ -298,8 +298,6 @@ struct Reader<'v, 'a> {
     corners: Vec<NumberedCorner>,
     /// The colours of its vertices.
     colors: Vec<Option<Vec4>>,
-    /// Whether corners have colours.
-    is_colored: bool,
     found: Counts,
 }
 
@@ -307,7 +305,7 @@ impl Reader<'_, '_> {
     /// Reads the faces, as far as the file goes. Returns a warning if it ends too early.
     fn read(&mut self, header: &Header, rows: &mut Rows) -> Result<Option<String>, ReadError> {
         if !self.vertices.colors.is_empty() {
-            self.color()?;
+            self.faces.color()?;
         }
         for i in 0..header.faces {
             let cut_short = || {
@@ -326,12 +324,6 @@ impl Reader<'_, '_> {
             self.found.after_faces += 1;
         }
         Ok(None)
-    }
-
-    /// From now on corners have colours. Those before are white.
-    fn color(&mut self) -> Result<(), ReadError> {
-        self.is_colored = true;
-        self.faces.color()
     }
 
     fn face(&mut self, row: &Line) -> Result<(), ReadError> {
@@ -358,13 +350,11 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let face_color = if self.vertices.colors.is_empty() { self.face_color(words) } else { None };
-        if face_color.is_some() && !self.is_colored {
-            self.color()?;
+        if face_color.is_some() {
+            self.faces.color()?;
         }
-        if self.is_colored {
-            for (at, own) in self.corners.iter_mut().zip(&self.colors) {
-                at.number = self.faces.number(own.or(face_color).unwrap_or(Vec4::ONE))?;
-            }
+        for (at, own) in self.corners.iter_mut().zip(&self.colors) {
+            at.number = self.faces.number(own.or(face_color).unwrap_or(Vec4::ONE))?;
         }
         self.faces.add(self.material, &mut self.corners, row.place())
     }
@@ -383,7 +373,7 @@ impl Reader<'_, '_> {
         let is_whole = words.iter().all(|word| word.iter().all(u8::is_ascii_digit));
         let mut color = [f32::NAN; 4];
         for (slot, word) in color.iter_mut().zip(&words) {
-            *slot = number(word).unwrap_or(f32::NAN);
+            *slot = parsed(word).unwrap_or(f32::NAN);
         }
         if !matches!(words.len(), 3 | 4) || color[..words.len()].iter().any(|channel| channel.is_nan()) {
             self.found.bad_colors += 1;

@@ -1,21 +1,30 @@
-//! The parts of a file: its objects and groups, or its solids, by name. Those that are hidden are left out.
+//! The parts of a file by name: objects and groups, solids, nodes and materials. Those that are hidden are left out.
+//!
+//! A part's name is its path: the names of what it lies in, from the outermost, and its own, with slashes between them. A name
+//! that has a slash is therefore several. Names that are empty don't count, and parts of one path are one part.
 
 use std::collections::HashMap;
 
 use serde::Serialize;
 
 use super::memory_budget::Budget;
-use super::selection::{Selection, choice};
+use super::notes::{Notes, counted};
+use super::selection::{MATERIAL, Selection, ShownParts, choice, is_material};
 use geometry::casts::to_u32;
-use geometry::mesh::MemoryRefused;
+use geometry::mesh::mesh_builder::MeshBuilder;
+use geometry::mesh::{MemoryRefused, Mesh};
 
 /// The greatest number of parts. The triangles of others belong to none, and are always shown.
 const MAX_PARTS: usize = 1 << 16;
 
 /// The name of faces that belong to no part, or to one without a name; the specification of OBJ calls them so.
-pub(super) const DEFAULT_PART: &[u8] = b"default";
+pub(super) const DEFAULT_PART: &str = "default";
 
-/// Memory for a part besides its name, which is stored twice, in bytes.
+/// How many names above a part's own are looked at, and how long they may be together, in bytes.
+const MOST_ABOVE: usize = 64;
+const LONGEST_ABOVE: usize = 1024;
+
+/// Memory for a part besides its name, in bytes.
 const PER_PART: u64 = 150;
 
 /// Memory for triangles of a part that follow one another, in bytes: while they are collected, and in the mesh.
@@ -24,22 +33,25 @@ const PER_RANGE: u64 = 32;
 /// A part of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Part {
+    /// Its path. That of a material begins with [`MATERIAL`].
     pub name: String,
     /// How many triangles it has, also while they are left out.
     pub triangles: u32,
     #[serde(rename = "hidden")]
     pub is_hidden: bool,
+    /// The length in bytes of that start of the name that is the path of a level of detail other than the first, or 0.
+    #[serde(skip)]
+    pub level: usize,
 }
 
 /// The parts of a file that is being read.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub(super) struct Parts {
-    /// The names of parts that are left out.
-    hidden: Vec<String>,
-    /// The names of parts that alone aren't left out, if there are any.
-    only: Vec<String>,
+    selected: ShownParts,
     found: Vec<Part>,
     numbers: HashMap<Vec<u8>, usize>,
+    /// The number of the first level of detail, by what the names of levels have in common.
+    first_levels: HashMap<String, String>,
     /// The part that the next faces belong to.
     current: Option<usize>,
     /// How often a part was entered that is one too many.
@@ -48,11 +60,12 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn new(selected: &Selection) -> Self {
-        Self { hidden: selected.hidden.to_vec(), only: selected.only.to_vec(), ..Self::default() }
+        Self { selected: selected.parts.cloned().unwrap_or_default(), ..Self::default() }
     }
 
-    /// Says which part the next faces belong to, by its name.
-    pub(super) fn enter(&mut self, name: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
+    /// Says which part the next faces belong to, by its path, and how much of that is known to be the path of a further
+    /// [level](Part::level).
+    pub(super) fn enter(&mut self, name: &[u8], level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
         budget.hold(PER_RANGE)?;
         if let Some(&number) = self.numbers.get(name) {
             self.current = Some(number);
@@ -62,14 +75,45 @@ impl Parts {
             (self.current, self.beyond) = (None, self.beyond + 1);
             return Ok(());
         }
-        budget.hold(PER_PART + 2 * name.len() as u64)?;
-        let number = self.found.len();
-        let shown = String::from_utf8_lossy(name).into_owned();
-        let is_hidden = self.hidden.contains(&shown) || !(self.only.is_empty() || self.only.contains(&shown));
-        self.found.push(Part { name: shown, triangles: 0, is_hidden });
+        budget.hold(PER_PART + 4 * name.len() as u64)?;
+        let mut path = String::new();
+        join(&mut path, &String::from_utf8_lossy(name), DEFAULT_PART);
+        let number = self.numbers.get(path.as_bytes()).copied().unwrap_or(self.found.len());
+        if number == self.found.len() {
+            let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
+            self.numbers.insert(path.clone().into_bytes(), number);
+            let is_hidden = self.selected.hide(&path, level);
+            self.found.push(Part { name: path, triangles: 0, is_hidden, level });
+        }
         self.numbers.insert(name.to_vec(), number);
         self.current = Some(number);
         Ok(())
+    }
+
+    /// How much of a path is that of a further level by its names: `Car_LOD1`, if there was another level of `Car_LOD` before.
+    fn named_level(&mut self, path: &str) -> usize {
+        let is_further = |end: &usize| {
+            let common = path[..*end].trim_end_matches(|c: char| c.is_ascii_digit());
+            let (number, before) = (&path[common.len()..*end], common.len().saturating_sub(3));
+            let is_lod = common.get(before..).is_some_and(|end| end.eq_ignore_ascii_case("lod"));
+            if number.is_empty() || !is_lod || common[..before].ends_with(char::is_alphanumeric) {
+                return false;
+            }
+            *self.first_levels.entry(common.to_owned()).or_insert_with(|| number.to_owned()) != *number
+        };
+        ends(path).find(is_further).unwrap_or(0)
+    }
+
+    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones.
+    pub(super) fn enter_materials(&mut self, builder: &mut MeshBuilder, budget: &Budget) -> Result<(), MemoryRefused> {
+        let mut selected = self.selected.hidden.iter().chain(&self.selected.only);
+        if builder.used_materials() < 2 && !selected.any(|name| is_material(name)) {
+            return Ok(());
+        }
+        builder.leave_out(|name, triangles| {
+            self.enter([MATERIAL, name].concat().as_bytes(), 0, budget)?;
+            Ok(self.leave_out(triangles as usize))
+        })
     }
 
     /// The part that the next faces belong to.
@@ -89,22 +133,26 @@ impl Parts {
         part.is_hidden
     }
 
-    /// Whether the next faces are left out.
-    pub(super) fn is_hidden(&self) -> bool {
-        self.current.is_some_and(|number| self.found[number].is_hidden)
-    }
-
-    /// Returns the parts that have triangles, how often one was entered that is one too many, and the places in the list of
-    /// the parts that were [current](Self::current).
-    pub(super) fn into_list(mut self) -> (Vec<Part>, usize, Vec<u32>) {
+    /// Returns the parts that have triangles, and makes the mesh's ranges, which name parts that were [current](Self::current),
+    /// places among them. `notes` gets how often a part too many was entered, and how many levels of detail are left out.
+    pub(super) fn finish(mut self, mesh: &mut Mesh, notes: &mut Notes) -> Vec<Part> {
         let mut listed = 0;
         let places = self.found.iter().map(|part| {
             listed += u32::from(part.triangles > 0);
             listed.saturating_sub(1)
         });
-        let places = places.collect();
+        let places: Vec<u32> = places.collect();
+        mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
         self.found.retain(|part| part.triangles > 0);
-        (self.found, self.beyond, places)
+        let is_level = |part: &&Part| part.level > 0 && part.is_hidden && self.selected.only.is_empty();
+        notes.extend(counted([
+            (self.beyond, "parts beyond the first 65,536, which can't be hidden"),
+            (
+                self.found.iter().filter(is_level).count(),
+                "parts of levels of detail other than the first, left out (`pnaen info` lists them, and --show-part shows one)",
+            ),
+        ]));
+        self.found
     }
 
     /// Says which parts there are, as the end of a message.
@@ -119,50 +167,134 @@ impl Parts {
     }
 }
 
+/// Adds the names that a name consists of to a path; `default` if there are none.
+fn join(path: &mut String, name: &str, default: &str) {
+    let names = if name.trim_matches('/').is_empty() { default } else { name };
+    for name in names.split('/').filter(|name| !name.is_empty()) {
+        if !path.is_empty() {
+            path.push('/');
+        }
+        path.push_str(name);
+    }
+}
+
+/// Returns a node's path, and how much of it is that of a further [level](Part::level). `nodes` are the node and those that it
+/// lies in, from the innermost: their names, and whether each is such a level.
+pub(super) fn node_path<'a>(nodes: impl Iterator<Item = (&'a str, bool)>) -> (String, usize) {
+    let nodes: Vec<_> = nodes.take(MOST_ABOVE).collect();
+    let (mut path, mut level) = (String::new(), 0);
+    for (i, &(name, is_level)) in nodes.iter().enumerate().rev() {
+        if i == 0 || path.len() + name.len() < LONGEST_ABOVE {
+            join(&mut path, name, if i == 0 || is_level { DEFAULT_PART } else { "" });
+        }
+        if is_level && level == 0 {
+            level = path.len();
+        }
+    }
+    (path, level)
+}
+
+/// Returns where the names in a path end, from the outermost. Beyond so many, and so far, the rest is one name.
+pub(super) fn ends(path: &str) -> impl Iterator<Item = usize> {
+    let above = path.match_indices('/').map(|(end, _)| end).take(MOST_ABOVE);
+    above.take_while(|end| *end <= LONGEST_ABOVE).chain([path.len()])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::selection::ShownParts;
+    use crate::selection::is_part_of;
+    use geometry::mesh::PartRange;
+
+    fn entered(parts: &mut Parts, name: &str, triangles: usize) -> bool {
+        parts.enter(name.as_bytes(), 0, &Budget::unlimited()).expect("memory is unlimited");
+        parts.leave_out(triangles)
+    }
+
+    fn hiding(hidden: &[&str], only: &[&str]) -> Parts {
+        let [hidden, only] =
+            [hidden, only].map(|names| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
+        let shown = ShownParts { hidden, only, ..ShownParts::default() };
+        Parts::new(&Selection { parts: Some(&shown), ..Selection::default() })
+    }
 
     #[test]
     fn a_part_may_be_entered_again_and_one_too_many_belongs_to_none() {
-        let budget = Budget::unlimited();
-        let hidden = ["b".to_owned()];
-        let mut parts = Parts::new(&Selection { hidden: &hidden, ..Selection::default() });
+        let mut parts = hiding(&["b"], &[]);
         assert!(!parts.leave_out(1), "there is none yet");
         for (name, triangles) in [("a", 2), ("b", 3), ("empty", 0), ("a", 5)] {
-            parts.enter(name.as_bytes(), &budget).expect("memory is unlimited");
-            assert_eq!(parts.leave_out(triangles), name == "b");
+            assert_eq!(entered(&mut parts, name, triangles), name == "b");
         }
         // A file may say that a part is repeated more often than any could be.
         assert!(!parts.leave_out(1 << 40));
         for i in 0..MAX_PARTS {
-            parts.enter(format!("{i}").as_bytes(), &budget).expect("memory is unlimited");
+            entered(&mut parts, &format!("{i}"), 0);
         }
         assert!(!parts.leave_out(7));
-        let (found, beyond, places) = parts.into_list();
-        assert_eq!(&places[..4], [0, 1, 1, 1], "that without triangles has no place of its own");
-        let part = |name: &str, triangles, is_hidden| Part { name: name.to_owned(), triangles, is_hidden };
-        assert_eq!((found, beyond), (vec![part("a", u32::MAX, false), part("b", 3, true)], 3));
+        let range = |part| PartRange { triangles: 0..1, part };
+        let mut mesh = Mesh { part_ranges: [0, 1, 3].map(range).to_vec(), ..Mesh::default() };
+        let mut notes = Notes::default();
+        let found = parts.finish(&mut mesh, &mut notes);
+        let places: Vec<_> = mesh.part_ranges.iter().map(|range| range.part).collect();
+        assert_eq!(places, [0, 1, 1], "that without triangles has no place of its own");
+        let part = |name: &str, triangles, is_hidden| Part { name: name.to_owned(), triangles, is_hidden, level: 0 };
+        assert_eq!(found, [part("a", u32::MAX, false), part("b", 3, true)]);
+        assert_eq!(notes.into_warnings(), ["parts beyond the first 65,536, which can't be hidden: 3."]);
     }
+
     #[test]
-    fn parts_are_shown_alone_added_and_left_out() {
-        let [a, b] = ["a", "b"].map(str::to_owned);
-        let is_hidden = |shown: &ShownParts, name: &str| {
-            let selected = Selection { hidden: &shown.hidden, only: &shown.only, ..Selection::default() };
-            let mut parts = Parts::new(&selected);
-            parts.enter(name.as_bytes(), &Budget::unlimited()).expect("memory is unlimited");
-            parts.is_hidden()
+    fn empty_names_do_not_count_and_slashes_are_those_of_paths() {
+        let mut parts = hiding(&[], &[]);
+        for name in ["a/b", "/a//b/", "", "//", "b"] {
+            entered(&mut parts, name, 1);
+        }
+        let found = parts.finish(&mut Mesh::default(), &mut Notes::default());
+        let found: Vec<_> = found.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+        assert_eq!(found, [("a/b", 2), ("default", 2), ("b", 1)]);
+        let chain = [("own", false), ("", false), ("high/low", true), ("top", false)];
+        assert_eq!(node_path(chain.into_iter()), ("top/high/low/own".to_owned(), "top/high/low".len()));
+        assert_eq!(node_path([("", true), ("top", true)].into_iter()), ("top/default".to_owned(), 3));
+        let deep = std::iter::repeat_n(("node", false), 1 << 20);
+        assert_eq!(node_path(deep).0.matches("node").count(), MOST_ABOVE);
+    }
+
+    #[test]
+    fn a_name_means_parts_groups_and_paths_from_the_first_name_or_to_the_last() {
+        let paths = ["Body", "Body/Arm", "Body/Arm/Hand", "Arm", "Armour", "material:Arm"];
+        let meant = |name: &str| paths.map(|path| is_part_of(path, name));
+        assert_eq!(meant("Arm"), [false, true, true, true, false, false]);
+        assert_eq!(meant("/Arm"), [false, false, false, true, false, false]);
+        assert_eq!(meant("Body/Arm"), [false, true, true, false, false, false]);
+        assert_eq!(meant("Body/."), [true, false, false, false, false, false]);
+        assert_eq!(meant("Arm/Hand"), [false, false, true, false, false, false]);
+        assert_eq!(meant("material:Arm"), [false, false, false, false, false, true]);
+        assert_eq!(meant("arm"), [false; 6]);
+    }
+
+    #[test]
+    fn only_the_first_level_of_detail_is_shown_unless_another_is_named() {
+        let names = [
+            "Car_LOD0",
+            "Car_LOD1/Wheel",
+            "Car_LOD2",
+            "set/Car_LOD1",
+            "Fold1",
+            "LOD_3",
+            "set/hat-lod0",
+            "set/hat-lod1",
+        ];
+        let shown = |hidden: &[&str], only: &[&str]| {
+            let mut parts = hiding(hidden, only);
+            let shown = names.map(|name| !entered(&mut parts, name, 1));
+            let mut notes = Notes::default();
+            parts.finish(&mut Mesh::default(), &mut notes);
+            (shown, notes.into_warnings().len())
         };
-        let mut shown = ShownParts::alone("a");
-        assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [false, true, true]);
-        shown.set("b", true);
-        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![a.clone(), b.clone()] });
-        shown.set("a", false);
-        assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true, false, true]);
-        shown.set("b", false);
-        assert_eq!(["a", "b", "c"].map(|name| is_hidden(&shown, name)), [true; 3]);
-        shown.set("b", true);
-        assert_eq!(shown, ShownParts { hidden: Vec::new(), only: vec![b] });
+        assert_eq!(shown(&[], &[]), ([true, false, false, true, true, true, true, false], 1));
+        assert_eq!(shown(&[], &["Car_LOD1"]), ([false, true, false, true, false, false, false, false], 0));
+        assert_eq!(shown(&[], &["/Car_LOD1"]), ([false, true, false, false, false, false, false, false], 0));
+        assert_eq!(shown(&[], &["set"]), ([false, false, false, true, false, false, true, false], 0), "not all levels");
+        assert_eq!(shown(&[], &["set", "hat-lod1"]), ([false, false, false, true, false, false, true, true], 0));
+        assert_eq!(shown(&["Car_LOD0"], &[]), ([false, false, false, true, true, true, true, false], 1));
     }
 }

@@ -7,7 +7,6 @@
 
 mod header;
 mod textures;
-mod upcoming;
 mod values;
 
 use glam::{Vec2, Vec3, Vec4};
@@ -17,7 +16,6 @@ use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::counted;
 use super::read_error::{FilePosition, ReadError};
-use super::recent_corners::VertexNumbers;
 use super::text_lines::shown;
 use super::uri::Files;
 use geometry::casts::{to_byte, to_f32};
@@ -26,33 +24,23 @@ use geometry::mesh::mesh_builder::InputCorner;
 
 use header::{Element, Header, Property, PropertyKind, Scalar};
 use textures::Textures;
-use upcoming::Upcoming;
 use values::Values;
 
-/// The properties of a vertex that are read, and the attribute that each sets. Texture coordinates have three names.
-const ATTRIBUTES: [(&[u8], usize); 19] = [
-    (b"x", 0),
-    (b"y", 1),
-    (b"z", 2),
-    (b"nx", 3),
-    (b"ny", 4),
-    (b"nz", 5),
-    (b"u", 6),
-    (b"v", 7),
-    (b"s", 6),
-    (b"t", 7),
-    (b"texture_u", 6),
-    (b"texture_v", 7),
-    (b"red", 8),
-    (b"green", 9),
-    (b"blue", 10),
-    (b"alpha", 11),
-    (b"diffuse_red", 8),
-    (b"diffuse_green", 9),
-    (b"diffuse_blue", 10),
+/// The names that the property of each attribute of a vertex may have.
+const ATTRIBUTES: [&[&[u8]]; 12] = [
+    &[b"x"],
+    &[b"y"],
+    &[b"z"],
+    &[b"nx"],
+    &[b"ny"],
+    &[b"nz"],
+    &[b"u", b"s", b"texture_u"],
+    &[b"v", b"t", b"texture_v"],
+    &[b"red", b"diffuse_red"],
+    &[b"green", b"diffuse_green"],
+    &[b"blue", b"diffuse_blue"],
+    &[b"alpha"],
 ];
-/// How many attributes there are.
-const SLOTS: usize = 12;
 /// The first attribute of colours.
 const RED: usize = 8;
 
@@ -204,16 +192,19 @@ impl<'a> Reader<'a, '_> {
             uvs: Vec::with_capacity(room(has_uvs)),
             colors: Vec::with_capacity(room(has_colors)),
         };
-        let row = values.row(element, &slots);
         for i in 0..element.count {
             self.at(values, i)?;
-            let mut found = [0.0; SLOTS];
+            let mut found = [0.0; ATTRIBUTES.len()];
             // Alpha, where there is none.
             found[11] = 1.0 / scale;
-            match &row {
-                Some(row) => values.read_row(row, &mut found)?,
-                None => read_values(element, i, values, &slots, &mut found)?,
+            values.begin(element, i)?;
+            for (property, slot) in element.properties.iter().zip(&slots) {
+                match (property.kind, slot) {
+                    (PropertyKind::One(scalar), Some(slot)) => found[*slot] = to_f32(values.next(scalar)?),
+                    (kind, _) => values.skip_one(kind)?,
+                }
             }
+            values.end();
             let [x, y, z, nx, ny, nz, u, v, color @ ..] = found;
             vertices.positions.push(Vec3::new(x, y, z));
             if has_normals {
@@ -269,21 +260,9 @@ impl<'a> Reader<'a, '_> {
         let of_face = self.begin_faces(element, list, vertices)?;
         let faces = usize::try_from(values.most(element)).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
-        let is_plain = element.name == b"face" && of_face.image.is_none() && of_face.color.is_none();
-        let row = values.face_row(element, list).filter(|_| is_plain);
-        let (mut upcoming, mut i) = (row.map(Upcoming::new), 0);
-        while i < element.count {
-            if let Some(upcoming) = &mut upcoming {
-                let added = self.triangles(upcoming.triangles(values, element.count - i), vertices)?;
-                i += added as u64;
-                if upcoming.take(values, added) {
-                    self.progress(values)?;
-                    continue;
-                }
-            }
+        for i in 0..element.count {
             self.at(values, i)?;
             self.read_list(element, i, of_face, values, vertices)?;
-            i += 1;
         }
         Ok(())
     }
@@ -402,13 +381,6 @@ impl<'a> Reader<'a, '_> {
         self.faces.add(self.material, &mut self.corners, place)
     }
 
-    /// Adds triangles of these vertices. Returns how many were added; the general way must add the next one.
-    fn triangles(&mut self, triangles: &[[VertexNumbers; 3]], vertices: &Vertices) -> Result<usize, ReadError> {
-        let corner =
-            |[vertex, ..]: VertexNumbers| vertices.corner(vertex.into()).map(|(_, corner, color)| (corner, color));
-        self.faces.add_triangles(self.material, triangles, corner)
-    }
-
     /// Reads the corners of a face. Returns whether the file has all of its vertices.
     fn face(
         &mut self,
@@ -473,12 +445,11 @@ impl<'a> Reader<'a, '_> {
 
     /// Sets the progress, once every 4,096 elements.
     fn at(&self, values: &Values, i: u64) -> Result<(), ReadError> {
-        if i.is_multiple_of(4096) { self.progress(values) } else { Ok(()) }
-    }
-
-    fn progress(&self, values: &Values) -> Result<(), ReadError> {
-        self.files.progress.set(0.5 * values.fraction());
-        Ok(self.files.progress.check()?)
+        if i.is_multiple_of(4096) {
+            self.files.progress.set(0.5 * values.fraction());
+            self.files.progress.check()?;
+        }
+        Ok(())
     }
 
     fn finish(self, header: &Header, values: &Values, problems: Vec<String>) -> (FaceBuilder<'a>, String) {
@@ -507,25 +478,6 @@ impl<'a> Reader<'a, '_> {
     }
 }
 
-/// Reads the values of an element of number `i`, one after another, into the places that `slots` says.
-fn read_values(
-    element: &Element,
-    i: u64,
-    values: &mut Values,
-    slots: &[Option<usize>],
-    found: &mut [f32],
-) -> Result<(), ReadError> {
-    values.begin(element, i)?;
-    for (property, slot) in element.properties.iter().zip(slots) {
-        match (property.kind, slot) {
-            (PropertyKind::One(scalar), Some(slot)) => found[*slot] = to_f32(values.next(scalar)?),
-            (kind, _) => values.skip_one(kind)?,
-        }
-    }
-    values.end();
-    Ok(())
-}
-
 /// Returns what colours are multiplied by to lie from 0 to 1. Whole numbers go up to the largest of their type.
 fn color_scale(element: &Element, slots: &[Option<usize>]) -> f32 {
     let of_red = element.properties.iter().zip(slots).find(|(_, slot)| **slot == Some(RED));
@@ -538,8 +490,8 @@ fn color_scale(element: &Element, slots: &[Option<usize>]) -> f32 {
 
 /// Returns which attribute a property of a vertex sets, if any.
 fn slot(property: &Property) -> Option<usize> {
-    let known = ATTRIBUTES.iter().find(|(name, _)| *name == property.name);
-    known.filter(|_| matches!(property.kind, PropertyKind::One(_))).map(|(_, slot)| *slot)
+    let known = ATTRIBUTES.iter().position(|names| names.contains(&property.name));
+    known.filter(|_| matches!(property.kind, PropertyKind::One(_)))
 }
 
 #[cfg(test)]

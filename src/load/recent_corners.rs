@@ -18,12 +18,6 @@ pub(super) struct RecentCorners {
 }
 
 impl RecentCorners {
-    /// Returns the corner of a vertex, if it is remembered.
-    pub(super) fn known(&self, vertex: VertexNumbers) -> Option<StoredCorner> {
-        let (same, corner) = (*self.slots.get(vertex[0] as usize % SLOTS)?)?;
-        (same == vertex).then_some(corner)
-    }
-
     /// Returns the corner of a vertex, which `store` stores unless it is remembered.
     pub(super) fn get(&mut self, vertex: VertexNumbers, store: impl FnOnce() -> StoredCorner) -> StoredCorner {
         if self.slots.is_empty() {
@@ -33,15 +27,6 @@ impl RecentCorners {
         match slot {
             Some((same, corner)) if *same == vertex => *corner,
             _ => slot.insert((vertex, store())).1,
-        }
-    }
-
-    /// Replaces the corner of a vertex, if it is remembered with this one.
-    pub(super) fn replace(&mut self, vertex: VertexNumbers, old: StoredCorner, new: StoredCorner) {
-        if let Some(slot) = self.slots.get_mut(vertex[0] as usize % SLOTS)
-            && *slot == Some((vertex, old))
-        {
-            *slot = Some((vertex, new));
         }
     }
 }
@@ -64,7 +49,6 @@ mod tests {
     #[test]
     fn a_corner_is_stored_again_only_if_another_took_its_place() {
         let (mut recent, mut stored) = (RecentCorners::default(), Vec::new());
-        assert_eq!(recent.known([7, 0, 0]), None);
         let far = SLOTS as u32;
         for vertex in [[7, 0, 0], [7, 0, 0], [8, 0, 0], [7, 0, 0], [7, 1, 0], [7, 0, 0], [7 + far, 0, 0], [8, 0, 0]] {
             let id = vertex[0] + vertex[1];
@@ -73,9 +57,7 @@ mod tests {
                 StoredCorner { id, repairs: CornerRepairs(vertex[1] as u8) }
             });
             assert_eq!(corner, StoredCorner { id, repairs: CornerRepairs(vertex[1] as u8) });
-            assert_eq!(recent.known(vertex), Some(corner));
         }
-        assert_eq!([[7, 0, 0], [7, 1, 0], [9, 0, 0]].map(|vertex| recent.known(vertex)), [None; 3]);
         assert_eq!(stored, [[7, 0, 0], [8, 0, 0], [7, 1, 0], [7, 0, 0], [7 + far, 0, 0]]);
     }
 }

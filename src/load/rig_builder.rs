@@ -20,6 +20,8 @@ use geometry::progress::Progress;
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
 pub(super) const MAX_BOUND: usize = 1 << 24;
+/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
+pub(super) const PER_DELTA: u64 = 250;
 /// The greatest number of elements of morph targets that are read.
 const MAX_DISPLACED: usize = 1 << 28;
 

@@ -53,7 +53,7 @@ impl Source {
         limits: &Limits,
         progress: &Progress,
     ) -> Result<LoadedMesh, LoadError> {
-        let loaded = match self {
+        let mut loaded = match self {
             Self::Shape(shape) => self.made(shape.build(), selected.import, progress),
             Self::FineShape(shape, level) => self.made(shape.build_at(*level), selected.import, progress),
             Self::Vase => {
@@ -63,7 +63,7 @@ impl Source {
             }
             Self::File(path) => return load_selected(path, selected, limits, progress),
         }?;
-        check_selected(self.to_string().as_ref(), selected, &loaded)?;
+        check_selected(self.to_string().as_ref(), selected, &mut loaded)?;
         Ok(loaded)
     }
 

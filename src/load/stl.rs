@@ -174,8 +174,8 @@ impl Reader<'_> {
                 b"solid" => {
                     (solids, open) = (solids + 1, true);
                     match rest {
-                        b"" => self.faces.enter_part(format!("solid {solids}").as_bytes())?,
-                        name => self.faces.enter_part(name)?,
+                        b"" => self.faces.enter_part(format!("solid {solids}").as_bytes(), 0)?,
+                        name => self.faces.enter_part(name, 0)?,
                     }
                 }
                 b"endsolid" => open = false,

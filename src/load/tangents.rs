@@ -168,13 +168,13 @@ impl Around {
 
 impl DetailedMesh<'_> {
     fn mapped(&self, material: &Material) -> Option<Mapped> {
-        let normal_map = material.look.tangent_map()?;
+        let uv = material.look.tangent_uv()?;
         let has_none = |face: &u32| {
             let corners = self.mesh.triangles[*face as usize];
             corners.iter().any(|&corner| self.details[corner as usize].tangent == Vec3::ZERO)
         };
         let faces: Vec<u32> = material.triangles.clone().filter(has_none).collect();
-        (!faces.is_empty()).then(|| Mapped { name: material.name.clone(), faces, uv: normal_map.uv })
+        (!faces.is_empty()).then(|| Mapped { name: material.name.clone(), faces, uv })
     }
 
     /// Computes tangents for the triangles of a batch on the texture coordinates of the normal map, from them and those near them.

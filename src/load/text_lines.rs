@@ -98,11 +98,6 @@ pub(super) fn parsed<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
     std::str::from_utf8(word).ok()?.parse().ok()
 }
 
-/// Parses a number, or returns why the word isn't one.
-pub(super) fn number(word: &[u8]) -> Result<f32, String> {
-    parsed(word).ok_or_else(|| format!("{} isn't a number", shown(word)))
-}
-
 /// Parses the first N words as numbers, and ignores further words. What isn't there is NaN.
 pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
     let mut words = words(text);
@@ -204,7 +199,7 @@ mod tests {
         assert_eq!(first_word(b"\t usemtl  old  wood \r"), (&b"usemtl"[..], &b"old  wood"[..]));
         assert_eq!(first_word(b"  "), (&b""[..], &b""[..]));
         assert_eq!(numbers_or_nan(b" 1\t-2.5e1 +.5 7"), [1.0, -25.0, 0.5]);
-        assert_eq!(number(b"1,5"), Err("\"1,5\" isn't a number".to_owned()));
+        assert_eq!(parsed::<f32>(b"1,5"), None);
         assert_eq!(shown(&[0xff; 500]), format!("\"{}...\"", "\u{fffd}".repeat(40)));
     }
 

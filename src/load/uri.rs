@@ -182,23 +182,8 @@ fn relative_path(uri: &str) -> Result<PathBuf, String> {
 }
 
 /// Decodes %XX. A % that isn't followed by two hexadecimal digits stays.
-#[expect(clippy::cast_possible_truncation, reason = "two digits of 4 bits each")]
 pub fn percent_decoded(text: &str) -> Vec<u8> {
-    let digit = |byte: &u8| char::from(*byte).to_digit(16);
-    let mut decoded = Vec::with_capacity(text.len());
-    let mut rest = text.as_bytes();
-    while let Some((&first, tail)) = rest.split_first() {
-        rest = tail;
-        let byte = match (first, tail) {
-            (b'%', [high, low, ..]) => digit(high).zip(digit(low)).map(|(high, low)| (16 * high + low) as u8),
-            _ => None,
-        };
-        if byte.is_some() {
-            rest = &tail[2..];
-        }
-        decoded.push(byte.unwrap_or(first));
-    }
-    decoded
+    percent_encoding::percent_decode_str(text).collect()
 }
 
 /// Base64 by RFC 4648, section 4, without the checks of how the text ends.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::{Folder, failure, output, run};
+use crate::{Folder, failure, output, run, sentence, vase};
 use documents::moving::moving;
 
 fn file(folder: &Folder) -> String {
@@ -54,6 +54,58 @@ fn both_devices_write_the_pose() {
         output(&[&lod[..], &["--device", "cpu"], options].concat())
     };
     assert_ne!(factors(&[]), factors(&pose));
+}
+
+#[test]
+fn chosen_weights_of_morph_targets_give_the_shape_of_a_clip_that_has_them() {
+    let folder = Folder::new();
+    let file = file(&folder);
+    let positions = |options: &[&str]| {
+        let path = folder.path("out.obj");
+        output(&[&["tessellate", &file, "-o", &path, "--factor", "3"], options].concat());
+        let text = std::fs::read_to_string(path).expect("a mesh");
+        let vertices = text.lines().filter_map(|line| line.strip_prefix("v "));
+        vertices
+            .flat_map(|own| own.split(' ').map(|x| x.parse::<f64>().expect("a number")).collect::<Vec<_>>())
+            .collect()
+    };
+    let largest = |a: &Vec<f64>, b: &Vec<f64>| {
+        assert_eq!(a.len(), b.len());
+        a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    let rest = positions(&[]);
+    // At its end the clip has these weights.
+    let clip = positions(&["--animation", "Swell", "--time", "1.5"]);
+    let chosen = positions(&["--morph", "Swell=1", "--morph", "Lean=-1"]);
+    assert!(largest(&clip, &chosen) < 1e-4 && largest(&rest, &chosen) > 0.5);
+    let moved = positions(&["--morph", "Swell=0.5", "--animation", "Swell", "--time", "1.5"]);
+    assert_eq!(clip, moved, "a clip that moves a target goes on doing so");
+    let bent = ["--animation", "Bend", "--time", "0.5"];
+    let swollen = ["--morph", "Swell=1", "--morph", "Lean=0"];
+    let [gpu, cpu] = ["gpu", "cpu"].map(|device| positions(&[&bent[..], &swollen, &["--device", device]].concat()));
+    assert!(
+        largest(&gpu, &cpu) < 1e-4 && largest(&gpu, &positions(&bent)) > 0.1,
+        "a clip that doesn't keeps its weight"
+    );
+    let picture = folder.path("posed.png");
+    let moving = ["--morph", "Lean=1", "--animation", "Bend", "--time", "0.3", "--size", "200x160", "--stats", "-"];
+    let stats: Value =
+        serde_json::from_str(&output(&[&["render", &file, "-o", &picture], &moving[..]].concat())).expect("JSON");
+    assert_eq!((&stats["cracks"]["different_bits"], &stats["leaks"]), (&json!(0), &json!(0)));
+    assert!(stats["ms"]["deform"].as_f64().is_some());
+}
+
+#[test]
+fn morph_targets_are_listed_and_others_are_answered_with_them() {
+    let folder = Folder::new();
+    let file = file(&folder);
+    let text = output(&["info", &file, "--morph", "Swell=1"]);
+    assert!(text.contains("\nmorph target  Lean: 0 at rest in the file\nmorph target  Swell: 0.25 at rest"), "{text}");
+    let info: Value = serde_json::from_str(&output(&["info", &file, "--json"])).expect("JSON");
+    assert_eq!(info["morph_targets"], json!({ "Lean": 0.0, "Swell": 0.25 }));
+    sentence(&["info", &file, "--morph", "Smile=1"], &["no morph target Smile", "choose one of Lean, Swell"]);
+    sentence(&["info", vase(), "--morph", "Smile=1"], &["no morph target Smile", "it has no morph targets"]);
+    assert!(failure(&["info", &file, "--morph", "Smile"], 2).contains("NAME=WEIGHT"));
 }
 
 #[test]

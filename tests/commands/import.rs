@@ -42,8 +42,50 @@ fn parts_are_listed_and_left_out() {
     sentence(&["info", &parts, "--hide-part", "left door", "--hide-part=-right"], &["parts are hidden"]);
     let plain = folder.write("plain.off", "OFF\n3 1 0\n0 0 0\n2 0 0\n2 3 0\n3 0 1 2\n");
     sentence(&["info", &plain, "--hide-part", "left door"], &["no named parts"]);
+    // A surface and a detail of its own.
+    let styled =
+        stats(&[&parts, "--part", "-right:surface=flat,detail=0.5", "--factor", "4", "--partitioning", "integer"]);
+    let usual = stats(&[&parts, "--factor", "4", "--partitioning", "integer"]);
+    assert!(number(&styled, "/triangles_out") < number(&usual, "/triangles_out"), "{styled}");
+    sentence(&["info", &parts, "--part", "bonnet:detail=2"], &["bonnet", "left door", "-right"]);
+    sentence(&["info", &plain, "--part", "a:surface=flat"], &["no named parts", "--part"]);
+    for text in ["-right", "-right:", "-right:surface=round", "-right:detail=0", "-right:detail=nan", "-right:size=2"] {
+        failure(&["info", &parts, "--part", text], 2);
+    }
+    let groups =
+        folder.write("groups.obj", &*text.replace("o left door", "o body\ng left door").replace("o -right", "g right"));
+    let listed = output(&["info", &groups]);
+    assert!(
+        listed.contains("group         body: 2 parts, 3 triangles\npart          body/left door: 1 triangles\n"),
+        "{listed}"
+    );
+    for (name, shown) in [("body", 3.0), ("right", 2.0), ("body/right", 2.0), ("/body/left door/.", 1.0)] {
+        assert_eq!(number(&info(&[&groups, "--show-part", name]), "/triangles"), shown, "{name}");
+    }
+    sentence(&["info", &groups, "--hide-part", "door"], &["no part door", "body/left door"]);
     // Named nodes of glTF files are parts.
     sentence(&["info", vase(), "--hide-part", "left door"], &["no part left door", "vase"]);
+}
+
+#[test]
+fn materials_are_left_out_and_levels_of_detail_are_chosen() {
+    let folder = Folder::new();
+    folder.write("a.mtl", "newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n");
+    let text = "mtllib a.mtl\nv 0 0 0\nv 2 0 0\nv 2 3 0\no car_LOD0\nusemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\nf 2 3 1\n\
+                o car_LOD1\nusemtl red\nf 1 2 3\n";
+    let file = folder.write("levels.obj", text);
+    let triangles = |arguments: &[&str]| number(&info(&[&[&*file], arguments].concat()), "/triangles");
+    assert_eq!(triangles(&[]), 3.0, "the first level");
+    let said = output(&["info", &file]);
+    assert!(said.contains("levels of detail") && said.contains("car_LOD1: 1 triangles, left out"), "{said}");
+    assert_eq!(triangles(&["--show-part", "car_LOD1"]), 1.0);
+    assert_eq!(triangles(&["--show-part", "material:blue"]), 2.0);
+    assert_eq!(triangles(&["--hide-part", "material:blue"]), 1.0);
+    let none_is_blue = ["--show-part", "car_LOD1", "--hide-part", "material:blue"];
+    assert_eq!(triangles(&none_is_blue), 1.0, "materials of parts that are left out aren't asked for");
+    assert_eq!(info(&[&file])["parts"].as_array().expect("a list").len(), 2, "materials have a list of their own");
+    let plain = folder.write("plain.obj", text.replace("_LOD", " "));
+    sentence(&["info", &plain, "--hide-part", "material:green"], &["no part material:green", "material:red"]);
 }
 
 #[test]

@@ -6,6 +6,9 @@ use serde_json::{Value, json};
 /// The names of the clips.
 pub const CLIPS: [&str; 4] = ["Bend", "Swell", "Fly", "All"];
 
+/// The names of the morph targets, whose weights at rest are 0.25 and 0.
+pub const TARGETS: [&str; 2] = ["Swell", "Lean"];
+
 #[derive(Default)]
 struct Writer {
     bytes: Vec<u8>,
@@ -38,7 +41,8 @@ impl Writer {
 /// The whole document as a .glb file.
 pub fn moving() -> Vec<u8> {
     let mut writer = Writer::default();
-    let meshes = json!([{ "primitives": [beam(&mut writer)] }, { "primitives": [octahedron(&mut writer)] }]);
+    let bending = json!({ "primitives": [beam(&mut writer)], "extras": { "targetNames": TARGETS } });
+    let meshes = json!([bending, { "primitives": [octahedron(&mut writer)] }]);
     let animations = animations(&mut writer);
     let root = json!({
         "asset": { "version": "2.0" },

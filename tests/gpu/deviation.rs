@@ -12,7 +12,7 @@ use inspect::engine::Measurements;
 use inspect::measure::{DeviationField, DeviationTarget};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::{Camera, DEVIATION_PX_SCALE, Scale, Scene, Target, deviation_scale, worst_lines};
-use inspect::settings::{ARENA_BYTES, Colors, DeviationUnit, Overlays, Settings, SplitSide};
+use inspect::settings::{ARENA_BYTES, Colors, Overlays, Settings, SplitSide, SurfaceUnit};
 
 use crate::engine;
 use crate::pictures::{SIZE, differing};
@@ -115,7 +115,7 @@ fn px_are_counted_at_the_depth_of_the_surface() {
         // So far off that the gap is a few px.
         camera.distance *= 20.0;
         let px = GAP as f32 / camera.units_per_pixel(400.0);
-        let in_px = Settings { deviation_in: DeviationUnit::Px, ..settings(Surface::Flat, 1.0) };
+        let in_px = Settings { deviation_in: SurfaceUnit::Px, ..settings(Surface::Flat, 1.0) };
         let (_, picture) = drawn(&mut scene, Shape::Icosahedron, &camera, &target, &in_px);
         let (place, off) = place_of(&picture, &camera, &scene, centroid, &DEVIATION_PX_SCALE);
         let expected = DEVIATION_PX_SCALE.place(px);

@@ -321,6 +321,90 @@ fn a_single_sided_ball_has_one_wall_and_a_double_sided_one_has_two() {
     }
 }
 
+/// A body of this thickness and smoothness, which leaves a half, a quarter and all of light after half a unit.
+fn body(thickness: f32, roughness: f32) -> Material {
+    let mut own = glass([0.9, 0.8, 1.0], 1.0);
+    (own.look.thickness, own.look.roughness) = (thickness, roughness);
+    (own.look.attenuation_distance, own.look.attenuation_color) = (0.5, [0.5, 0.25, 1.0]);
+    own
+}
+
+#[test]
+fn a_body_absorbs_as_much_as_its_thickness_says() {
+    let wall = [0.9, 0.8, 0.7];
+    let color = |own: &Material, settings: &Settings| {
+        at(&drawn(&sheets_of([(0.4, own.clone()), (-0.4, painted(wall))]), settings), PLACES[0])
+    };
+    let mapped = |green| {
+        let texel = map(image([1, 1], &[[0, green, 0, 255]]), MapUv::Own);
+        let own = body(1.0, 0.0);
+        Material { look: look_with(Slot::Thickness, texel, own.look), ..own }
+    };
+    for settings in every_way(studio()) {
+        let cases = [(body(0.25, 0.0), 0.25), (body(1.0, 0.0), 1.0), (mapped(51), 0.2), (mapped(0), 0.0)];
+        for (own, thickness) in cases {
+            let left = [0.5_f32, 0.25, 1.0].map(|left| left.powf(thickness / 0.5));
+            let tint = [0.9, 0.8, 1.0];
+            let expected = std::array::from_fn(|k| srgb(left[k] * tint[k] * wall[k]));
+            assert_near(color(&own, &settings), expected, ROUNDING, &format!("{thickness} with {settings:?}"));
+        }
+        // Without thickness it is a thin pane, whatever its inside is.
+        let panes =
+            [body(0.0, 0.0), Material { look: Look { roughness: 0.0, ..glass([1.0; 3], 1.0).look }, ..body(0.0, 0.0) }];
+        assert_eq!(color(&panes[0], &settings), color(&panes[1], &settings), "{settings:?}");
+    }
+}
+
+/// What is seen at these places of two walls, red on the left and green on the right, through a sheet before them with this
+/// slope.
+fn before_two_walls(own: Material, slope: f32, places: &[[f32; 2]]) -> Vec<[u8; 3]> {
+    let mut builder = MeshBuilder::new();
+    let walls = [(-0.2, painted([1.0, 0.0, 0.0])), (0.2, painted([0.0, 1.0, 0.0]))];
+    for (index, (slope, own)) in [(slope, own)].into_iter().chain(walls).enumerate() {
+        let own = builder.material(own);
+        let z = if index == 0 { 0.4 } else { -0.8 };
+        let sheet = Sheet { z, slope, color: [0.0; 4], alpha: Alpha::Opaque };
+        corners(index, &sheet).into_iter().for_each(|triangle| builder.triangle(own, triangle));
+    }
+    let mesh = builder.finish("walls".to_owned(), &Progress::default()).expect("nobody cancels");
+    let picture = drawn(&mesh, &studio());
+    places.iter().map(|place| at(&picture, *place)).collect()
+}
+
+/// Snell's law: through a surface that leans by half, light along -z goes on along (-0.160, 0, -0.987) where the index is 1.5.
+#[test]
+fn a_body_bends_light_to_where_it_leaves_it() {
+    let clear = |thickness, ior| {
+        let mut own = body(thickness, 0.0);
+        own.base_color = [1.0; 4];
+        (own.look.ior, own.look.attenuation_distance) = (ior, f32::INFINITY);
+        own
+    };
+    let (red, green) = ([255, 0, 0], [0, 255, 0]);
+    // In the middle of the picture is x = 0, and at its right border 1: 0.32 to the left lies what is seen.
+    let places = [[0.4, 0.45], [0.58, 0.45], [0.64, 0.45], [0.7, 0.45]];
+    assert_eq!(before_two_walls(clear(2.0, 1.5), -0.5, &places), [red, red, red, green]);
+    assert_eq!(before_two_walls(clear(2.0, 1.5), 0.0, &places), [red, green, green, green], "along the normal");
+    assert_eq!(before_two_walls(clear(2.0, 1.0), -0.5, &places), [red, green, green, green], "an index of 1");
+    assert_eq!(before_two_walls(clear(0.0, 1.5), -0.5, &places), [red, green, green, green], "no thickness");
+    // Roughness blurs the border between the walls, unless nothing is refracted.
+    let rough = |ior| Material { look: Look { roughness: 0.7, ..clear(2.0, ior).look }, ..clear(2.0, ior) };
+    let [r, g, _] = linear(before_two_walls(rough(1.5), 0.0, &[[0.46, 0.45]])[0]);
+    assert!(r > 0.2 && g > 0.2, "{r} {g}");
+    assert_eq!(before_two_walls(rough(1.0), 0.0, &[[0.46, 0.45]]), [red]);
+}
+
+/// Its thickness stands for the wall behind: only the nearer one is drawn, and nothing is behind it in a transparent picture.
+#[test]
+fn a_body_has_one_wall() {
+    let mut own = body(0.1, 0.0);
+    own.base_color = [0.5, 0.5, 0.5, 1.0];
+    own.look.attenuation_color = [1.0; 3];
+    let picture = drawn_by(engine(), &balls(vec![own], 1), &studio(), true);
+    let alpha = picture.get_pixel(SIDE / 2, SIDE / 2).0[3];
+    assert!(alpha.abs_diff(128) <= ROUNDING, "{alpha}");
+}
+
 #[test]
 fn a_map_says_where_light_goes_through_and_metal_lets_none_through() {
     let halves = map(image([2, 1], &[[255, 0, 0, 255], [0, 255, 255, 255]]), MapUv::Own);
@@ -572,4 +656,26 @@ fn layers_look_as_they_did() {
     let lines = seen(&mut scene, &target, &lines, &camera);
     let pictures = vec![("material-layers".to_owned(), plain), ("material-layers-lines".to_owned(), lines)];
     assert_eq!(differing(pictures), Vec::<String>::new());
+}
+
+#[test]
+fn bodies_look_as_they_did() {
+    let ball = |thickness, roughness| {
+        let mut own = body(thickness, roughness);
+        (own.look.specular, own.look.attenuation_color) = (1.0, [0.3, 0.8, 0.5]);
+        own
+    };
+    let wall = |color| material(color, Look::default());
+    let bodies = vec![ball(0.0, 0.0), ball(0.5, 0.0), ball(1.5, 0.0), ball(1.5, 0.4)];
+    let behind = [[0.8, 0.2, 0.1], [0.9; 3], [0.1, 0.2, 0.7], [0.9, 0.7, 0.1]].map(wall);
+    let mut mesh = balls([bodies, behind.to_vec()].concat(), 4);
+    // The second row lies behind the first, a little to the side.
+    for corner in mesh.corners.iter_mut().filter(|corner| corner.position.y < -1.1) {
+        corner.position += vec3(0.9, 2.2, -3.0);
+    }
+    let mut scene = scene_of(mesh, 0.0);
+    let target = Target::new(&engine().gpu, [320, 140]).expect("a small picture");
+    let camera = Camera { azimuth: 0.0, elevation: 5.0, ..Camera::framing(&scene.bounds, target.viewport()) };
+    let picture = seen(&mut scene, &target, &of_picture(ToneCurve::Neutral), &camera);
+    assert_eq!(differing(vec![("material-bodies".to_owned(), picture)]), Vec::<String>::new());
 }

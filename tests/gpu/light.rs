@@ -11,8 +11,8 @@ use inspect::render::dfg::{environment_dfg, environment_sheen};
 use inspect::render::environment::{ENVIRONMENT, Environment, LightView};
 use inspect::render::irradiance::{irradiance, irradiance_of};
 use inspect::render::reflectance::{
-    AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, reflect_ambient, sheen_direction,
-    transmitted,
+    AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, mean_roughness, reflect_ambient,
+    sheen_direction, stretched_alphas, transmitted,
 };
 use inspect::render::studio::studio_light;
 use inspect::render::tone::tone_mapped;
@@ -59,7 +59,7 @@ fn main(@builtin(global_invocation_id) id: vec3<u32>) {
     found.shown = exposed(found.ambient);
     found.irradiance = environment_irradiance(one.normal);
     found.radiance = environment_radiance(one.normal, one.look.roughness);
-    found.dfg = environment_dfg(dot(one.normal, one.to_eye), one.look.roughness);
+    found.dfg = environment_dfg(dot(one.normal, one.to_eye), mean_roughness(one.look));
     found.sheen = environment_sheen(clamp(dot(one.normal, one.to_eye), 0.0, 1.0), one.look.sheen_roughness);
     found.through = transmitted_through(one.look, one.normal, one.to_eye);
     results[id.x] = found;
@@ -161,6 +161,8 @@ fn cases(count: usize) -> Vec<Case> {
             transmission: [0.0, unit()][index / 4 % 2],
             sheen_color: [Vec3::ZERO, vec3(unit(), unit(), unit())][index / 8 % 2],
             sheen_roughness: 0.1 + 0.9 * unit(),
+            direction: normal.cross(direction()).try_normalize().unwrap_or_else(|| normal.any_orthonormal_vector()),
+            anisotropy: [0.0, unit()][index / 16 % 2],
             ..LookAt::default()
         };
         let sheen_albedo = environment_sheen(normal.dot(to_eye).clamp(0.0, 1.0), look.sheen_roughness);
@@ -190,17 +192,35 @@ impl Twin {
         self.filtered.sample(self.turn * direction, level_of_roughness(roughness))
     }
 
+    /// Twin of the function of `shaders/environment.wgsl`.
+    fn long_reflection(&self, case: &Case) -> Vec3 {
+        const LEANS: u32 = 16;
+        let (normal, to_eye, look) = (case.normal.truncate(), case.to_eye.truncate(), &case.look);
+        let squares = stretched_alphas(look) * stretched_alphas(look);
+        let more = (squares.x - squares.y).max(0.0);
+        let roughness = (squares.y + more / (LEANS * LEANS) as f32).sqrt().sqrt();
+        let mut sum = Vec4::ZERO;
+        for index in 0..LEANS {
+            let sine = (2 * index + 1) as f32 / LEANS as f32 - 1.0;
+            let slope = more.sqrt() * sine / (1.0 - sine * sine).sqrt();
+            let direction = dominant_direction((normal - slope * look.direction).normalize(), to_eye, roughness);
+            sum += normal.dot(direction).max(1e-4) * self.radiance(direction, roughness).extend(1.0);
+        }
+        sum.truncate() / sum.w
+    }
+
     fn ambient_light(&self, case: &Case) -> AmbientLight {
         let (normal, to_eye, look) = (case.normal.truncate(), case.to_eye.truncate(), &case.look);
         let reflected = |normal, roughness| self.radiance(dominant_direction(normal, to_eye, roughness), roughness);
+        let is_long = look.anisotropy > 0.0;
         let facing = normal.dot(to_eye).clamp(0.0, 1.0);
         let coat_facing = look.coat_normal.dot(to_eye).clamp(0.0, 1.0);
         AmbientLight {
             diffuse: irradiance_of(&self.irradiance, self.turn * normal),
-            reflected: reflected(normal, look.roughness),
+            reflected: if is_long { self.long_reflection(case) } else { reflected(normal, look.roughness) },
             coat_reflected: reflected(look.coat_normal, look.coat_roughness),
             sheen: irradiance_of(&self.irradiance, self.turn * sheen_direction(normal, to_eye)),
-            dfg: environment_dfg(facing, look.roughness).into(),
+            dfg: environment_dfg(facing, mean_roughness(look)).into(),
             coat_dfg: environment_dfg(coat_facing, look.coat_roughness).into(),
             facing,
             coat_facing,

@@ -7,16 +7,16 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::{Material, Mesh, Shape, Texture};
 use geometry::progress::Progress;
 use geometry::tessellate::{
-    LimitSurface, Normals, Partitioning, Surface, Tessellation, linear_normal, mean_curvature, patch_position,
-    patch_second_derivatives, patch_tangents,
+    CurvatureKind, LimitSurface, Normals, Partitioning, Surface, Tessellation, linear_normal, patch_curvature,
+    patch_position,
 };
 use geometry::view::project;
 use glam::{Vec2, Vec3, vec2, vec3};
 use image::RgbaImage;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::matcap::{MATCAP_REACH, picture};
-use inspect::render::{Camera, DENSITY_SCALE, Scene, Target, curvature_scale};
-use inspect::settings::{Colors, Matcap, NormalsAt, Overlays, Settings};
+use inspect::render::{Camera, DENSITY_SCALE, Scene, Target, Usual};
+use inspect::settings::{Colors, Matcap, NormalsAt, Overlays, Settings, SurfaceUnit};
 
 use crate::stability::{scene_of, seen};
 use crate::{engine, scene};
@@ -200,24 +200,56 @@ fn texel_density_is_that_of_the_base_colours_image() {
     }
 }
 
+#[test]
+fn texel_density_is_counted_along_object_units_in_any_view() {
+    for (size, units) in [([400, 400], 1.0), ([800, 200], 1.0), ([300, 300], 5.0), ([3000, 3000], 0.25)] {
+        let mut mesh = square(Vec3::Z, Vec2::splat(units));
+        let texture = Texture { size, rgba: vec![90; 4 * (size[0] * size[1]) as usize] };
+        mesh.materials[0].texture = Some(Arc::new(texture));
+        // A square has 2 object units.
+        let expected = (size[0] as f32 * size[1] as f32).sqrt() * units / 2.0;
+        let own = Settings { texel_density_per: SurfaceUnit::Units, ..flat(Colors::TexelDensity) };
+        let scale = scene_of(mesh.clone(), 0.0).usual().scale(&own, None);
+        assert!((scale.least..scale.most).contains(&expected), "{expected} in {scale:?}");
+        let color = scale.color(scale.place(expected));
+        for settings in also(own) {
+            for side in [SIDE, 150] {
+                let picture = square_picture(&mesh, &settings, 0.0, side);
+                let [r, g, b, _] = picture.get_pixel(side / 2 + 7, side / 2 + 3).0;
+                let is_near = [r, g, b].iter().zip(color).all(|(found, expected)| found.abs_diff(expected) <= 2);
+                assert!(is_near, "{size:?} {units}: {:?}, not {color:?}, with {settings:?}", [r, g, b]);
+            }
+        }
+    }
+}
+
 /// What curvature looks like in a picture: a colour of the scale, in very little light.
-fn curvature_color(curvature: f32, settings: &Settings, radius: f32, facing: f32) -> [u8; 3] {
-    let scale = curvature_scale(settings.curvature_scale, radius);
+fn curvature_color(curvature: f32, settings: &Settings, usual: &Usual, facing: f32) -> [u8; 3] {
+    let scale = usual.scale(settings, None);
     linear(scale.color(scale.place(curvature))).map(|channel| srgb(channel * (0.7 + 0.3 * facing)))
 }
 
 #[test]
 fn curvature_at_pixels_is_that_of_the_mathematics() {
     const PLACES: [[u32; 2]; 4] = [[21845, 21845], [40000, 13000], [9000, 20000], [3000, 58000]];
-    for (shape, surface) in [
-        (Shape::Icosahedron, Surface::PnAen),
-        (Shape::Icosahedron, Surface::PhongAen),
-        (Shape::Icosahedron, Surface::NagataAen),
-        (Shape::Icosahedron, Surface::Flat),
-        (Shape::Saddle, Surface::PnAen),
+    // Across borders of patches, where no place is near, the other kinds jump farther than the mean does.
+    const INSIDE: [[u32; 2]; 4] = [[21845, 21845], [30000, 18000], [16000, 22000], [20000, 30000]];
+    for (kind, shape, surface) in [
+        (CurvatureKind::Mean, Shape::Icosahedron, Surface::PnAen),
+        (CurvatureKind::Mean, Shape::Icosahedron, Surface::PhongAen),
+        (CurvatureKind::Mean, Shape::Icosahedron, Surface::NagataAen),
+        (CurvatureKind::Mean, Shape::Icosahedron, Surface::Flat),
+        (CurvatureKind::Mean, Shape::Saddle, Surface::PnAen),
+        (CurvatureKind::Gaussian, Shape::Icosahedron, Surface::PnAen),
+        (CurvatureKind::Gaussian, Shape::Saddle, Surface::PnAen),
+        (CurvatureKind::Largest, Shape::Icosahedron, Surface::PnAen),
+        (CurvatureKind::Largest, Shape::Saddle, Surface::PnAen),
+        (CurvatureKind::Least, Shape::Icosahedron, Surface::PnAen),
+        (CurvatureKind::Least, Shape::Saddle, Surface::PnAen),
     ] {
         let (_, mut scene) = scene(shape);
-        let settings = flat(Colors::Curvature);
+        let places = if kind == CurvatureKind::Mean { PLACES } else { INSIDE };
+        let settings = Settings { curvature_kind: kind, curvature_scale: Some(4.0), ..flat(Colors::Curvature) };
         let settings = settings.with(Tessellation { surface, factor: 32.0, ..settings.tessellation });
         let target = Target::new(&engine().gpu, [SIDE; 2]).expect("a small picture");
         let camera = Camera { orthographic: true, ..Camera::framing(&scene.bounds, target.viewport()) };
@@ -228,7 +260,7 @@ fn curvature_at_pixels_is_that_of_the_mathematics() {
         for settings in [settings, Settings { overlays: Overlays { folds: true, ..settings.overlays }, ..settings }] {
             let picture = seen(&mut scene, &target, &settings, &camera);
             let (mut tried, mut range) = (0, [f32::INFINITY, f32::NEG_INFINITY]);
-            for (patch, [u, v]) in (0..topology.patches.len() as u32).flat_map(|patch| PLACES.map(|at| (patch, at))) {
+            for (patch, [u, v]) in (0..topology.patches.len() as u32).flat_map(|patch| places.map(|at| (patch, at))) {
                 let net = limit.net(patch);
                 let normals =
                     topology.corners(&topology.patches[patch as usize]).map(|c| mesh.corners[c as usize].normal);
@@ -236,19 +268,18 @@ fn curvature_at_pixels_is_that_of_the_mathematics() {
                 if facing < 0.5 {
                     continue;
                 }
-                let second = patch_second_derivatives(surface, &net, u, v);
-                let curvature = mean_curvature(patch_tangents(surface, &net, u, v), second);
+                let curvature = patch_curvature(kind, surface, &net, u, v);
                 let at = project(clip, target.viewport(), patch_position(surface, &net, u, v)).expect("in view");
                 let found = picture.get_pixel(at.x as u32, at.y as u32).0;
-                let expected = curvature_color(curvature, &settings, scene.bounds.radius(), facing);
+                let expected = curvature_color(curvature, &settings, &scene.usual(), facing);
                 let is_near = (0..3).all(|k| found[k].abs_diff(expected[k]) <= 5);
-                assert!(is_near, "{shape:?} {surface:?} {patch} {u} {v}: {found:?}, not {expected:?}");
+                assert!(is_near, "{kind:?} {shape:?} {surface:?} {patch} {u} {v}: {found:?}, not {expected:?}");
                 range = [range[0].min(curvature), range[1].max(curvature)];
                 tried += 1;
             }
             assert!(
                 tried > 9 && (surface == Surface::Flat || range[1] - range[0] > 0.03),
-                "{shape:?}: {tried} {range:?}"
+                "{kind:?} {shape:?}: {tried} {range:?}"
             );
         }
     }
@@ -315,6 +346,23 @@ fn half_a_turn_of_the_normal_has_24_stripes() {
     }
 }
 
+#[test]
+fn zebra_has_as_many_stripes_as_are_asked_for_in_their_direction() {
+    for (stripes, direction) in [(10_i16, 0.0_f32), (10, 90.0), (6, 120.0), (40, 36.87)] {
+        let (sine, cosine) = direction.to_radians().sin_cos();
+        for stripe in 1 - stripes / 2..stripes / 2 - 1 {
+            let angle = (f32::from(stripe) + 0.5) / f32::from(stripes) * PI;
+            // Across the stripes, in the view.
+            let normal = angle.cos() * Vec3::Z + angle.sin() * vec3(-sine, cosine, 0.0);
+            let of_zebra =
+                Settings { zebra_stripes: f32::from(stripes), zebra_direction: direction, ..flat(Colors::Zebra) };
+            let [color, _, _] = middle(&drawn(&square(normal, Vec2::ONE), &of_zebra, 0.0));
+            let expected = if stripe % 2 == 0 { 200..=255 } else { 0..=50 };
+            assert!(expected.contains(&color), "{stripe} of {stripes} at {direction}: {color}");
+        }
+    }
+}
+
 /// The mean difference of the stripes on both sides of the borders of patches that face the eye, as a part of that of black and
 /// white.
 fn jump(scene: &mut Scene, settings: &Settings) -> f64 {
@@ -375,9 +423,9 @@ fn a_unit_of_texture_coordinates_has_eight_squares_and_a_line_around_it() {
             let [r, g, b, _] = picture.get_pixel(x, y).0;
             [r, g, b]
         };
-        // Through the middle of squares, without the lines at both ends.
+        // Beside what is written in squares, without the lines at both ends.
         let (inside, square) = (5..SIDE - 5, SIDE / 8);
-        for place in [square / 2, 4 * square + square / 2] {
+        for place in [square - 2, 5 * square - 2] {
             assert_eq!(changes(inside.clone().map(|x| color(x, place))), 7, "{settings:?}");
             assert_eq!(changes(inside.clone().map(|y| color(place, y))), 7, "{settings:?}");
         }
@@ -392,6 +440,46 @@ fn a_unit_of_texture_coordinates_has_eight_squares_and_a_line_around_it() {
             "red grows with u: {first:?} {u:?}"
         );
         assert!(v[0] + 30 < v[1] && v[2] + 30 < v[1], "green grows with v: {first:?} {v:?}");
+    }
+}
+
+#[test]
+fn a_unit_of_texture_coordinates_has_as_many_squares_as_are_asked_for() {
+    for (count, width) in [(4.0, 100), (10.0, 40)] {
+        let settings = Settings { checker_squares: count, ..flat(Colors::UvChecker) };
+        let picture = drawn(&square(Vec3::Z, Vec2::ONE), &settings, 0.0);
+        let color = |x: u32| {
+            let [r, g, b, _] = picture.get_pixel(x, width - 2).0;
+            [r, g, b]
+        };
+        assert_eq!(changes((5..SIDE - 5).map(color)), count as usize - 1, "{count}");
+    }
+}
+
+#[test]
+fn squares_have_an_f_that_shows_mirrored_coordinates_and_their_numbers() {
+    // One light square, 22 cells wide, and the dark one beside it. The F has cells of twice the size; the last digits of column and
+    // row are at the right.
+    let settings = Settings { checker_squares: 1.0, ..flat(Colors::UvChecker) };
+    let [own, mirrored] = [1.0, -1.0].map(|u| drawn(&square(Vec3::Z, vec2(u, 1.0)), &settings, 0.0));
+    let f = ["###", "#..", "##.", "#..", "#.."];
+    let one = [".#.", "##.", ".#.", ".#.", "###"];
+    // What is written, where it begins, how large its cells are, and what is darker than this is ink: red and green grow across.
+    for (glyph, [left, top], size, ink) in
+        [(f, [1.0, 5.0], 2.0, 0.38), (one, [17.0, 5.0], 1.0, 0.33), (one, [17.0, 11.0], 1.0, 0.33)]
+    {
+        for (y, row) in (0_u8..).zip(glyph) {
+            for (x, cell) in (0_u8..).zip(row.chars()) {
+                let px = |from: f32, step: u8| ((from + size * (f32::from(step) + 0.5)) / 22.0 * SIDE as f32) as u32;
+                let at = [px(left, x), px(top, y)];
+                let brightness = |picture: &RgbaImage, across: u32| {
+                    let [r, g, b, _] = picture.get_pixel(across, at[1]).0;
+                    linear([r, g, b]).iter().sum::<f32>() / 3.0
+                };
+                let [light, dark] = [brightness(&own, at[0]), brightness(&mirrored, SIDE - 1 - at[0])];
+                assert_eq!([light < ink, dark > 0.26], [cell == '#'; 2], "{glyph:?} {x} {y}: {light} {dark}");
+            }
+        }
     }
 }
 

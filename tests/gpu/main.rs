@@ -28,6 +28,7 @@ mod materials;
 mod moving_lights;
 mod optimum;
 mod orientation;
+mod part_styles;
 mod passes;
 mod picking;
 mod pictures;

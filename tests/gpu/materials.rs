@@ -391,6 +391,62 @@ fn the_normals_of_a_coat_are_its_own() {
     }
 }
 
+/// A square with highlights that are longer along a direction of these tangents.
+fn brushed(look: Look, tangent: Vec3, bitangent_sign: f32) -> Mesh {
+    let detail = CornerDetail { tangent, bitangent_sign, ..CornerDetail::default() };
+    with_details(square(vec3(0.4, 0.0, 0.9).normalize(), material([0.9, 0.7, 0.4], look)), |_| detail)
+}
+
+#[test]
+fn long_highlights_go_along_the_tangent_that_is_turned() {
+    let long = |angle: f32, anisotropy| Look {
+        metallic: 1.0,
+        anisotropy,
+        anisotropy_rotation: angle.to_radians(),
+        ..glossy()
+    };
+    let along_x = brushed(long(0.0, 0.8), Vec3::X, 1.0);
+    assert_same(&brushed(long(90.0, 0.8), Vec3::NEG_Y, 1.0), &along_x, "a quarter of a turn from below");
+    assert_same(&brushed(long(180.0, 0.8), Vec3::X, 1.0), &along_x, "back");
+    let turned = brushed(long(35.0, 0.8), Vec3::X, 1.0);
+    assert_same(&brushed(long(-35.0, 0.8), Vec3::X, -1.0), &turned, "mirrored");
+    // Red and green are the cosine and the sine of 35 degrees, and blue is 0.8.
+    let texel = [35.0_f32.to_radians().cos(), 35.0_f32.to_radians().sin()].map(|part| (127.5 + 127.5 * part) as u8);
+    let texel = map(image([1, 1], &[[texel[0], texel[1], 204, 255]]), MapUv::Own);
+    assert_same(&brushed(look_with(Slot::Anisotropy, texel.clone(), long(0.0, 1.0)), Vec3::X, 1.0), &turned, "a map");
+    let both = look_with(Slot::Anisotropy, texel, long(-35.0, 1.0));
+    assert_same(&brushed(both, Vec3::X, 1.0), &along_x, "a map that is turned");
+    let round = brushed(long(0.0, 0.0), Vec3::X, 1.0);
+    assert_same(&brushed(long(20.0, 0.8), Vec3::ZERO, 1.0), &round, "no tangent");
+    assert_same(&square(vec3(0.4, 0.0, 0.9).normalize(), along_x.materials[0].clone()), &round, "no details");
+    let color = |mesh: &Mesh| at(&picture(mesh, &studio(), 0.0), PLACES[0]);
+    let colors = [&round, &along_x, &brushed(long(90.0, 0.8), Vec3::X, 1.0)].map(color);
+    assert!(colors[0] != colors[1] && colors[1] != colors[2], "{colors:?}");
+}
+
+#[test]
+fn white_metal_with_long_highlights_cannot_be_told_from_an_even_light() {
+    let gpu = &engine().gpu;
+    let [light, ..] = linear([250; 3]);
+    let mut engine: Engine = engine().clone();
+    let environment = Environment::uniform(gpu, [light; 3]).expect("a device");
+    engine.renderer = Arc::new(Renderer::lit_by(gpu, environment));
+    let long = |roughness| {
+        let look = Look { metallic: 1.0, roughness, anisotropy: 0.8, ..Look::default() };
+        material([1.0; 3], look)
+    };
+    let mesh = with_tangents(balls([0.0, 0.25, 0.5, 1.0].map(long).into(), 4));
+    let mut scene = scene_of(mesh, 0.0);
+    let target = Target::new(gpu, [320, 100]).expect("a small picture");
+    let camera = Camera::framing(&scene.bounds, target.viewport());
+    let settings = Settings { background: Some([srgb(light); 3]), ..of_picture(ToneCurve::None) };
+    engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
+    let picture = target.read(gpu).expect("a readback");
+    let farthest = picture.pixels().flat_map(|pixel| linear([pixel.0[0], pixel.0[1], pixel.0[2]]));
+    let farthest = farthest.map(|value| (value / light - 1.0).abs()).fold(0.0, f32::max);
+    assert!(farthest < 0.01, "{farthest}");
+}
+
 /// In a normal map, directions may point below the surface. Their mirror images above it are seen, not what would be reflected where
 /// the surface is seen from the very side, which is all of the light.
 #[test]
@@ -495,7 +551,13 @@ fn materials_look_as_they_did() {
         material([0.15, 0.01, 0.02], look)
     };
     let sheens = balls([0.1, 0.3, 0.5, 1.0].map(velvet).into(), 4);
-    let pictures = [("spheres", spheres), ("coats", coats), ("sheen", sheens), ("maps", with_tangents(torus))];
+    let brushed = |anisotropy| {
+        let look = Look { metallic: 1.0, roughness: 0.3, anisotropy, ..Look::default() };
+        material([0.9, 0.75, 0.5], look)
+    };
+    let brushed = with_tangents(balls([0.0, 0.4, 0.7, 1.0].map(brushed).into(), 4));
+    let maps = with_tangents(torus);
+    let pictures = [("spheres", spheres), ("coats", coats), ("sheen", sheens), ("maps", maps), ("anisotropy", brushed)];
     let pictures = pictures.into_iter().map(|(name, mesh)| {
         let mut scene = scene_of(mesh, 0.0);
         let target = Target::new(&engine().gpu, [320, 200]).expect("a small picture");

@@ -96,7 +96,7 @@ const NAGATA: &str = "Nagata";
 const NAGATA_AEN: &str = "Nagata AEN";
 
 /// What fails on each case, and must: a case on which it holds has lost its bite.
-const FAILURES: [(&str, &[(&str, Quantity)]); 34] = {
+const FAILURES: [(&str, &[(&str, Quantity)]); 35] = {
     use Quantity::{Factors, Folds, Leaks, Missing, OpenEdges, Points, Pop, Segment};
     // Where nothing but rounding goes wrong. Some of these meshes are there to hold: what is special about them (signs
     // of zero, borders, denormals, normals that oppose each other) must do no harm, and is tested beside the meshes.
@@ -151,6 +151,7 @@ const FAILURES: [(&str, &[(&str, Quantity)]); 34] = {
         ("behind-eye", &[(PUBLISHED, Segment), (PUBLISHED, Points)]),
         ("soup", SPLIT),
         ("shared-apex", SPLIT_CLOSED),
+        ("parts", &[(PUBLISHED, Points), (PUBLISHED, Factors), (PUBLISHED, Leaks)]),
     ]
 };
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use geometry::mesh::{Curves, Shape};
+use geometry::mesh::Shape;
 use geometry::tessellate::{Edges, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation};
 use glam::Vec3;
 use gpu::layout::CurveNet;
@@ -64,7 +64,7 @@ fn nets(loaded: &Loaded, scene: &Scene) -> Vec<[Vec3; 2]> {
     let bytes = u64::from(buffers.curve_count) * size_of::<CurveNet>() as u64;
     let bytes = read_buffer(&engine().gpu, &buffers.curve_nets, 0, bytes).expect("a readback");
     let nets: Vec<CurveNet> = bytemuck::pod_collect_to_vec(&bytes);
-    let curves = Curves::build(&loaded.mesh, &loaded.topology, buffers.sharing);
+    let curves = buffers.grouping.curves(&loaded.mesh, &loaded.topology);
     curves.side_curves.iter().map(|&curve| [nets[curve as usize].ab, nets[curve as usize].ba].map(Vec3::from)).collect()
 }
 

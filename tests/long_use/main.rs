@@ -11,13 +11,19 @@ mod driver;
 mod figures;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{AccessKitNode, By, NodeT, Queryable};
 use fastrand::Rng;
+use geometry::mesh::Topology;
 use geometry::mesh::shapes::Shape;
+use geometry::tessellate::Tessellation;
+use glam::Vec3;
 use image::RgbaImage;
+use inspect::render::LineSegment;
+use inspect::settings::{Choice, Colors, Lighting, NormalsAt, Overlays, Settings};
 use load::Limits;
 use load::source::Source;
 use pnaen::app::App;
@@ -159,10 +165,43 @@ fn change(harness: &mut Harness<App>, random: &mut Rng) {
     settle(harness);
 }
 
+/// Settings for all pipelines that pictures of one mesh can need.
+fn settings_for_pipelines() -> impl Iterator<Item = Settings> {
+    let of_colors = |&colors| {
+        [[false, false], [true, false], [false, true]].map(|[wireframe, patches]| Overlays {
+            colors,
+            wireframe,
+            patches,
+            normals: true,
+            grid: true,
+            ..Overlays::default()
+        })
+    };
+    let overlays = Colors::ALL.iter().flat_map(of_colors);
+    let lit = overlays.flat_map(|overlays| Lighting::ALL.map(|lighting| (overlays, lighting)));
+    let culled = lit.flat_map(|lit| [false, true].map(|cull_back_faces| (lit, cull_back_faces)));
+    culled.flat_map(|((overlays, lighting), cull_back_faces)| {
+        let tessellation = Tessellation { cull_back_faces, ..Settings::usual().tessellation };
+        NormalsAt::ALL.map(|normals_at| Settings {
+            tessellation,
+            overlays,
+            lighting,
+            normals_at,
+            environment_background: true,
+            ..Settings::usual()
+        })
+    })
+}
+
 /// Makes all pipelines that the settings can need, so that their memory doesn't count as growth. They are made when they are
 /// first needed, and are kept.
 fn need_every_pipeline(harness: &mut Harness<App>) {
-    harness.state().engine().renderer.prepare_all().expect("pipelines");
+    let engine = harness.state().engine();
+    let mesh = Arc::new(Shape::CubeSplit.build());
+    let topology = Arc::new(Topology::new(&mesh));
+    let mut scene = engine.scene_of(mesh, topology, 1 << 20).expect("a small mesh");
+    scene.set_lines(&engine.gpu, &[LineSegment::new(Vec3::ZERO, Vec3::X, [0; 3])]);
+    settings_for_pipelines().for_each(|settings| engine.renderer.prepare(&scene, &settings).expect("pipelines"));
     for normals in ["Quadratic normals", "Surface normals", "Linear normals"] {
         harness.get_by_role_and_label(Role::ComboBox, "Shading").click();
         settle(harness);

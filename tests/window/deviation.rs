@@ -7,7 +7,7 @@ use geometry::mesh::Shape;
 use geometry::tessellate::{Partitioning, Surface};
 use glam::Vec3;
 use inspect::render::layout::CRACK_COLOR;
-use inspect::settings::{Colors, DeviationUnit, Settings, SplitSide};
+use inspect::settings::{Colors, Settings, SplitSide, SurfaceUnit};
 use load::Source;
 use pnaen::app::App;
 
@@ -40,7 +40,7 @@ fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {
     assert!(after.axes()[2].distance(after.target.normalize()) < 1e-3);
     assert_eq!(harness.state().deviation(SplitSide::Right), Some(largest), "the tessellation stays the same");
     choose(&mut harness, "Distances in", "Px");
-    assert_eq!(harness.state().settings().deviation_in, DeviationUnit::Px);
+    assert_eq!(harness.state().settings().deviation_in, SurfaceUnit::Px);
     assert!(harness.query_by_label("Legend: Deviation, px").is_some());
     press(&mut harness, egui::Key::V);
     assert_eq!(harness.state().settings().overlays.colors, Colors::Material);

@@ -422,6 +422,21 @@ fn colours_have_a_number_under_the_pointer_while_it_rests() {
     settle(&mut harness);
     let px = last_label(&harness, |text| text.ends_with(" px") && text.split(' ').count() == 2);
     assert!(px.is_some_and(|text| text.trim_end_matches(" px").parse::<f64>().is_ok_and(|px| px > 1.0 && px < 60.0)));
+    choose(&mut harness, "Colours", "Curvature");
+    harness.hover_at(place);
+    settle(&mut harness);
+    let radius = harness.state().loaded().expect("a mesh").mesh.bounds().radius();
+    let curvature = |harness: &Harness<App>, end: &str| -> f32 {
+        let found = last_label(harness, |text| text.ends_with(end));
+        found.and_then(|text| text.trim_end_matches(end).parse().ok()).expect("a curvature")
+    };
+    let mean = curvature(&harness, " / unit");
+    assert!((0.7..1.3).contains(&(mean * radius)), "{mean}, as the sphere has");
+    choose(&mut harness, "Kind of curvature", "Gaussian");
+    harness.hover_at(place);
+    settle(&mut harness);
+    let gaussian = curvature(&harness, " / unit²");
+    assert!((0.5..1.03).contains(&(gaussian / (mean * mean))), "{gaussian}, at most the square of {mean}");
     choose(&mut harness, "Colours", "Deviation");
     choose(&mut harness, "Surface", "Flat");
     harness.hover_at(place);
@@ -437,6 +452,27 @@ fn colours_have_a_number_under_the_pointer_while_it_rests() {
     harness.hover_at(egui::pos2(2.0, 2.0));
     harness.run_steps(4);
     assert!(!harness.state().is_busy() && harness.state().pictures() == start);
+}
+
+#[test]
+fn texel_density_has_a_number_under_the_pointer_while_it_rests() {
+    let mut harness = crate::uniform(Some(Source::Shape(Shape::Torus)));
+    choose(&mut harness, "Colours", "Texel density");
+    let middle = harness.get_by_role_and_label(Role::Image, "Viewport").rect().center();
+    let found = |harness: &mut Harness<App>, end: &str| -> Option<f64> {
+        // The middle may be the hole.
+        let label = (0..10_u8).find_map(|step| {
+            harness.hover_at(middle + egui::vec2(20.0 * f32::from(step), 0.0));
+            settle(harness);
+            last_label(harness, |text| text.ends_with(end))
+        });
+        label?.trim_end_matches(end).parse().ok()
+    };
+    let in_px = found(&mut harness, " texels / px").expect("a density");
+    assert!(in_px > 0.01 && in_px < 100.0, "{in_px}");
+    choose(&mut harness, "Texels per", "Object units");
+    let along_unit = found(&mut harness, " texels / unit").expect("a density");
+    assert!(along_unit > 10.0 && along_unit < 1e5, "{along_unit}");
 }
 
 /// The last label that looks like this: tooltips come after all else.

@@ -17,6 +17,7 @@ mod lists;
 mod loading;
 mod lod_shader;
 mod lost;
+mod morphs;
 mod opening;
 mod parts;
 mod picking;

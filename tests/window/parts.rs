@@ -1,12 +1,13 @@
 //! The file's parts: filtered, hidden, shown alone and framed, from the list and from the picture.
 
+use egui::OutputCommand;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use load::ShownParts;
 use pnaen::app::App;
 
-use crate::{click, scroll_to, settle, uniform_of};
+use crate::{click, scroll_to, settle, switch, uniform_of};
 
 /// A file of eleven parts, each a square of its own.
 fn eleven_parts() -> String {
@@ -33,7 +34,8 @@ fn parts_are_filtered_shown_alone_and_framed() {
     assert_eq!(triangles(&harness), Some(2));
     assert_eq!(harness.state().camera().distance, before, "the camera stays");
     harness.get_by_label("1 of 11 shown");
-    assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts, ShownParts::alone("Part7"));
+    let only_part_7 = ShownParts { only: vec!["Part7".to_owned()], ..ShownParts::default() };
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts, only_part_7);
     harness.get_by_label("Part7").click_secondary();
     settle(&mut harness);
     click(&mut harness, "Frame this part");
@@ -51,7 +53,97 @@ fn a_right_click_in_the_picture_leads_to_its_part() {
     harness.get_by_label("Viewport").click_secondary();
     settle(&mut harness);
     click(&mut harness, "Hide this part");
-    let parts = harness.state().loaded().expect("a mesh").parts.clone();
+    let parts = harness.state().loaded().expect("a mesh").contents.parts.clone();
     let hidden: Vec<_> = parts.iter().filter(|part| part.is_hidden).map(|part| part.name.as_str()).collect();
     assert_eq!(hidden, ["Part5"]);
+}
+
+/// Groups of parts, each a square of its own.
+fn grouped(groups: &[(&str, &[&str])]) -> String {
+    let (mut text, mut x) = (String::new(), 0);
+    for (group, parts) in groups {
+        for part in *parts {
+            text += &format!(
+                "o {group}\ng {part}\nv {x} 0 0\nv {} 0 0\nv {} 1 0\nv {x} 1 0\nf -4 -3 -2 -1\n",
+                x + 1,
+                x + 1
+            );
+            x += 2;
+        }
+    }
+    text
+}
+
+fn triangles(harness: &Harness<App>) -> usize {
+    harness.state().loaded().expect("a mesh").mesh.triangles.len()
+}
+
+#[test]
+fn a_group_is_hidden_shown_alone_folded_and_framed_as_one() {
+    let (_folder, mut harness) = uniform_of("groups.obj", grouped(&[("Body", &["Arm", "Leg"]), ("Hat", &["Brim"])]));
+    let hidden = |harness: &Harness<App>| harness.state().loaded().expect("a mesh").preparation.parts.hidden.clone();
+    switch(&mut harness, "Body");
+    assert_eq!((triangles(&harness), hidden(&harness)), (2, vec!["Body".to_owned()]));
+    switch(&mut harness, "Arm");
+    assert_eq!((triangles(&harness), hidden(&harness)), (4, vec!["Body/Leg".to_owned()]), "the rest stays hidden");
+    switch(&mut harness, "Body");
+    switch(&mut harness, "Body");
+    assert_eq!((triangles(&harness), hidden(&harness).len()), (6, 0));
+    click(&mut harness, "Show only Body");
+    assert_eq!(triangles(&harness), 4);
+    click(&mut harness, "Show only Body");
+    assert_eq!(triangles(&harness), 6, "a second click shows all");
+    let before = harness.state().camera().distance;
+    harness.get_by_role_and_label(Role::CheckBox, "Hat").click_secondary();
+    settle(&mut harness);
+    click(&mut harness, "Frame this group");
+    assert!(harness.state().camera().distance < 0.8 * before, "it fills the view");
+    click(&mut harness, "Unfold Body");
+    assert!(harness.query_by_role_and_label(Role::CheckBox, "Arm").is_none(), "it isn't listed");
+    harness.get_by_role_and_label(Role::CheckBox, "Brim");
+    click(&mut harness, "Unfold Body");
+    harness.get_by_role_and_label(Role::CheckBox, "Arm").click_secondary();
+    settle(&mut harness);
+    harness.get_by_label("Copy its name").click();
+    harness.step();
+    let commands = &harness.output().platform_output.commands;
+    assert!(commands.iter().any(|command| matches!(command, OutputCommand::CopyText(text) if text == "Body/Arm")));
+}
+
+#[test]
+fn of_thousands_of_parts_only_those_in_sight_are_laid_out() {
+    let names: Vec<(String, Vec<String>)> = (0..200)
+        .map(|group| (format!("Group{group}"), (0..10).map(|part| format!("Part{group}x{part}")).collect()))
+        .collect();
+    let parts: Vec<Vec<&str>> = names.iter().map(|(_, parts)| parts.iter().map(String::as_str).collect()).collect();
+    let groups: Vec<(&str, &[&str])> =
+        names.iter().zip(&parts).map(|((group, _), parts)| (&**group, &parts[..])).collect();
+    let (_folder, mut harness) = uniform_of("many.obj", grouped(&groups));
+    scroll_to(&mut harness, "Filter parts by name");
+    assert!(harness.query_all_by_label_contains("Show only ").count() <= 8, "the list shows six rows at once");
+    click(&mut harness, "Filter parts by name");
+    harness.get_by_label("Filter parts by name").type_text("group77/");
+    settle(&mut harness);
+    harness.get_by_label("Show only Group77/Part77x0");
+    assert!(harness.query_by_label("Show only Group78").is_none(), "it isn't listed");
+    click(&mut harness, "Show only Group77/Part77x0");
+    assert_eq!(triangles(&harness), 2);
+}
+
+#[test]
+fn materials_are_listed_after_the_parts_and_found_by_their_prefix() {
+    let red_and_blue =
+        eleven_parts().replace("o Part4\n", "o Part4\nusemtl red\n").replace("o Part9\n", "o Part9\nusemtl blue\n");
+    let (_folder, mut harness) = uniform_of("materials.obj", red_and_blue);
+    scroll_to(&mut harness, "Filter parts by name");
+    harness.get_by_label("14 of 14 shown");
+    click(&mut harness, "Filter parts by name");
+    harness.get_by_label("Filter parts by name").type_text("material:");
+    settle(&mut harness);
+    assert!(harness.query_by_label("Part4").is_none(), "it isn't listed");
+    switch(&mut harness, "material:red");
+    assert_eq!(triangles(&harness), 12, "those before Part4 and from Part9 on");
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts.hidden, ["material:red"]);
+    click(&mut harness, "Show only material:blue");
+    assert_eq!(triangles(&harness), 4);
 }

@@ -6,7 +6,7 @@ use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::Shape;
-use geometry::tessellate::Convention;
+use geometry::tessellate::{Convention, CurvatureKind};
 use inspect::settings::{Colors, Matcap};
 use load::Source;
 use pnaen::app::App;
@@ -129,10 +129,42 @@ fn the_scale_of_curvature_has_a_row_while_it_is_shown() {
     assert!(harness.query_by_label("Curvature up to").is_none());
     choose(&mut harness, "Colours", "Curvature");
     let picture = harness.state().read_picture().expect("a device");
+    assert!(harness.query_by_role_and_label(Role::Slider, "Curvature up to").is_none(), "it suits the mesh");
+    choose(&mut harness, "Curvature up to", "A number");
     harness.get_by_role_and_label(Role::Slider, "Curvature up to").set_value_accesskit(20.0);
     settle(&mut harness);
-    assert_eq!(harness.state().settings().curvature_scale, 20.0);
+    assert_eq!(harness.state().settings().curvature_scale, Some(20.0));
     assert!(harness.state().read_picture().expect("a device") != picture, "the colours are paler");
+    choose(&mut harness, "Curvature up to", "As suits the mesh");
+    assert_eq!(harness.state().settings().curvature_scale, None);
+    assert!(harness.state().read_picture().expect("a device") == picture);
+    choose(&mut harness, "Kind of curvature", "Gaussian");
+    assert_eq!(harness.state().settings().curvature_kind, CurvatureKind::Gaussian);
+    assert!(harness.state().read_picture().expect("a device") != picture, "another curvature");
+    harness.get_by_label("Legend: Gaussian curvature, 1/unit²");
+}
+
+#[test]
+fn colours_have_rows_for_their_options_while_they_are_shown() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    let rows = [
+        ("Zebra", Role::Slider, "Stripes"),
+        ("Zebra", Role::Slider, "Stripes run"),
+        ("UV checker", Role::Slider, "Squares across"),
+        ("Texel density", Role::ComboBox, "Texels per"),
+    ];
+    for colors in ["Zebra", "UV checker", "Texel density"] {
+        choose(&mut harness, "Colours", colors);
+        for (of, role, name) in rows {
+            assert_eq!(harness.query_by_role_and_label(role, name).is_some(), of == colors, "{name} under {colors}");
+        }
+    }
+    choose(&mut harness, "Texels per", "Object units");
+    harness.get_by_label("Legend: Texels per unit");
+    choose(&mut harness, "Colours", "UV checker");
+    harness.get_by_role_and_label(Role::Slider, "Squares across").set_value_accesskit(32.0);
+    settle(&mut harness);
+    harness.get_by_label("Legend: UV: a square is 1/32 of a unit");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::app::App;
+use crate::app::jobs::companion_files::absolute_path;
 use crate::app::jobs::picture_job::PictureChoices;
 use inspect::render::Camera;
 use inspect::shot::{CopiedCommand, Turn};
@@ -46,9 +47,8 @@ impl App {
         let moment = self.moment().zip(document.loaded.mesh.rig.as_deref());
         let animation = moment.map(|(moment, rig)| (rig.clip_name(moment.clip), moment.time));
         let source = absolute_source(&document.loaded.source);
-        let reference_shape =
-            self.reference_shape.as_ref().map(|reference_shape| absolute_source(&reference_shape.source));
-        let left_mesh = self.left_mesh.as_ref().and_then(|left| left.source.as_ref()).map(absolute_source);
+        let reference_shape = self.reference_shape().map(absolute_source);
+        let left_mesh = self.left_mesh.as_ref().and_then(|left| left.from.as_ref()).map(absolute_source);
         let mut preparation = document.loaded.preparation.clone();
         if preparation.heights.is_none() && self.has_heights() {
             preparation.heights = Some(HeightSource::Model);
@@ -100,7 +100,7 @@ impl App {
 /// A source with an absolute path, which is valid in every folder.
 fn absolute_source(source: &Source) -> Source {
     match source {
-        Source::File(path) => Source::File(std::path::absolute(path).unwrap_or_else(|_| path.clone())),
+        Source::File(path) => Source::File(absolute_path(path.clone())),
         shape => shape.clone(),
     }
 }

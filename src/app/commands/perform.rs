@@ -141,17 +141,12 @@ impl App {
 
     /// Loads the mesh again with another preparation, unless it has that preparation already.
     fn prepare_as(&mut self, context: &Context, preparing: Preparing) {
-        let before = self.preparation();
-        let mut after = before.clone();
-        match preparing {
-            Preparing::NoHeights => after.heights = None,
-            Preparing::HeightsFromMaterials => after.heights = Some(HeightSource::Materials),
-            Preparing::Weld(tolerance) => after.weld = tolerance,
-            Preparing::CreaseBand(width) => after.crease_band = width,
-        }
-        if (after.weld, after.crease_band, &after.heights) != (before.weld, before.crease_band, &before.heights) {
-            self.prepare(context, |preparation| *preparation = after);
-        }
+        self.prepare(context, |preparation| match preparing {
+            Preparing::NoHeights => preparation.heights = None,
+            Preparing::HeightsFromMaterials => preparation.heights = Some(HeightSource::Materials),
+            Preparing::Weld(tolerance) => preparation.weld = tolerance,
+            Preparing::CreaseBand(width) => preparation.crease_band = width,
+        });
     }
 
     /// Goes back to the settings of a first start. Whether displacement is on depends on the mesh, and so do axis and unit: they stay.

@@ -2,22 +2,20 @@
 
 mod background;
 mod desktop_dialog;
-mod notice;
 pub(super) mod picture_window;
 pub(super) mod purpose;
 mod turntable_window;
 pub(super) mod typed_path;
 mod typed_text;
 mod under_way;
-mod warnings;
 pub(super) mod windows;
 mod writing;
 
 use crate::commands::Purpose;
-use notice::Notice;
 use picture_window::PictureWindow;
 use turntable_window::TurntableWindow;
 use typed_path::{PendingDialog, TypedPath};
+use windows::Notice;
 
 /// What can be forgotten after a question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,7 @@ use egui::{DragValue, Grid, Ui};
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::commands::{Purpose, Written};
-use inspect::render::legend_of;
+use inspect::render::{Usual, legend_of};
 
 /// The sides of pictures, in px: those that the option `--size` takes.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=16384;
@@ -75,8 +75,8 @@ impl App {
                      a frozen LOD camera is always drawn.";
         ui.checkbox(&mut choices.overlays, "With overlays").on_hover_text(hover);
         let is_split = self.settings.split.is_some();
-        let is_possible =
-            is_split || choices.overlays && legend_of(&self.settings, 1.0, &self.legend_distances()).is_some();
+        let is_possible = is_split
+            || choices.overlays && legend_of(&self.settings, &Usual::default(), &self.legend_distances()).is_some();
         let legend = ui.add_enabled(is_possible, egui::Checkbox::new(&mut choices.legend, "With legend"));
         let hover = "Draws the legend of the surface's colours into the lower right corner, and in a split picture the divider and what \
                      both halves show (--legend).";

@@ -1,17 +1,18 @@
 //! What takes long and can be stopped. One at a time is shown over the picture, and stopped there or by its key.
 
-use super::notice::Notice;
+use super::windows::Notice;
 use crate::app::App;
 use crate::app::jobs::job_list::{Job, Work};
+use crate::commands::CompanionFile;
 use geometry::progress::Stage;
 
 /// The jobs that are shown, and what stopping them does, in sentences.
 const SHOWN: [(Work, &str); 6] = [
     (Work::Mesh, "Stops loading. The mesh that is open stays."),
-    (Work::ReferenceShape, "Stops loading. The reference surface before it stays."),
-    (Work::LeftMesh, "Stops loading. The left half stays as it is."),
+    (Work::Companion(CompanionFile::ReferenceShape), "Stops loading. The reference surface before it stays."),
+    (Work::Companion(CompanionFile::LeftMesh), "Stops loading. The left half stays as it is."),
     (Work::Clip, "Stops measuring. The clip stays."),
-    (Work::Light, "Stops reading. The light before it stays."),
+    (Work::Companion(CompanionFile::Environment), "Stops reading. The light before it stays."),
     (Work::File, "Stops it. Nothing is written."),
 ];
 
@@ -63,7 +64,7 @@ impl App {
         self.jobs.stop(work);
         match work {
             Work::Mesh => self.keep_file_choices(),
-            Work::Light => self.cancel_environment(),
+            Work::Companion(CompanionFile::Environment) => self.cancel_environment(),
             _ => {}
         }
         self.dialogs.notice = Some(Notice::new(format!("Stopped: {}.", under_way.title)));

@@ -10,6 +10,7 @@ use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::file_watch::{Stamped, sources};
 use crate::app::jobs::job_list::{Load, Work};
 use crate::app::jobs::scenes::scene_of;
+use crate::commands::CompanionFile;
 use geometry::progress::{Progress, Stage};
 use gpu::GpuError;
 use inspect::engine::{self, Engine, Preparation};
@@ -18,7 +19,7 @@ use inspect::settings::Settings;
 use load::environment_file::is_environment;
 use load::files::FileError;
 use load::format::Format;
-use load::{Import, LoadError, ShownParts, Source};
+use load::{Contents, Import, LoadError, Source};
 
 /// Why a mesh could not be loaded.
 struct NotLoaded {
@@ -87,12 +88,15 @@ impl App {
         self.load(context, source, preparation, false);
     }
 
-    /// Loads the same mesh again after `change` has changed its preparation.
+    /// Loads the same mesh again if `change` changes its preparation.
     pub fn prepare(&mut self, context: &egui::Context, change: impl FnOnce(&mut Preparation)) {
         let Some(source) = self.source().cloned() else { return };
-        let mut preparation = self.preparation();
+        let before = self.preparation();
+        let mut preparation = before.clone();
         change(&mut preparation);
-        self.load(context, source, preparation, true);
+        if preparation != before {
+            self.load(context, source, preparation, true);
+        }
     }
 
     /// Begins a load that is under way anew, on another device.
@@ -117,33 +121,32 @@ impl App {
         again.or(shown).cloned().unwrap_or_else(|| self.plain(&Source::default()))
     }
 
+    /// What the file offers to choose from.
+    pub(in crate::app) fn contents(&self) -> Arc<Contents> {
+        self.document.as_ref().map(|document| document.loaded.contents.clone()).unwrap_or_default()
+    }
+
     /// A preparation that leaves the mesh as the file has it, but for normals, axis and unit that were chosen.
     fn plain(&self, source: &Source) -> Preparation {
         let import = self.persistence.import_of(source, &self.settings);
         Preparation { limits: self.jobs.limits, import, ..Preparation::default() }
     }
 
-    /// Loads the mesh again if its normals, its axis, its unit or its hidden parts were changed, also by undo. While something is dragged,
-    /// and while another mesh is being loaded, it waits.
+    /// Loads the mesh again if its normals, its axis or its unit were changed, also by undo. While something is dragged, and
+    /// while another mesh is being loaded, it waits.
     pub(in crate::app) fn follow_file_choices(&mut self, context: &egui::Context) {
         let opens_another = self.jobs.load().is_some_and(|load| !load.keep_view);
         if self.document.is_none() || opens_another || context.egui_is_using_pointer() {
             return;
         }
-        let (import, parts) = (self.settings.import, self.parts.clone());
-        let wanted = |preparation: &Preparation| preparation.import == import && preparation.parts == *parts;
-        if !wanted(&self.preparation()) {
-            self.prepare(context, |preparation| {
-                (preparation.import, preparation.parts) = (import, ShownParts::clone(&parts));
-            });
-        }
+        let import = self.settings.import;
+        self.prepare(context, |preparation| preparation.import = import);
     }
 
-    /// Goes back to the normals, the axis, the unit and the hidden parts that the mesh has, after a load that came to nothing.
+    /// Goes back to the normals, the axis and the unit that the mesh has, after a load that came to nothing.
     pub(in crate::app) fn keep_file_choices(&mut self) {
         if let Some(document) = &self.document {
             self.settings.import = document.loaded.preparation.import;
-            self.parts = Arc::new(document.loaded.preparation.parts.clone());
         }
     }
 
@@ -187,7 +190,8 @@ impl App {
         self.dialogs.typed = None;
         self.jobs.stop_of_document();
         self.viewport.preview.forget();
-        let place = |document: &Document| (document.loaded.scene, document.loaded.preparation.import.placement());
+        let place =
+            |document: &Document| (document.loaded.contents.scene, document.loaded.preparation.import.placement());
         let placed = place(&document);
         let mut before = self.document.replace(document);
         if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {
@@ -207,8 +211,8 @@ impl App {
             (self.viewport.frozen, self.viewport.ruler) = (None, None);
         }
         if !keep_view {
-            self.forget_reference_shape();
-            self.forget_left_mesh();
+            self.close_companion(CompanionFile::ReferenceShape);
+            self.close_companion(CompanionFile::LeftMesh);
         } else if is_turned {
             self.follow_reference_shape(context);
             self.follow_left_mesh(context);
@@ -220,6 +224,7 @@ impl App {
         }
         self.take_heights(before.is_some_and(|document| document.loaded.mesh.heights.is_some()));
         if !keep_view {
+            self.panels.dragged_morphs = None;
             self.take_placement();
             self.take_preparation();
         }

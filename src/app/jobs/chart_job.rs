@@ -3,11 +3,10 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Sender, TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use super::background_job::{caught, spawn};
+use super::background_job::caught;
 use super::job_list::{Jobs, Work};
 use crate::app::App;
 use geometry::mesh::Moment;
@@ -100,29 +99,20 @@ enum ChartMessage {
 impl ChartJob {
     /// Starts a run, whose results are added to those so far.
     pub(crate) fn start(&mut self, jobs: &mut Jobs, context: &egui::Context, job: Job) {
-        let (sender, found) = channel();
         self.progress = (0, job.settings.len() + usize::from(job.current.is_some()));
         self.held = Arc::default();
-        let progress = Progress::new();
-        let (engine, last, context) = (self.engine.clone(), self.last.take(), context.clone());
-        let worker = Worker { sender, wanted: progress.clone(), held: self.held.clone(), context };
-        jobs.follow(Work::Chart, progress, move || {
-            let message = found.try_recv();
-            let is_there = !matches!(message, Err(TryRecvError::Empty));
-            is_there.then(|| Box::new(move |app: &mut App, _: &_| app.take_charted(message.ok())) as _)
-        });
-        self.last = spawn(move || {
+        let (engine, last, held) = (self.engine.clone(), self.last.take(), self.held.clone());
+        let run = move |wanted: &Progress, say: &dyn Fn(ChartMessage) -> bool| {
             // If the last run failed, it has reported that itself.
             let _ = last.map(JoinHandle::join);
+            let worker = Worker { say, wanted, held: &held };
             let failed = match caught(|| worker.run(job, engine)) {
                 Ok(run) => run.err().map(|error| format!("The chart could not be measured: {error}")),
                 Err(stopped) => Some(format!("Measuring the chart {stopped}")),
             };
-            if let Some(why) = failed {
-                worker.say(ChartMessage::Failed(why));
-            }
-            worker.context.request_repaint();
-        });
+            failed.into_iter().for_each(|why| _ = say(ChartMessage::Failed(why)));
+        };
+        self.last = jobs.follow(context, Work::Chart, run, |app, _, message| app.take_charted(message));
     }
 
     /// Makes the run wait before its next setting, or lets it go on.
@@ -160,7 +150,7 @@ impl App {
                 if progress.0 < progress.1 {
                     self.dialogs.error = Some("Measuring the chart stopped unexpectedly".into());
                 }
-                return self.jobs.stop(Work::Chart);
+                return;
             }
             (_, None) => {}
         }
@@ -168,18 +158,16 @@ impl App {
     }
 }
 
-struct Worker {
-    sender: Sender<ChartMessage>,
-    wanted: Progress,
-    held: Arc<AtomicBool>,
-    context: egui::Context,
+struct Worker<'a> {
+    say: &'a dyn Fn(ChartMessage) -> bool,
+    wanted: &'a Progress,
+    held: &'a AtomicBool,
 }
 
-impl Worker {
+impl Worker<'_> {
     fn say(&self, found: ChartMessage) {
-        // The receiver is gone if the run was cancelled.
-        let _ = self.sender.send(found);
-        self.context.request_repaint();
+        // Nobody wants it if the run was cancelled.
+        let _ = (self.say)(found);
     }
 
     /// Waits while the run is held, and returns whether to go on.

@@ -1,6 +1,8 @@
-//! Files that are open beside the mesh: what they have in common.
+//! What is open beside the mesh: a reference surface, a mesh left of the split, a matcap and light, and what they have in common with
+//! factors and shaders of a file.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::job_list::Work;
@@ -9,24 +11,53 @@ use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use gpu::{LodShader, SurfaceShader};
-use load::Source;
+use inspect::engine::{self, Loaded, Preparation};
+use inspect::reference_shape::ReferenceShape;
+use inspect::render::environment::Environment;
+use inspect::settings::{Colors, Lighting};
+use load::environment_file::EnvironmentFile;
+use load::import::Subdivide;
+use load::{Import, Source, load_matcap};
 
-/// A file that is open, and what was read from it.
-pub(crate) struct OpenFile<T> {
-    /// Absolute: a dash would be standard input, and copied commands and the next window need all of it.
-    pub path: PathBuf,
-    /// A number of its own for each file that was read.
+/// What is open, and what it was read from.
+pub(crate) struct Opened<S, T> {
+    pub from: S,
+    /// A number of its own for all that was read, from 2 on.
     pub generation: u64,
     pub content: T,
 }
 
-impl<T> OpenFile<T> {
-    pub(crate) fn new(path: PathBuf, content: T) -> Self {
-        Self { path, generation: new_generation(), content }
-    }
+/// A file. Its path is absolute: a dash would be standard input, and copied commands and the next window need all of it.
+pub(crate) type OpenFile<T> = Opened<PathBuf, T>;
 
+/// The reference surface that was chosen for the mesh.
+pub(crate) type ChosenReferenceShape = Opened<Source, Arc<ReferenceShape>>;
+
+/// A mesh left of the split in place of the one that is open: that of a source, or without one the mesh before its file changed on disk.
+pub(crate) type LeftMesh = Opened<Option<Source>, Loaded>;
+
+pub(crate) struct Light {
+    /// What was repaired, in sentences.
+    pub warnings: Vec<String>,
+    /// On the device.
+    pub environment: Arc<Environment>,
+}
+
+impl<S, T> Opened<S, T> {
+    pub(crate) fn new(from: S, content: T) -> Self {
+        Self { from, generation: new_generation(), content }
+    }
+}
+
+impl<T> OpenFile<T> {
     pub(crate) fn name(&self) -> String {
-        file_name(&self.path)
+        file_name(&self.from)
+    }
+}
+
+impl LeftMesh {
+    pub(crate) fn title(&self) -> String {
+        self.from.as_ref().map_or_else(|| "before the change".to_owned(), Source::title)
     }
 }
 
@@ -52,17 +83,17 @@ impl App {
     pub(super) fn read_companion<T: Send + 'static>(
         &mut self,
         context: &egui::Context,
-        work: Work,
+        companion: CompanionFile,
         title: String,
         what: String,
         read: impl FnOnce(&Progress) -> Result<T, String> + Send + 'static,
         take: impl FnOnce(&mut Self, T) + 'static,
     ) {
-        self.jobs.start(context, work, title, read, move |app, _, ended| {
+        self.jobs.start(context, Work::Companion(companion), title, read, move |app, _, ended| {
             match ended.unwrap_or_else(|stopped| Err(format!("reading {what} {stopped}"))) {
                 Ok(read) => take(app, read),
                 Err(why) => {
-                    if work == Work::Light {
+                    if companion == CompanionFile::Environment {
                         app.cancel_environment();
                     }
                     app.dialogs.error = Some(why);
@@ -75,7 +106,7 @@ impl App {
     pub(in crate::app) fn companion(&self, companion: CompanionFile) -> Option<Source> {
         let path = match companion {
             CompanionFile::ReferenceShape => return self.reference_shape().cloned(),
-            CompanionFile::LeftMesh => return self.left_mesh.as_ref().and_then(|left| left.source.clone()),
+            CompanionFile::LeftMesh => return self.left_mesh.as_ref().and_then(|left| left.from.clone()),
             CompanionFile::Factors => self.factors_file(),
             CompanionFile::LodShader => self.open_shader_file::<LodShader>(),
             CompanionFile::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
@@ -85,15 +116,21 @@ impl App {
         path.map(|path| Source::File(path.to_owned()))
     }
 
+    /// Closes what is open, and stops reading it. What it took the place of is there again: the exact surface of a shape or the limit
+    /// surface, the mesh in both halves, a setting, or the studio's light.
     pub(in crate::app) fn close_companion(&mut self, companion: CompanionFile) {
+        self.jobs.stop(Work::Companion(companion));
         match companion {
-            CompanionFile::ReferenceShape => self.forget_reference_shape(),
-            CompanionFile::LeftMesh => self.forget_left_mesh(),
+            CompanionFile::ReferenceShape => self.reference_shape = None,
+            CompanionFile::LeftMesh => self.left_mesh = None,
             CompanionFile::Factors => self.forget_factors(),
             CompanionFile::LodShader => self.forget_shader::<LodShader>(),
             CompanionFile::SurfaceShader => self.forget_shader::<SurfaceShader>(),
-            CompanionFile::Matcap => self.forget_matcap(),
-            CompanionFile::Environment => self.close_environment(),
+            CompanionFile::Matcap => self.matcap = None,
+            CompanionFile::Environment => {
+                self.environment = None;
+                self.cancel_environment();
+            }
         }
     }
 
@@ -109,6 +146,160 @@ impl App {
             (CompanionFile::Environment, Source::File(path)) => self.open_environment(context, path),
             // Shapes are surfaces, and nothing else.
             _ => {}
+        }
+    }
+}
+
+/// The reference surface that the mesh is compared with.
+impl App {
+    /// Starts to load a reference surface. Until it is loaded, the one before it stays.
+    pub fn open_reference_shape(&mut self, context: &egui::Context, source: Source) {
+        let (wanted, limits) = (source.clone(), self.jobs.limits);
+        let import = Import { subdivide: Subdivide::File, ..self.preparation().import };
+        let load = move |progress: &Progress| match ReferenceShape::load(&wanted, import, &limits, progress) {
+            Ok(Some(reference_shape)) => Ok(Arc::new(reference_shape)),
+            Ok(None) => Err(format!("{wanted} can't be a reference surface: it has no triangles")),
+            Err(error) => Err(error.to_string()),
+        };
+        let (title, what) = (format!("Loading the reference surface {}", source.title()), source.title());
+        let take = |app: &mut Self, reference_shape| {
+            app.reference_shape = Some(Opened::new(source, reference_shape));
+            app.settings.overlays.colors = Colors::Deviation;
+        };
+        self.read_companion(context, CompanionFile::ReferenceShape, title, what, load, take);
+    }
+
+    /// Loads a reference surface of a file again, which is turned and scaled as the mesh is.
+    pub(in crate::app) fn follow_reference_shape(&mut self, context: &egui::Context) {
+        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.clone());
+        if let Some(source @ (Source::File(_) | Source::Vase)) = chosen {
+            self.open_reference_shape(context, source);
+        }
+    }
+
+    /// The reference surface that was chosen for the mesh.
+    pub fn reference_shape(&self) -> Option<&Source> {
+        self.reference_shape.as_ref().map(|chosen| &chosen.from)
+    }
+
+    /// The reference surface that distances are measured from: its number, the surface (none for the limit surface), and
+    /// its name. The number is 0 for the limit surface, 1 for the exact surface, and from 2 on for a chosen one. In a pose it
+    /// is always the limit surface, and an exact surface isn't used for a displaced mesh.
+    pub(in crate::app) fn yardstick(&self) -> (u64, Option<Arc<ReferenceShape>>, String) {
+        let limit = || (0, None, "limit surface".to_owned());
+        let Some(document) = self.document.as_ref().filter(|_| self.viewport.playback.moment().is_none()) else {
+            return limit();
+        };
+        if let Some(chosen) = &self.reference_shape {
+            return (chosen.generation, Some(chosen.content.clone()), chosen.from.title());
+        }
+        let is_plain = !self.settings.tessellation.displacement.is_on();
+        match (&document.exact, document.loaded.source.shape()) {
+            (Some(exact), Some(shape)) if is_plain => {
+                (1, Some(exact.clone()), format!("exact {}", shape.title().to_lowercase()))
+            }
+            _ => limit(),
+        }
+    }
+}
+
+/// The mesh left of the split.
+impl App {
+    /// Starts to load the mesh of another file for the left half. Until it is loaded, what is there stays.
+    pub(in crate::app) fn open_left_mesh(&mut self, context: &egui::Context, source: Source) {
+        let import = self.preparation().import;
+        let preparation = Preparation { import, limits: self.jobs.limits, ..Preparation::default() };
+        let wanted = source.clone();
+        let load =
+            move |progress: &Progress| engine::load(&wanted, &preparation, progress).map_err(|error| error.to_string());
+        let title = format!("Loading {} for the left half", source.title());
+        self.read_companion(context, CompanionFile::LeftMesh, title, source.title(), load, |app, loaded| {
+            app.left_mesh = Some(Opened::new(Some(source), loaded));
+        });
+    }
+
+    /// Loads the mesh of another file again, which is turned and scaled as the mesh is.
+    pub(in crate::app) fn follow_left_mesh(&mut self, context: &egui::Context) {
+        let source = self.left_mesh.as_ref().and_then(|left| left.from.clone());
+        source.into_iter().for_each(|source| self.open_left_mesh(context, source));
+    }
+
+    /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.
+    pub(in crate::app) fn forget_before(&mut self) {
+        self.document.iter_mut().for_each(|document| document.before = None);
+        if self.left_mesh.as_ref().is_some_and(|left| left.from.is_none()) {
+            self.close_companion(CompanionFile::LeftMesh);
+        }
+    }
+
+    /// Shows the mesh as it was before its file changed, tessellated as the new one is.
+    pub(in crate::app) fn compare_with_before(&mut self) {
+        let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
+        self.settings.left = self.settings.tessellation;
+        self.left_mesh = Some(Opened::new(None, before));
+        self.settings.split.get_or_insert(self.viewport.last_split);
+    }
+}
+
+/// A picture of a lit sphere from a file, in place of those that are made in code.
+impl App {
+    /// Starts to read a picture of a lit sphere, which the surface then shows. Until it is read, all stays as it is.
+    pub fn open_matcap(&mut self, context: &egui::Context, path: PathBuf) {
+        let path = absolute_path(path);
+        let (wanted, limits, what) = (path.clone(), self.jobs.limits, shown_path(&path));
+        let read = move |_: &_| load_matcap(&wanted, &limits).map_err(|error| error.to_string());
+        self.read_companion(context, CompanionFile::Matcap, String::new(), what, read, |app, picture| {
+            app.matcap = Some(OpenFile::new(path, Arc::new(picture)));
+            app.settings.overlays.colors = Colors::Matcap;
+        });
+    }
+
+    /// The file of the picture of a lit sphere, if one was opened.
+    pub fn matcap_image(&self) -> Option<&Path> {
+        self.matcap.as_ref().map(|chosen| &*chosen.from)
+    }
+}
+
+/// The file whose light shines on the mesh.
+impl App {
+    /// Starts to read the light of a file, which then shines on the mesh. Until it is read, the light before it stays.
+    pub fn open_environment(&mut self, context: &egui::Context, path: PathBuf) {
+        self.read_environment(context, path, true);
+    }
+
+    /// The same; `is_chosen` says whether the file's light shines once it is read.
+    pub(in crate::app) fn read_environment(&mut self, context: &egui::Context, path: PathBuf, is_chosen: bool) {
+        let path = absolute_path(path);
+        let (wanted, limits, gpu) = (path.clone(), self.jobs.limits, self.engine.gpu.clone());
+        let read = move |progress: &Progress| {
+            let part = progress.part(0.0, 0.8);
+            let EnvironmentFile { panorama, warnings } =
+                EnvironmentFile::load(&wanted, &limits, &part).map_err(|error| error.to_string())?;
+            let no_room = |error| format!("{}: {error}", shown_path(&wanted));
+            let environment = Arc::new(Environment::from_panorama(&gpu, panorama).map_err(no_room)?);
+            Ok(Light { warnings, environment })
+        };
+        self.jobs.light = Some(path.clone());
+        let title = format!("Reading the light of {}", file_name(&path));
+        self.read_companion(context, CompanionFile::Environment, title, shown_path(&path), read, move |app, light| {
+            app.environment = Some(OpenFile::new(path, light));
+            if is_chosen {
+                app.settings.lighting = Lighting::Environment;
+            }
+        });
+    }
+
+    /// The file whose light is open, or else the one that is being read.
+    pub fn environment_file(&self) -> Option<&Path> {
+        let open = self.environment.as_ref().map(|open| &*open.from);
+        open.or(self.jobs.light.as_deref().filter(|_| self.jobs.has(Work::Companion(CompanionFile::Environment))))
+    }
+
+    /// Stops reading a file. The light before it stays.
+    pub(in crate::app) fn cancel_environment(&mut self) {
+        self.jobs.stop(Work::Companion(CompanionFile::Environment));
+        if self.environment.is_none() && self.settings.lighting == Lighting::Environment {
+            self.settings.lighting = Lighting::Studio;
         }
     }
 }

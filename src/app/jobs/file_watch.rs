@@ -1,10 +1,8 @@
 //! Watches files for changes on disk.
 
 use std::path::PathBuf;
-use std::sync::mpsc::channel;
 use std::time::Duration;
 
-use super::background_job::spawn;
 use super::job_list::Work;
 use crate::app::App;
 use geometry::progress::Progress;
@@ -77,18 +75,11 @@ impl App {
         if !matches!(self.source(), Some(Source::File(_))) {
             return;
         }
-        let (sender, changes) = channel();
-        let progress = Progress::default();
-        let (wanted, context) = (progress.clone(), context.clone());
-        spawn(move || {
-            watch(files, &wanted, || {
-                let is_wanted = sender.send(()).is_ok();
-                context.request_repaint();
-                is_wanted
-            });
-        });
-        self.jobs.follow(Work::MeshFiles, progress, move || {
-            changes.try_recv().is_ok().then(|| Box::new(|app: &mut Self, context: &_| app.follow_files(context)) as _)
+        let watch = move |wanted: &Progress, changed: &dyn Fn(()) -> bool| watch(files, wanted, || changed(()));
+        self.jobs.follow(context, Work::MeshFiles, watch, |app, context, change| {
+            if change.is_some() {
+                app.follow_files(context);
+            }
         });
     }
 

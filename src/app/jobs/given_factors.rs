@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::companion_files::{OpenFile, absolute_path};
 use super::job_list::Work;
 use crate::app::App;
+use crate::commands::CompanionFile;
 use geometry::mesh::Topology;
 use geometry::names::shown_path;
 use geometry::tessellate::{Convention, HullFactors, Lod, Partitioning};
@@ -57,18 +58,19 @@ impl App {
             Ok((Arc::new(factors), compared))
         };
         let what = shown_path(&path);
-        self.read_companion(context, Work::Factors, String::new(), what, read, move |app, (factors, compared)| {
+        let take = move |app: &mut Self, (factors, compared)| {
             app.forget_shader::<LodShader>();
             // The file's factors take LOD's place: nothing follows the view.
             let lod = std::mem::replace(&mut app.settings.tessellation.lod, Lod::Uniform);
             let lod = app.given.as_ref().map_or(lod, |given| given.content.lod);
             let given = GivenFactors { factors, partitioning, compared: Some(compared), lod };
             app.given = Some(OpenFile::new(path, given));
-        });
+        };
+        self.read_companion(context, CompanionFile::Factors, String::new(), what, read, take);
     }
 
     pub fn factors_file(&self) -> Option<&Path> {
-        self.given.as_ref().map(|given| &*given.path)
+        self.given.as_ref().map(|given| &*given.from)
     }
 
     /// Puts the file's factors in the place of an LOD that was set while they are used.
@@ -80,7 +82,7 @@ impl App {
 
     /// Goes back to the factors of LOD.
     pub(in crate::app) fn forget_factors(&mut self) {
-        self.jobs.stop(Work::Factors);
+        self.jobs.stop(Work::Companion(CompanionFile::Factors));
         if let Some(given) = self.given.take() {
             self.settings.tessellation.lod = given.content.lod;
         }
@@ -99,10 +101,10 @@ impl App {
     pub(in crate::app) fn compare_again(&mut self, context: &egui::Context) {
         let own = self.settings.tessellation;
         let Some((given, document)) = self.given.as_mut().zip(self.document.as_ref()) else { return };
-        if self.jobs.has(Work::Factors) {
+        if self.jobs.has(Work::Companion(CompanionFile::Factors)) {
             return;
         }
-        let path = given.path.clone();
+        let path = given.from.clone();
         if !are_alike(given.content.partitioning, own.partitioning) {
             self.forget_factors();
             return self.open_factors(context, path);
@@ -113,11 +115,12 @@ impl App {
         given.content.compared = None;
         let (factors, topology) = (given.content.factors.clone(), document.loaded.topology.clone());
         let compare = move |_: &_| Ok(ComparedFactors::new(&topology, &factors, own.convention));
-        self.read_companion(context, Work::Factors, String::new(), shown_path(&path), compare, |app, compared| {
+        let take = |app: &mut Self, compared| {
             if let Some(given) = &mut app.given {
                 given.content.compared = Some(compared);
             }
-        });
+        };
+        self.read_companion(context, CompanionFile::Factors, String::new(), shown_path(&path), compare, take);
     }
 }
 

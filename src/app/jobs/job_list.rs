@@ -1,10 +1,13 @@
 //! The jobs that are under way: one list, which is polled, waited for and stopped in one place.
 
 use std::path::PathBuf;
+use std::sync::mpsc::{TryRecvError, channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use super::background_job::{BackgroundJob, Stopped};
+use super::background_job::{BackgroundJob, Stopped, spawn};
 use crate::app::App;
+use crate::commands::CompanionFile;
 use geometry::progress::Progress;
 use inspect::engine::Preparation;
 use inspect::settings::Settings;
@@ -15,18 +18,9 @@ use load::files::Limits;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Work {
     Mesh,
-    /// The reference surface.
-    ReferenceShape,
-    /// The mesh of another file for the left half.
-    LeftMesh,
-    /// The file of light.
-    Light,
-    /// Reading a file of factors, or comparing its factors under another convention.
-    Factors,
-    Matcap,
-    /// Watching the file of the LOD shader. It goes on after the first version.
-    LodShader,
-    SurfaceShader,
+    /// Reading what is open beside the mesh. Factors are compared, too, under another convention, and the files of shaders watched, which
+    /// goes on after the first version.
+    Companion(CompanionFile),
     /// Watching the mesh's files.
     MeshFiles,
     /// Finding the meshes beside the one that is open.
@@ -57,8 +51,7 @@ impl Work {
 
     /// Whether it reads a file beside the mesh.
     fn is_companion(self) -> bool {
-        use Work::{Factors, LeftMesh, Light, LodShader, Matcap, ReferenceShape, SurfaceShader};
-        matches!(self, ReferenceShape | LeftMesh | Light | Factors | Matcap | LodShader | SurfaceShader)
+        matches!(self, Self::Companion(_))
     }
 
     /// Whether it ends with the document.
@@ -148,9 +141,39 @@ impl Jobs {
         self.add(work, title, progress, false, Box::new(poll));
     }
 
-    /// Adds a job that goes on until it is stopped. `poll` returns what it has found since the last call.
-    pub(crate) fn follow(&mut self, work: Work, progress: Progress, poll: impl FnMut() -> Option<Landing> + 'static) {
+    /// Starts a job that goes on after it has found something, on a thread of its own. It says each thing that it finds, which returns
+    /// false once nobody wants it any more. `land` gets it in the window; none if the job has ended, which is then over.
+    pub(crate) fn follow<T: Send + 'static>(
+        &mut self,
+        context: &egui::Context,
+        work: Work,
+        job: impl FnOnce(&Progress, &dyn Fn(T) -> bool) + Send + 'static,
+        land: impl Fn(&mut App, &egui::Context, Option<T>) + Copy + 'static,
+    ) -> Option<JoinHandle<()>> {
+        let (sender, found) = channel();
+        let (progress, context) = (Progress::new(), context.clone());
+        let wanted = progress.clone();
+        let poll = move || {
+            let found = found.try_recv();
+            let is_there = !matches!(found, Err(TryRecvError::Empty));
+            let landing = move |app: &mut App, context: &egui::Context| {
+                if found.is_err() {
+                    app.jobs.stop(work);
+                }
+                land(app, context, found.ok());
+            };
+            is_there.then(|| Box::new(landing) as Landing)
+        };
         self.add(work, String::new(), progress, true, Box::new(poll));
+        spawn(move || {
+            job(&wanted, &|found| {
+                let is_wanted = sender.send(found).is_ok();
+                context.request_repaint();
+                is_wanted
+            });
+            drop(sender);
+            context.request_repaint();
+        })
     }
 
     fn add(

@@ -1,90 +1,13 @@
-//! Counts the leaks of what is shown while the window goes on: a chunk is drawn at a time, and a thread of its own looks for
-//! the pixels.
+//! Counts the leaks of what is shown.
 
-use super::background_job::BackgroundJob;
+use super::drawn_measurement::DrawnMeasurement;
 use super::measure_job::MeasureError;
 use crate::app::App;
 use geometry::view::ScreenView;
-use gpu::Readback;
-use inspect::engine::Engine;
-use inspect::render::{Leak, LeakCount, Scene, leaks_in};
+use inspect::render::{Leak, LeakCount, leaks_in};
 
-/// The leaks of what is shown, once counted.
-#[derive(Default)]
-pub(crate) struct LeakJob {
-    /// The tessellation and the view that they are counted for.
-    of: Option<(u64, ScreenView)>,
-    counting: Option<Counting>,
-    found: Option<Vec<Leak>>,
-}
-
-enum Counting {
-    Drawing(LeakCount),
-    PendingReadback(Readback),
-    Grouping(BackgroundJob<Option<Vec<Leak>>>),
-}
-
-impl LeakJob {
-    /// The leaks in a view, the largest first, once they are counted.
-    fn found(&self, view: ScreenView) -> Option<&[Leak]> {
-        let is_same = self.of.is_some_and(|(_, counted)| counted == view);
-        self.found.as_deref().filter(|_| is_same)
-    }
-
-    pub(crate) fn is_busy(&self) -> bool {
-        self.counting.is_some()
-    }
-
-    /// Stops counting. It isn't started again by itself.
-    pub(crate) fn give_up(&mut self) {
-        self.counting = None;
-    }
-
-    /// Goes on counting a scene's leaks, whose counts must be known, or starts over if its tessellation or the view has changed.
-    ///
-    /// # Errors
-    /// The device was lost, or the thread panicked.
-    pub(crate) fn go_on(
-        &mut self,
-        context: &egui::Context,
-        engine: &Engine,
-        scene: &mut Scene,
-        view: ScreenView,
-    ) -> Result<(), MeasureError> {
-        let of = Some((scene.tessellator.generation(), view));
-        if self.of != of {
-            let size = view.viewport.to_array().map(|side| side as u32);
-            let count = engine.start_leaks(size, view.clip_from_object)?;
-            *self = Self { of, counting: Some(Counting::Drawing(count)), found: None };
-            return Ok(());
-        }
-        self.counting = match self.counting.take() {
-            None => None,
-            Some(Counting::Drawing(mut count)) => Some(match count.draw_next(&engine.gpu, scene)? {
-                Some(counts) => Counting::PendingReadback(counts),
-                None => Counting::Drawing(count),
-            }),
-            Some(Counting::PendingReadback(mut counts)) => Some(match counts.poll()? {
-                true => grouping(context, counts, view),
-                false => Counting::PendingReadback(counts),
-            }),
-            Some(Counting::Grouping(job)) => match job.take() {
-                None => Some(Counting::Grouping(job)),
-                Some(leaks) => {
-                    self.found = leaks.map_err(MeasureError::Leaking)?;
-                    None
-                }
-            },
-        };
-        Ok(())
-    }
-}
-
-fn grouping(context: &egui::Context, counts: Readback, view: ScreenView) -> Counting {
-    let width = view.viewport.x as usize;
-    // No bytes come from a lost device, which is reported elsewhere.
-    Counting::Grouping(BackgroundJob::start(context, move || Some(leaks_in(&counts.bytes().ok()?, width))))
-}
+/// The leaks of what is shown, the largest first, once counted.
+pub(crate) type LeakJob = DrawnMeasurement<Option<LeakCount>, Vec<Leak>>;
 
 impl App {
     /// Whether leaks can be counted in the view that was measured last: the mesh is closed and beyond the near plane, and nothing was
@@ -105,16 +28,28 @@ impl App {
         if measure.is_busy() {
             return Ok(());
         }
-        if measure.is_closed_in(view) && measure.found().is_some() {
-            return document.leaks.go_on(context, &self.engine, &mut document.scene, view);
+        if !measure.is_closed_in(view) || measure.found().is_none() {
+            document.leaks.give_up();
+            return Ok(());
         }
-        document.leaks.give_up();
-        Ok(())
+        let (engine, scene, [width, height]) = (&self.engine, &mut document.scene, view.viewport.to_array());
+        let start = |count: &mut Option<LeakCount>| {
+            *count = Some(engine.start_leaks([width as u32, height as u32], view.clip_from_object)?);
+            Ok(())
+        };
+        let of = (scene.tessellator.generation(), view);
+        let step = |count: &mut Option<LeakCount>| match count {
+            Some(count) => Ok(count.draw_next(&engine.gpu, scene)?),
+            None => Ok(None),
+        };
+        let find = move |counts: Vec<u8>| leaks_in(&counts, width as usize);
+        document.leaks.go_on(context, of, start, step, find, MeasureError::Leaking)
     }
 
     /// The leaks in the view that was measured last, the largest first, once they are counted.
     pub fn leaks(&self) -> Option<&[Leak]> {
-        self.document.as_ref()?.leaks.found(self.results()?.seen.view)
+        let ((_, view), leaks) = self.document.as_ref()?.leaks.found()?;
+        (view == self.results()?.seen.view).then_some(&leaks[..])
     }
 
     /// The cracked edge that comes closest to a leak on screen.

@@ -6,7 +6,7 @@ use std::path::Path;
 use super::scenes::arena_bytes;
 use crate::app::App;
 use geometry::progress::Progress;
-use geometry::tessellate::{Inputs, Tessellated};
+use geometry::tessellate::Tessellated;
 use gpu::{Gpu, GpuError, Timing};
 use inspect::engine::Engine;
 use inspect::export::{Exported, ending};
@@ -99,7 +99,10 @@ impl ShotParts {
     /// # Errors
     /// The device fails, or the file can't be written; as a sentence.
     pub(crate) fn save_factors(self, path: &Path, progress: &Progress) -> Result<(), String> {
-        self.with_scene(|engine, scene, _, inputs| write_factors(engine, scene, inputs, path, progress))
+        self.with_scene(|engine, mut scene, subject, view| {
+            let inputs = subject.settings.inputs(view.lod_view(&scene));
+            write_factors(&engine, &mut scene, &inputs, path, progress)
+        })
     }
 
     /// Writes the mesh that is emitted for this view. Writes nothing if it was cancelled. Returns sentences about what is drawn but
@@ -108,13 +111,14 @@ impl ShotParts {
     /// # Errors
     /// The device fails, or the file can't be written; as a sentence.
     pub(crate) fn export(self, path: &Path, progress: &Progress) -> Result<Vec<String>, String> {
-        self.with_scene(|engine, scene, subject, inputs| {
-            engine.count(scene, inputs, &mut Timing::Off)?;
+        self.with_scene(|engine, mut scene, subject, view| {
+            let inputs = subject.settings.inputs(view.lod_view(&scene));
+            engine.count(&mut scene, &inputs, &mut Timing::Off)?;
             let (vertices, triangles) = scene.tessellator.totals();
             Exported::check(path, &subject.loaded.mesh, vertices, triangles)?;
             let mut tessellated = Tessellated::default();
             let mut append = |chunk: &EmittedChunk| tessellated.append(chunk.vertices, chunk.triangles);
-            engine.visit_watched(scene, &mut [&mut append], &progress.part(0.0, READING))?;
+            engine.visit_watched(&mut scene, &mut [&mut append], &progress.part(0.0, READING))?;
             progress.check()?;
             let posed = subject.loaded.posed(subject.moment);
             let exported = Exported::new(&posed.mesh, &posed.topology, &tessellated);
@@ -124,45 +128,29 @@ impl ShotParts {
         })
     }
 
-    /// Hands over a scene of its own, so that the window's isn't changed, and what it is tessellated with.
-    ///
-    /// # Errors
-    /// The device fails, or `act` does; as a sentence.
-    fn with_scene<T>(
-        self,
-        act: impl FnOnce(&Engine, &mut Scene, &Subject, &Inputs) -> Result<T, ShotError>,
-    ) -> Result<T, String> {
-        let Self { engine, make, subject, view } = self;
-        let own = engine.clone();
-        let attempted = engine.gpu.attempt(move || {
-            let mut scene = make()?;
-            subject.apply_to_scene(&own, &mut scene)?;
-            let inputs = subject.settings.inputs(view.lod_view(&scene));
-            act(&own, &mut scene, &subject, &inputs)
-        });
-        said(attempted)
-    }
-
-    /// Makes what is drawn, on a scene of its own, and hands it over.
+    /// Makes what is drawn, on a scene of its own so that the window's isn't changed, and hands it over.
     ///
     /// # Errors
     /// The device fails, or `draw` does; as a sentence.
     pub(crate) fn with_shot(self, draw: impl FnOnce(&mut Shot) -> Result<(), ShotError>) -> Result<(), String> {
-        let Self { engine, make, subject, view, .. } = self;
+        self.with_scene(|engine, scene, subject, view| draw(&mut Shot::new(engine, scene, subject, view)?))
+    }
+
+    /// The same with what a shot is made of.
+    fn with_scene<T>(
+        self,
+        act: impl FnOnce(Engine, Scene, Subject, ShotView) -> Result<T, ShotError>,
+    ) -> Result<T, String> {
+        let Self { engine, make, subject, view } = self;
         let own = engine.clone();
         // What the device refuses, such as a picture that is too large for its memory, is this file's error.
         let attempted = engine.gpu.attempt(move || {
             let mut scene = make()?;
             subject.apply_to_scene(&own, &mut scene)?;
-            draw(&mut Shot::new(own, scene, subject, view)?)
+            act(own, scene, subject, view)
         });
-        said(attempted)
+        attempted.map_err(|error| error.to_string())?.map_err(|error| error.to_string())
     }
-}
-
-/// What went wrong, as a sentence.
-fn said<T>(attempted: Result<Result<T, ShotError>, GpuError>) -> Result<T, String> {
-    attempted.map_err(|error| error.to_string())?.map_err(|error| error.to_string())
 }
 
 /// A sentence about patches that aren't in the file, if there are any: somebody who didn't set clipping or culling expects all.
@@ -203,7 +191,7 @@ impl App {
         };
         let subject = Subject {
             loaded: document.loaded.clone(),
-            left: self.left_mesh.as_ref().map(|left| left.loaded.clone()),
+            left: self.left_mesh.as_ref().map(|left| left.content.clone()),
             moment: document.moment,
             given: document.scene.tessellator.given().cloned(),
             surface_shader: document.scene.tessellator.surface_shader().cloned(),
@@ -230,7 +218,7 @@ impl App {
     /// What commands compare with: the chosen mesh; and while the overlay is on, an exact or the limit surface.
     fn reference_surface(&self, settings: &Settings) -> Option<ReferenceSurface> {
         let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
-        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.source.to_string());
+        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.to_string());
         let exact = self.source().filter(|_| is_shown).map(ToString::to_string);
         match self.yardstick().1 {
             Some(reference_shape) => Some(ReferenceSurface::ReferenceShape(chosen.or(exact)?, reference_shape)),

@@ -1,10 +1,10 @@
-//! Compares the outlines of what is shown while the window goes on: a chunk is drawn at a time, and a thread of its own compares
-//! them.
+//! Compares the outlines of what is shown.
 
 use egui::TextureHandle;
 use image::RgbaImage;
 
 use super::background_job::BackgroundJob;
+use super::drawn_measurement::DrawnMeasurement;
 use super::measure_job::MeasureError;
 use crate::app::App;
 use geometry::tessellate::Tessellation;
@@ -17,21 +17,15 @@ use inspect::render::{Scene, lay_over, outlines_picture};
 use inspect::settings::ColorSource;
 
 /// The comparison of outlines, and its last result.
-#[derive(Default)]
-pub(crate) struct SilhouetteJob {
-    /// The tessellation and the view that outlines are compared for.
-    of: Option<(u64, ScreenView)>,
-    under_way: Option<OutlineComparison>,
-    found: Option<MeasuredOutlines>,
-    /// A tessellator that is kept for the next comparison.
-    kept: Option<Tessellator>,
-}
+pub(crate) type SilhouetteJob = DrawnMeasurement<OutlineDrawing, MeasuredOutlines>;
 
-enum OutlineComparison {
-    Making(BackgroundJob<Result<Tessellator, GpuError>>),
-    Drawing(Box<SilhouetteDrawing>),
-    PendingReadback(Readback, SampleGrid),
-    Finding(BackgroundJob<Option<(Silhouette, RgbaImage)>>),
+/// What draws outlines: a tessellator, which is made once and kept for the next comparison.
+#[derive(Default)]
+pub(crate) struct OutlineDrawing {
+    making: Option<BackgroundJob<Result<Tessellator, GpuError>>>,
+    /// None while it is being made, and while it draws.
+    tessellator: Option<Tessellator>,
+    drawing: Option<Box<SilhouetteDrawing>>,
 }
 
 pub(crate) struct MeasuredOutlines {
@@ -41,97 +35,49 @@ pub(crate) struct MeasuredOutlines {
     pub texture: TextureHandle,
 }
 
-impl SilhouetteJob {
-    pub(crate) fn is_busy(&self) -> bool {
-        self.under_way.is_some()
-    }
-
-    /// Stops comparing. It isn't started again by itself.
-    pub(crate) fn give_up(&mut self) {
-        self.under_way = None;
-    }
-
-    fn found(&self, of: (u64, ScreenView)) -> Option<&MeasuredOutlines> {
-        self.found.as_ref().filter(|_| self.of == Some(of))
-    }
-
-    /// Goes on comparing what a scene shows, whose counts must be known, or starts over if its tessellation or the view has changed.
-    ///
-    /// # Errors
-    /// The device was lost or has no memory left, or a thread panicked.
-    fn go_on(
+impl OutlineDrawing {
+    /// Goes on by a step: makes the tessellator, starts to draw with it, or draws. Returns what was drawn after the last one.
+    fn step(
         &mut self,
         context: &egui::Context,
         engine: &Engine,
         scene: &Scene,
         tessellation: &Tessellation,
         view: &SilhouetteView,
-        screen: ScreenView,
-    ) -> Result<(), MeasureError> {
-        let of = Some((scene.tessellator.generation(), screen));
-        if self.of != of {
-            if let Some(OutlineComparison::Drawing(drawing)) = self.under_way.take() {
-                self.kept = Some(drawing.tessellator);
+    ) -> Result<Option<Readback>, MeasureError> {
+        if let Some(drawing) = &mut self.drawing {
+            let texels = drawing.step(&engine.gpu)?;
+            if texels.is_some() {
+                self.tessellator = self.drawing.take().map(|drawing| drawing.tessellator);
             }
-            (self.of, self.found) = (of, None);
-            self.under_way = Some(match self.kept.take() {
-                Some(tessellator) => draw(engine, scene, tessellator, tessellation, view)?,
-                None => {
-                    let (gpu, make) = (engine.gpu.clone(), sibling(scene));
-                    OutlineComparison::Making(BackgroundJob::start(context, move || gpu.attempt(make)?))
-                }
-            });
-            return Ok(());
+            return Ok(texels);
         }
-        self.under_way = match self.under_way.take() {
-            None => None,
-            Some(OutlineComparison::Making(job)) => Some(match job.take() {
-                None => OutlineComparison::Making(job),
-                Some(made) => draw(engine, scene, made.map_err(MeasureError::Comparing)??, tessellation, view)?,
-            }),
-            Some(OutlineComparison::Drawing(mut drawing)) => Some(match drawing.step(&engine.gpu)? {
-                None => OutlineComparison::Drawing(drawing),
-                Some(texels) => {
-                    self.kept = Some(drawing.tessellator);
-                    OutlineComparison::PendingReadback(texels, drawing.grid)
-                }
-            }),
-            Some(OutlineComparison::PendingReadback(mut texels, grid)) => Some(match texels.poll()? {
-                false => OutlineComparison::PendingReadback(texels, grid),
-                true => OutlineComparison::Finding(BackgroundJob::start(context, move || {
-                    // No bytes come from a lost device, which is reported elsewhere.
-                    let silhouette = Silhouette::find(grid, &texels.bytes().ok()?);
-                    let picture = outlines_picture(&silhouette);
-                    Some((silhouette, picture))
-                })),
-            }),
-            Some(OutlineComparison::Finding(job)) => match job.take() {
-                None => Some(OutlineComparison::Finding(job)),
-                Some(found) => {
-                    self.found = found.map_err(MeasureError::Comparing)?.map(|found| uploaded(context, found));
-                    None
-                }
-            },
+        let tessellator = match self.tessellator.take() {
+            Some(tessellator) => tessellator,
+            None => {
+                let start = || {
+                    let (gpu, make) = (engine.gpu.clone(), sibling(scene));
+                    BackgroundJob::start(context, move || gpu.attempt(make)?)
+                };
+                let Some(made) = self.making.get_or_insert_with(start).take() else { return Ok(None) };
+                self.making = None;
+                made.map_err(MeasureError::Comparing)??
+            }
         };
-        Ok(())
+        self.drawing = Some(Box::new(engine.start_silhouette(scene, tessellator, tessellation, view)?));
+        Ok(None)
     }
 }
 
-fn draw(
-    engine: &Engine,
-    scene: &Scene,
-    tessellator: Tessellator,
-    tessellation: &Tessellation,
-    view: &SilhouetteView,
-) -> Result<OutlineComparison, GpuError> {
-    Ok(OutlineComparison::Drawing(Box::new(engine.start_silhouette(scene, tessellator, tessellation, view)?)))
-}
-
-fn uploaded(context: &egui::Context, (silhouette, picture): (Silhouette, RgbaImage)) -> MeasuredOutlines {
-    let size = [picture.width(), picture.height()].map(|side| side as usize);
-    let image = egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
-    let texture = context.load_texture("outlines", image, egui::TextureOptions::NEAREST);
-    MeasuredOutlines { silhouette, picture, texture }
+impl MeasuredOutlines {
+    fn find(context: &egui::Context, grid: SampleGrid, texels: &[u8]) -> Self {
+        let silhouette = Silhouette::find(grid, texels);
+        let picture = outlines_picture(&silhouette);
+        let size = [picture.width(), picture.height()].map(|side| side as usize);
+        let image = egui::ColorImage::from_rgba_unmultiplied(size, picture.as_raw());
+        let texture = context.load_texture("outlines", image, egui::TextureOptions::NEAREST);
+        Self { silhouette, picture, texture }
+    }
 }
 
 impl App {
@@ -156,14 +102,24 @@ impl App {
         if document.right().measure.is_busy() || document.leaks.is_busy() {
             return Ok(());
         }
-        document.silhouette.go_on(context, &self.engine, &document.scene, tessellation, view, screen)
+        let (engine, scene, grid) = (&self.engine, &document.scene, view.grid(&self.engine.gpu));
+        let of = (scene.tessellator.generation(), screen);
+        let start = |own: &mut OutlineDrawing| {
+            own.tessellator = own.drawing.take().map(|drawing| drawing.tessellator).or(own.tessellator.take());
+            Ok(())
+        };
+        let step = |own: &mut OutlineDrawing| own.step(context, engine, scene, tessellation, view);
+        let own = context.clone();
+        let compare = move |texels: Vec<u8>| MeasuredOutlines::find(&own, grid, &texels);
+        document.silhouette.go_on(context, of, start, step, compare, MeasureError::Comparing)
     }
 
     /// The outlines of what is shown, once they are compared.
     pub(in crate::app) fn found_outlines(&self) -> Option<&MeasuredOutlines> {
         let document = self.document.as_ref().filter(|_| self.shows_silhouette())?;
         let view = self.viewport.picture.seen_from()?;
-        document.silhouette.found((document.scene.tessellator.generation(), view))
+        let (of, found) = document.silhouette.found()?;
+        (of == (document.scene.tessellator.generation(), view)).then_some(found)
     }
 
     /// Lays the outlines over a copy of the picture that is shown.

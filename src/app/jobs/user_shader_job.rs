@@ -3,13 +3,13 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Sender, TryRecvError, channel};
 
-use super::background_job::{caught, spawn};
+use super::background_job::caught;
 use super::companion_files::{absolute_path, file_name, new_generation};
 use super::file_watch::{Stamped, watch};
 use super::job_list::Work;
 use crate::app::App;
+use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use geometry::tessellate::{Lod, Surface, Tessellation};
@@ -22,7 +22,7 @@ use inspect::user_shader::read_user_shader;
 pub(crate) trait UserShaderSlot: UserShader {
     type Setting: Copy;
 
-    const WORK: Work;
+    const FILE: CompanionFile;
 
     /// The setting while functions take its place. Nothing depends on it then.
     const PLACEHOLDER: Self::Setting;
@@ -46,68 +46,45 @@ pub(crate) trait UserShaderSlot: UserShader {
     fn shown(app: &App) -> u64;
 }
 
-impl UserShaderSlot for LodShader {
-    type Setting = Lod;
+/// Declares the files: the setting with its type and placeholder, where the app has the file, and what its functions are called in the
+/// pipelines, in the tessellator's report, and in what the document's scene has of files.
+macro_rules! user_shader_slots {
+    ($($shader:ident: $setting:ident: $type:ty = $placeholder:expr, $slot:ident, $pipeline:ident, $report:ident, $shown:ident;)+) => {$(
+        impl UserShaderSlot for $shader {
+            type Setting = $type;
+            const FILE: CompanionFile = CompanionFile::$shader;
+            const PLACEHOLDER: $type = $placeholder;
 
-    const WORK: Work = Work::LodShader;
+            fn setting(tessellation: &mut Tessellation) -> &mut $type {
+                &mut tessellation.$setting
+            }
 
-    const PLACEHOLDER: Lod = Lod::Uniform;
+            fn slot(app: &mut App) -> &mut Option<OpenShader<Self>> {
+                &mut app.$slot
+            }
 
-    fn setting(tessellation: &mut Tessellation) -> &mut Lod {
-        &mut tessellation.lod
-    }
+            fn open_in(app: &App) -> Option<&OpenShader<Self>> {
+                app.$slot.as_ref()
+            }
 
-    fn slot(app: &mut App) -> &mut Option<OpenShader<Self>> {
-        &mut app.lod_shader
-    }
+            fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
+                engine.pipelines.$pipeline(shader).prepare(&engine.gpu)
+            }
 
-    fn open_in(app: &App) -> Option<&OpenShader<Self>> {
-        app.lod_shader.as_ref()
-    }
+            fn report(tessellator: &Tessellator) -> Option<UserReport> {
+                tessellator.$report()
+            }
 
-    fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
-        engine.pipelines.user_lod(shader).prepare(&engine.gpu)
-    }
-
-    fn report(tessellator: &Tessellator) -> Option<UserReport> {
-        tessellator.user_lod_report()
-    }
-
-    fn shown(app: &App) -> u64 {
-        app.document.as_ref().map_or(0, |document| document.from_files.factors)
-    }
+            fn shown(app: &App) -> u64 {
+                app.document.as_ref().map_or(0, |document| document.from_files.$shown)
+            }
+        }
+    )+};
 }
 
-impl UserShaderSlot for SurfaceShader {
-    type Setting = Surface;
-
-    const WORK: Work = Work::SurfaceShader;
-
-    const PLACEHOLDER: Surface = Surface::OF_USER_SHADER;
-
-    fn setting(tessellation: &mut Tessellation) -> &mut Surface {
-        &mut tessellation.surface
-    }
-
-    fn slot(app: &mut App) -> &mut Option<OpenShader<Self>> {
-        &mut app.surface_shader
-    }
-
-    fn open_in(app: &App) -> Option<&OpenShader<Self>> {
-        app.surface_shader.as_ref()
-    }
-
-    fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
-        engine.pipelines.user_surface(shader).prepare(&engine.gpu)
-    }
-
-    fn report(tessellator: &Tessellator) -> Option<UserReport> {
-        tessellator.user_surface_report()
-    }
-
-    fn shown(app: &App) -> u64 {
-        app.document.as_ref().map_or(0, |document| document.from_files.surface)
-    }
+user_shader_slots! {
+    LodShader: lod: Lod = Lod::Uniform, lod_shader, user_lod, user_lod_report, factors;
+    SurfaceShader: surface: Surface = Surface::OF_USER_SHADER, surface_shader, user_surface, user_surface_report, surface;
 }
 
 /// A version of a file, and a number of its own.
@@ -146,20 +123,11 @@ impl<S: UserShaderSlot> OpenShader<S> {
 type Read<S> = Result<Arc<S>, String>;
 
 /// Reads and compiles the file, and again after every change, until nobody wants it any more.
-fn read_versions<S: UserShaderSlot>(
-    engine: &Engine,
-    context: &egui::Context,
-    path: &Path,
-    versions: &Sender<Read<S>>,
-    wanted: &Progress,
-) {
+fn read_versions<S: UserShaderSlot>(engine: &Engine, path: &Path, take: &dyn Fn(Read<S>) -> bool, wanted: &Progress) {
     let files = Stamped::now([path.to_owned()]);
     let send = || {
         let version = caught(|| read(engine, path));
-        let version = version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path))));
-        let is_wanted = versions.send(version).is_ok();
-        context.request_repaint();
-        is_wanted
+        take(version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path)))))
     };
     if send() {
         watch(files, wanted, send);
@@ -196,15 +164,9 @@ impl App {
     /// Reads the file, even if it hasn't changed, and watches it for this window.
     pub(in crate::app) fn watch_shader<S: UserShaderSlot>(&mut self, context: &egui::Context) {
         let Some(path) = S::open_in(self).map(|open| open.path.clone()) else { return };
-        let (sender, versions) = channel();
-        let progress = Progress::default();
-        let (engine, context, wanted) = (self.engine.clone(), context.clone(), progress.clone());
-        spawn(move || read_versions(&engine, &context, &path, &sender, &wanted));
-        self.jobs.follow(S::WORK, progress, move || {
-            let version = versions.try_recv();
-            let is_there = !matches!(version, Err(TryRecvError::Empty));
-            is_there.then(|| Box::new(move |app: &mut Self, _: &_| app.take_version::<S>(version.ok())) as _)
-        });
+        let engine = self.engine.clone();
+        let read = move |wanted: &Progress, take: &dyn Fn(Read<S>) -> bool| read_versions(&engine, &path, take, wanted);
+        self.jobs.follow(context, Work::Companion(S::FILE), read, |app, _, version| app.take_version::<S>(version));
     }
 
     /// The file with functions that give factors, if it is open and one of its versions can be used.
@@ -252,7 +214,7 @@ impl App {
         let mut own = self.settings.tessellation;
         self.put_back::<S>(&mut own);
         self.settings.tessellation = own;
-        self.jobs.stop(S::WORK);
+        self.jobs.stop(Work::Companion(S::FILE));
         *S::slot(self) = None;
     }
 
@@ -280,7 +242,6 @@ impl App {
             None => {
                 let why = format!("watching {} stopped unexpectedly; open it again", open.name());
                 open.error.get_or_insert(why);
-                self.jobs.stop(S::WORK);
                 return;
             }
         }

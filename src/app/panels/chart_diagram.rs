@@ -5,7 +5,7 @@ use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 
 use crate::app::jobs::chart_job::Charted;
 use inspect::plot::INK;
-use lab::chart::{Axis, Cost, Fill, Method, MethodStyle, RADIUS, Row, Setting, Shape, Tick, method_styles};
+use lab::chart::{Axis, Cost, Fill, Method, MethodStyle, Probe, RADIUS, Row, Setting, Shape, Tick, method_styles};
 
 pub(super) struct Diagram<'a> {
     pub charted: &'a Charted,
@@ -77,22 +77,19 @@ impl<'a> Diagram<'a> {
     /// The points whose error is known, with their cost and error in the units of the axes.
     fn spots(&self) -> Vec<(Spot<'a>, [f64; 2])> {
         let subject = &self.charted.subject;
-        let of_row = |row: &'a Row| Some((Spot::Row(row), [self.cost.of(row), subject.error(row)? * subject.unit()]));
-        let current = self.charted.current.and_then(|(_, probe)| {
-            let probe = probe?;
-            let error = subject.error_of(&probe)? * subject.unit();
-            Some((Spot::Current, [self.cost.of_probe(&probe), error]))
-        });
-        subject.rows.iter().filter_map(of_row).chain(current).collect()
+        let at = |probe: &Probe| Some([self.cost.of(probe), subject.error(probe)? * subject.unit()]);
+        let current = self.charted.current.and_then(|(_, probe)| Some((Spot::Current, at(&probe?)?)));
+        let of_rows = subject.rows.iter().filter_map(|row| Some((Spot::Row(row), at(&row.probe)?)));
+        of_rows.chain(current).collect()
     }
 
     fn paint(&self, ui: &egui::Ui, canvas: &Canvas, spots: &[(Spot, [f64; 2])]) {
         let subject = &self.charted.subject;
         let inks = Inks::new(ui, self.is_stale);
         for race in subject.races() {
-            let front = race.front(|row| self.cost.of(row)).into_iter();
+            let front = race.front(|row| self.cost.of(&row.probe)).into_iter();
             let places: Vec<_> =
-                front.map(|(row, error)| canvas.place([self.cost.of(row), error * subject.unit()])).collect();
+                front.map(|(row, error)| canvas.place([self.cost.of(&row.probe), error * subject.unit()])).collect();
             // Circles, because a front of one point has no line.
             for place in &places {
                 canvas.painter.circle_filled(*place, 4.5, inks.front);

@@ -268,7 +268,7 @@ fn legend_entry(ui: &mut egui::Ui, sample: f32, name: &str, hover: &str) -> egui
 fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let subject = &diagram.charted.subject;
     let races = subject.races();
-    let front: Vec<_> = races.iter().flat_map(|race| race.front(|row| diagram.cost.of(row))).collect();
+    let front: Vec<_> = races.iter().flat_map(|race| race.front(|row| diagram.cost.of(&row.probe))).collect();
     let unit = if subject.reference_shape.is_some() { "%" } else { "px" };
     // Numbers of triangles are longer than times.
     let (cost_unit, cost_name, width) = match diagram.cost {
@@ -281,7 +281,7 @@ fn front_list(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
          applies it.",
     );
     let mut applied = None;
-    list(ui, "Front", front.len(), 0, |ui, index| {
+    list(ui, "Front", front.len(), (front.len(), 0), |ui, index| {
         let (row, error) = front[index];
         let error = subject.shown_error(error);
         let cost = match diagram.cost {

@@ -237,7 +237,7 @@ fn point_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
     let Some((first, others)) = sides.split_first() else { return };
     let count = sides.iter().map(|side| side.points.len()).max().unwrap_or(0);
     columns(ui, &format!("{:<6}{:>23}", "point", "gap, units"), true);
-    list(ui, "points", count, first.triangle, |ui, index| {
+    list(ui, "points", count, (count, first.triangle), |ui, index| {
         let place = |side: &EdgeSide| side.positions().nth(index);
         let gaps = others.iter().map(|other| Some(f64::from(place(first)?.distance(place(other)?))));
         let gap =

@@ -30,9 +30,7 @@ impl App {
         }
         if let Some(wanted) = self.panels.dragged_crease_band.filter(|_| !response.dragged()) {
             self.panels.dragged_crease_band = None;
-            if wanted != width {
-                self.prepare(ui.ctx(), |preparation| preparation.crease_band = wanted);
-            }
+            self.prepare(ui.ctx(), |preparation| preparation.crease_band = wanted);
         }
     }
 }

@@ -14,8 +14,8 @@ use geometry::view::project;
 use inspect::gates::Spot;
 use inspect::measure::{DeviationTarget, MOST_TRIANGLES};
 use inspect::render::layout::WORST_COLOR;
-use inspect::render::{DEVIATION_PX_SCALE, Distances, LineSegment, Scale, deviation_scale, worst_lines};
-use inspect::settings::{Choice, ColorSource, DeviationUnit, SplitSide, options};
+use inspect::render::{Distances, LineSegment, Scale, deviation_scale, worst_lines};
+use inspect::settings::{Choice, ColorSource, SplitSide, SurfaceUnit, options};
 
 impl App {
     fn deviating(&self, half: SplitSide) -> Option<&DeviationJob> {
@@ -126,16 +126,11 @@ impl App {
     }
 
     pub(in crate::app) fn legend_distances(&self) -> Distances {
-        let unit = self.settings.deviation_in;
-        let scale = match unit {
-            DeviationUnit::Units => self.deviation_scale(),
-            DeviationUnit::Px => Some(DEVIATION_PX_SCALE),
-        };
         let known = |half| self.known_deviation(half);
         let is_partial = SplitSide::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
         let measured = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half)?.fraction()).reduce(f32::min);
         let outlines = self.found_outlines().map(|found| found.silhouette.distances);
-        Distances { unit, scale, is_partial, measured, outlines }
+        Distances { scale: self.deviation_scale(), is_partial, measured, outlines }
     }
 
     /// The largest distance of a half, in the overlay's unit; none without the overlay. Until it is known, it is an ellipsis.
@@ -144,8 +139,8 @@ impl App {
             return None;
         }
         let (number, unit) = match self.settings.deviation_in {
-            DeviationUnit::Units => (self.known_deviation(half).map(|found| found.largest.at_least), "units"),
-            DeviationUnit::Px => (self.deviation_px(half), "px"),
+            SurfaceUnit::Units => (self.known_deviation(half).map(|found| found.largest.at_least), "units"),
+            SurfaceUnit::Px => (self.deviation_px(half), "px"),
         };
         Some(format!("{} {unit}", number.map_or_else(|| "…".into(), short)))
     }

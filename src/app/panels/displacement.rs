@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
 use crate::app::text::short;
+use crate::app::widgets::list_row;
 use crate::commands::{Action, HEIGHT_IMAGE, Purpose, key_name};
 use geometry::mesh::{HeightAmount, Material};
 use geometry::names::shown;
@@ -50,14 +51,17 @@ impl App {
 
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
-        let label = ui.label("Height map");
         let materials = self.document.iter().flat_map(|document| &document.loaded.mesh.materials);
         let has_own = materials.into_iter().any(|material| material.height.is_some());
         let of_file = if has_own { "As the file says" } else { "None" };
         let shown = heights.as_ref().map_or(of_file.to_owned(), HeightSource::title);
         let mut chosen = None;
-        let combo = egui::ComboBox::from_id_salt("Height map").selected_text(shown).truncate();
-        let combo = combo.show_ui(ui, |ui| {
+        let hover = format!(
+            "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window becomes the \
+             height map (--height).{}",
+            self.amounts(),
+        );
+        list_row(ui, "Height map", shown, &hover, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
             };
@@ -73,12 +77,6 @@ impl App {
                 self.ask_for(ui.ctx(), Purpose::Heights);
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(format!(
-            "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window becomes the \
-             height map (--height).{}",
-            self.amounts(),
-        ));
-        ui.end_row();
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
             self.displace(ui.ctx(), chosen);
         }

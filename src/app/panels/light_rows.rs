@@ -2,6 +2,7 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
+use crate::app::widgets::button_row;
 use crate::commands::{CLOSE_ENVIRONMENT, CompanionFile, ENVIRONMENT, Purpose};
 use inspect::settings::{Lighting, options};
 
@@ -46,20 +47,16 @@ impl App {
     /// The file of light that is open, and a button that closes it or opens one.
     fn environment_row(&mut self, ui: &mut egui::Ui) {
         let Some(open) = &self.environment else {
-            ui.label("");
-            if ui.button("Open environment…").on_hover_text(ENVIRONMENT).clicked() {
+            if button_row(ui, "Open environment…", ENVIRONMENT) {
                 self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::Environment));
             }
-            ui.end_row();
             return;
         };
         ui.label("Panorama").on_hover_text("The file of light that is open (--environment).");
-        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
+        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.from.display().to_string());
         ui.end_row();
-        ui.label("");
-        if ui.button("Close environment").on_hover_text(CLOSE_ENVIRONMENT).clicked() {
-            self.close_environment();
+        if button_row(ui, "Close environment", CLOSE_ENVIRONMENT) {
+            self.close_companion(CompanionFile::Environment);
         }
-        ui.end_row();
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::app::jobs::companion_files::OpenFile;
+use crate::app::widgets::list_row;
 use crate::commands::{CompanionFile, MATCAP_IMAGE, Purpose, with_note};
 use inspect::settings::{Choice, Matcap, options};
 
@@ -11,24 +12,21 @@ impl App {
         if (options::MATCAP.no_effect)(&self.settings).is_some() {
             return;
         }
-        let label = ui.label(options::MATCAP.label);
         let own = self.settings.matcap;
         let image = self.matcap.as_ref().map(OpenFile::name);
         let shown = image.clone().unwrap_or_else(|| own.label().to_owned());
-        let combo = egui::ComboBox::from_id_salt("Matcap").selected_text(shown).truncate();
-        let combo = combo.show_ui(ui, |ui| {
+        let hover = with_note(options::MATCAP.text, "--matcap, --matcap-image");
+        list_row(ui, options::MATCAP.label, shown, &hover, |ui| {
             for matcap in Matcap::ALL {
                 let is_shown = image.is_none() && own == matcap;
                 if ui.selectable_label(is_shown, matcap.label()).on_hover_text(matcap.text()).clicked() {
                     self.settings.matcap = matcap;
-                    self.forget_matcap();
+                    self.close_companion(CompanionFile::Matcap);
                 }
             }
             if ui.selectable_label(image.is_some(), "Image file…").on_hover_text(MATCAP_IMAGE).clicked() {
                 self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::Matcap));
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(with_note(options::MATCAP.text, "--matcap, --matcap-image"));
-        ui.end_row();
     }
 }

@@ -11,11 +11,11 @@ pub(super) mod destinations;
 mod deviation;
 pub(super) mod displacement;
 mod factors_list;
-mod fold_list;
+mod found_lists;
 mod import;
-mod leak_list;
 mod light_rows;
 mod matcap;
+mod morphs;
 mod option_rows;
 mod parts;
 mod patch_explanation;
@@ -30,8 +30,11 @@ mod toolbar;
 mod user_shaders;
 mod verdict;
 
+use std::collections::HashSet;
+
 use geometry::tessellate::Displacement;
 use inspect::settings::SplitSide;
+use load::MorphWeights;
 
 use crate::app::sections::OpenSections;
 use chart::Chart;
@@ -48,8 +51,14 @@ pub(super) struct Panels {
     pub side: Side,
     /// The half of a split view whose settings are edited.
     pub edited: SplitSide,
-    /// What the names of listed parts contain.
+    /// What the paths of listed parts contain.
     pub parts_filter: String,
+    /// What the names of listed morph targets contain.
+    pub morphs_filter: String,
+    /// Weights of morph targets that are dragged while the mesh is still being loaded with those before.
+    pub dragged_morphs: Option<MorphWeights>,
+    /// The paths of groups in the list of parts that are folded.
+    pub folded_groups: HashSet<String>,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.
     pub dragged_crease_band: Option<f32>,
     /// How high the section of the selected patch is, in points.

@@ -3,11 +3,14 @@
 use crate::app::text::typed_number;
 use crate::app::widgets::{chooser, fixed, text_width};
 use crate::commands::with_note;
-use inspect::settings::{Declaration, Kind, Range, Settings, Value};
+use inspect::settings::{Declaration, Description, Kind, Range, Settings, Value};
 
 /// What sliders of light reach, in EV. More can be typed, up to the option's own range, but over all of that a step of the slider
 /// would be too coarse.
 const SLID_EV: std::ops::RangeInclusive<f32> = -5.0..=5.0;
+
+/// The entry for a number in the list of an option that need not have one.
+const A_NUMBER: Description = Description::new("number", "A number", "The row below has it.");
 
 /// The least width of a slider's track, in points.
 const LEAST_TRACK: f32 = 20.0;
@@ -21,18 +24,20 @@ pub(super) fn option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut
 pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings, hover: &str) {
     let value = option.get(settings);
     match (&option.kind, value) {
-        (Kind::NameOrNumber { number: other, row, range, .. }, Value::Number(number)) => {
-            choice_row(ui, option, Some(other.name), settings, hover);
+        (Kind::Number(range) | Kind::NameOrNumber { range, .. }, Value::Number(number)) => {
+            if let Some(entry) = number_entry(option) {
+                choice_row(ui, option, Some(entry.name), settings, hover);
+            }
+            let name = if let Kind::NameOrNumber { row, .. } = option.kind { row } else { option.label };
             // The list may have changed it.
             if option.get(settings) == Value::Number(number) {
-                number_row(ui, option, row, range, number, settings, hover);
+                number_row(ui, option, name, range, number, settings, hover);
             }
         }
-        (Kind::Number(range), Value::Number(number)) => {
-            number_row(ui, option, option.label, range, number, settings, hover);
-        }
         (_, Value::Name(name)) => choice_row(ui, option, Some(name), settings, hover),
-        (Kind::Choice(_) | Kind::NameOrNumber { .. }, Value::Unset) => choice_row(ui, option, None, settings, hover),
+        (Kind::Choice(_) | Kind::Number(_) | Kind::NameOrNumber { .. }, Value::Unset) => {
+            choice_row(ui, option, None, settings, hover);
+        }
         // Options of other kinds are shown by code of their own.
         _ => {}
     }
@@ -84,6 +89,15 @@ fn number_row(
     ui.end_row();
 }
 
+/// The entry of an option's list for a number, if there is a list.
+fn number_entry(option: &Declaration) -> Option<Description> {
+    match &option.kind {
+        Kind::NameOrNumber { number, .. } => Some(*number),
+        Kind::Number(_) if option.unset.is_some() => Some(A_NUMBER),
+        _ => None,
+    }
+}
+
 fn choice_row(
     ui: &mut egui::Ui,
     option: &Declaration,
@@ -93,7 +107,7 @@ fn choice_row(
 ) {
     let unset = option.unset.iter().map(|value| (None, value.label, value.text));
     let mut values = option.kind.descriptions();
-    let number = if let Kind::NameOrNumber { number, .. } = &option.kind { Some(*number) } else { None };
+    let number = number_entry(option);
     values.extend(number);
     let all: Vec<_> = unset.chain(values.iter().map(|value| (Some(value.name), value.label, value.text))).collect();
     if let Some(why) = (option.no_effect)(settings) {
@@ -104,12 +118,10 @@ fn choice_row(
     chooser(ui, option.label, hover, &mut name, &all);
     if name != before {
         let is_number = |name: &str| number.is_some_and(|number| number.name == name);
-        option.set(
-            settings,
-            match name {
-                Some(name) if is_number(name) => Value::Number(1.0),
-                name => name.map_or(Value::Unset, Value::Name),
-            },
-        );
+        let value = match name {
+            Some(name) if is_number(name) => Value::Number(1.0),
+            name => name.map_or(Value::Unset, Value::Name),
+        };
+        option.set(settings, value);
     }
 }

@@ -1,5 +1,7 @@
-//! The list of the file's parts, which can be hidden, and the menu of a part, which is over the picture too.
+//! The tree of the file's parts, which can be hidden, and the menu of a part, which is over the picture too.
 
+use std::collections::HashSet;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::app::App;
@@ -10,64 +12,65 @@ use crate::commands::{Action, CameraAction, all};
 use geometry::names::{shortened, shown};
 use inspect::render::framed_size;
 use load::ShownParts;
-use load::parts::Part;
+use load::part_tree::{Branch, end, leaves, name};
+use load::selection::{MATERIAL, is_part_of};
 
-/// The greatest length of a name in the list, in characters.
-const LONGEST: usize = 40;
+/// The greatest length of a name in a list, in characters.
+pub(super) const LONGEST: usize = 40;
 
-/// So many parts have a filter.
+/// Longer lists of names have a filter.
 const MANY: usize = 8;
 
-/// What is done with a part: a place in the list of parts.
+/// How far a part is right of the group that it lies in, in points, and how often at most.
+const INDENT: f32 = 12.0;
+const MOST_INDENTS: usize = 6;
+
+/// What is done with a part or a group: a place in the tree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum PartAction {
-    Hide(usize),
-    Show(usize),
+    /// Shows it, or leaves it out.
+    Set(usize, bool),
     /// Shows it alone.
     Solo(usize),
     Frame(usize),
+    CopyName(usize),
     ShowAll,
 }
 
 impl App {
-    /// A switch for each part, if the file has several. The mesh is loaded again without those that are hidden.
+    /// A switch for each part and group, if the file has several. The mesh is loaded again without those that are hidden.
     pub(in crate::app) fn parts_section(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = self.document.as_ref().filter(|document| document.loaded.parts.len() > 1) else { return };
-        let parts = document.loaded.parts.clone();
-        if !self.panels.open.title(ui, Section::Parts) {
+        let tree = self.part_tree();
+        let [shown, all] = [leaves(&tree).filter(|leaf| leaf.shown > 0).count(), leaves(&tree).count()];
+        if all <= 1 || !self.panels.open.title(ui, Section::Parts) {
             return;
         }
-        let picked = self.picked_part();
-        let filter = &mut self.panels.parts_filter;
-        if parts.len() > MANY {
-            let field =
-                egui::TextEdit::singleline(filter).hint_text("Filter parts by name").desired_width(f32::INFINITY);
-            let field = ui.add(field).on_hover_text("Lists the parts whose names contain this.");
-            ui.ctx().accesskit_node_builder(field.id, |node| node.set_label("Filter parts by name"));
-        } else {
-            filter.clear();
-        }
-        let filter = filter.to_lowercase();
-        let listed: Vec<usize> =
-            (0..parts.len()).filter(|&part| parts[part].name.to_lowercase().contains(&filter)).collect();
+        let (picked, selected) = (self.picked_part(), self.preparation().parts);
+        let hover = "Lists the parts, groups and materials whose paths contain this.";
+        let filter = name_filter(ui, "Filter parts by name", hover, all, &mut self.panels.parts_filter);
+        let folded = &mut self.panels.folded_groups;
+        let listed = listed(&tree, &filter, folded);
         let mut action = None;
-        list(ui, "parts", listed.len(), 0, |ui, row| {
-            let part = listed[row];
-            let (response, chosen) = part_row(ui, &parts, part, picked == Some(part));
+        list(ui, "parts", listed.len(), (filter.len(), 0), |ui, row| {
+            let at = listed[row];
+            let (response, chosen) = part_row(ui, &tree, at, (picked, &selected), folded);
             action = chosen.or(action);
-            response.context_menu(|ui| action = part_entries(ui, &parts, part).or(action));
+            response.context_menu(|ui| action = part_entries(ui, &tree, at).or(action));
             response
         });
-        let hidden = parts.iter().filter(|part| part.is_hidden).count();
+        let selects = !(selected.hidden.is_empty() && selected.only.is_empty());
         ui.horizontal(|ui| {
-            let button = ui.add_enabled(hidden > 0, egui::Button::new("Show all parts"));
+            let button = ui.add_enabled(selects, egui::Button::new("Show all parts"));
             if button.on_hover_text("Shows the parts that are hidden.").clicked() {
                 action = Some(PartAction::ShowAll);
             }
-            let [shown, all] = [parts.len() - hidden, parts.len()].map(|count| grouped(count as u64));
-            ui.weak(format!("{shown} of {all} shown"));
+            ui.weak(format!("{} of {} shown", grouped(shown as u64), grouped(all as u64)));
         });
-        action.into_iter().for_each(|action| self.act_on_parts(&parts, action));
+        action.into_iter().for_each(|action| self.act_on_parts(ui.ctx(), &tree, action));
+    }
+
+    fn part_tree(&self) -> Arc<Vec<Branch>> {
+        self.document.as_ref().map(|document| document.loaded.part_tree.clone()).unwrap_or_default()
     }
 
     /// The part of the selected triangle: a place in the list of parts.
@@ -78,11 +81,12 @@ impl App {
 
     /// The menu of what was clicked with the right button in the picture.
     pub(in crate::app) fn part_menu(&mut self, ui: &mut egui::Ui) {
-        let parts = self.document.as_ref().map(|document| document.loaded.parts.clone()).unwrap_or_default();
-        let picked = self.picked_part().filter(|_| parts.len() > 1);
-        let action = picked.and_then(|part| {
-            ui.strong(shortened(&shown(&parts[part].name), LONGEST));
-            part_entries(ui, &parts, part)
+        let tree = self.part_tree();
+        let picked = self.picked_part().filter(|_| leaves(&tree).count() > 1);
+        let picked = picked.and_then(|part| tree.iter().position(|branch| branch.part == Some(part)));
+        let action = picked.and_then(|at| {
+            ui.strong(shortened(&shown(&tree[at].path), LONGEST));
+            part_entries(ui, &tree, at)
         });
         if picked.is_some() {
             ui.separator();
@@ -96,71 +100,133 @@ impl App {
         ] {
             self.command_button(ui, &commands, &now, &action, [label; 2]);
         }
-        action.into_iter().for_each(|action| self.act_on_parts(&parts, action));
+        action.into_iter().for_each(|action| self.act_on_parts(ui.ctx(), &tree, action));
     }
 
-    fn act_on_parts(&mut self, parts: &[Part], action: PartAction) {
+    fn act_on_parts(&mut self, context: &egui::Context, tree: &[Branch], action: PartAction) {
+        let mut parts = self.preparation().parts;
         match action {
-            PartAction::Hide(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, false),
-            PartAction::Show(part) => Arc::make_mut(&mut self.parts).set(&parts[part].name, true),
-            PartAction::Solo(part) => self.parts = Arc::new(ShownParts::alone(&parts[part].name)),
-            PartAction::Frame(part) => self.frame_part(part as u32),
-            PartAction::ShowAll => self.parts = Arc::default(),
+            PartAction::Set(at, is_shown) => parts.set(tree, at, is_shown),
+            PartAction::Solo(at) => parts.show_only(vec![name(tree, &tree[at])]),
+            PartAction::ShowAll => parts.show_only(Vec::new()),
+            PartAction::Frame(at) => self.frame_part(tree, at),
+            PartAction::CopyName(at) => context.copy_text(name(tree, &tree[at])),
         }
+        self.prepare(context, |preparation| preparation.parts = parts);
     }
 
-    fn frame_part(&mut self, part: u32) {
+    fn frame_part(&mut self, tree: &[Branch], at: usize) {
         let Some(document) = &self.document else { return };
-        if let Some(bounds) = document.shown().0.part_bounds(part) {
+        let (mesh, parts, own) = (document.shown().0, &document.loaded.contents.parts, name(tree, &tree[at]));
+        let of_parts = mesh.part_ranges.iter().filter(|range| is_part_of(&parts[range.part as usize].name, &own));
+        let of_materials =
+            mesh.materials.iter().filter(|material| is_part_of(&[MATERIAL, &material.name].concat(), &own));
+        let ranges = of_materials.map(|own| &own.triangles).chain(of_parts.map(|own| &own.triangles));
+        if let Some(bounds) = mesh.bounds_of(ranges.flat_map(Range::clone)) {
             let size = framed_size(self.viewport.picture.size(), &self.settings);
             self.viewport.camera.frame(&bounds, size);
         }
     }
 }
 
-/// A part's row: whether it is shown, and a button that shows it alone. Returns the switch, and what is to be done.
-fn part_row(ui: &mut egui::Ui, parts: &[Part], number: usize, is_picked: bool) -> (egui::Response, Option<PartAction>) {
-    let part = &parts[number];
+/// A field that filters `count` things by their names, if they are many. Returns what names must contain, in lower case.
+pub(super) fn name_filter(ui: &mut egui::Ui, label: &str, hover: &str, count: usize, filter: &mut String) -> String {
+    if count > MANY {
+        let field = egui::TextEdit::singleline(filter).hint_text(label).desired_width(f32::INFINITY);
+        let field = ui.add(field).on_hover_text(hover);
+        ui.ctx().accesskit_node_builder(field.id, |node| node.set_label(label));
+    } else {
+        filter.clear();
+    }
+    filter.to_lowercase()
+}
+
+/// The places of the rows whose paths contain `filter`. What lies in groups that are folded isn't listed, unless it is searched.
+fn listed(tree: &[Branch], filter: &str, folded: &HashSet<String>) -> Vec<usize> {
+    let (mut listed, mut at) = (Vec::new(), 0);
+    while let Some(branch) = tree.get(at) {
+        listed.extend((filter.is_empty() || branch.path.to_lowercase().contains(filter)).then_some(at));
+        at = if filter.is_empty() && folded.contains(&branch.path) { end(tree, at) } else { at + 1 };
+    }
+    listed
+}
+
+/// The row of a part or group: a button that folds it, whether it is shown, its triangles, and a button that shows it alone.
+/// Returns the switch, and what is to be done.
+fn part_row(
+    ui: &mut egui::Ui,
+    tree: &[Branch],
+    at: usize,
+    (picked, selected): (Option<usize>, &ShownParts),
+    folded: &mut HashSet<String>,
+) -> (egui::Response, Option<PartAction>) {
+    let branch = &tree[at];
+    let (path, is_group) = (shown(&branch.path), branch.part.is_none());
     let hover = format!(
-        "{}: {}. A part that is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
-        shown(&part.name),
-        counted(part.triangles.into(), "triangle")
+        "{path}: {}{}. What is hidden is left out, as if the file didn't have it (--hide-part). Right-click for more.",
+        if is_group { format!("{} parts, ", branch.parts) } else { String::new() },
+        counted(branch.triangles, "triangle")
     );
-    let is_alone = !part.is_hidden && parts.iter().filter(|part| !part.is_hidden).count() == 1;
-    let mut is_shown = !part.is_hidden;
+    let is_alone = selected.hidden.is_empty() && selected.only.len() == 1 && selected.only[0] == name(tree, branch);
+    let mut is_shown = branch.shown > 0;
     let mut action = None;
     let height = ui.spacing().interact_size.y;
     let from_right = egui::Layout::right_to_left(egui::Align::Center);
     let row = egui::vec2(ui.available_width(), height);
     let response = ui.allocate_ui_with_layout(row, from_right, |ui| {
-        let alone = ui.add(switch_button(is_alone, "Solo"));
-        let name = format!("Show only {}", shown(&part.name));
-        alone.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_alone, &name));
-        if alone.on_hover_text("Shows this part alone; a second click shows all (--show-part).").clicked() {
-            action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(number) });
+        let hover_alone = "Shows this alone; a second click shows all (--show-part).";
+        if named_switch(ui, is_alone, "Solo", &format!("Show only {path}"), hover_alone) {
+            action = Some(if is_alone { PartAction::ShowAll } else { PartAction::Solo(at) });
         }
-        let name = shortened(&shown(&part.name), LONGEST);
-        let name = if is_picked { egui::RichText::new(name).strong() } else { egui::RichText::new(name) };
+        ui.weak(grouped(branch.triangles));
+        let label = match branch.path.rsplit('/').next() {
+            Some(".") | None => "itself",
+            Some(own) => own,
+        };
+        let label = egui::RichText::new(shortened(&shown(label), LONGEST));
+        let label = if picked.is_some() && picked == branch.part { label.strong() } else { label };
         let layout = egui::Layout::left_to_right(egui::Align::Center);
-        ui.with_layout(layout, |ui| ui.checkbox(&mut is_shown, name).on_hover_text(hover)).inner
+        ui.with_layout(layout, |ui| {
+            ui.add_space(branch.depth.min(MOST_INDENTS) as f32 * INDENT);
+            let is_open = !folded.contains(&branch.path);
+            let (sign, hover_fold) = (if is_open { "-" } else { "+" }, "Lists what lies in this group, or not.");
+            if is_group
+                && named_switch(ui, is_open, sign, &format!("Unfold {path}"), hover_fold)
+                && !folded.remove(&branch.path)
+            {
+                folded.insert(branch.path.clone());
+            }
+            let is_partly_shown = is_shown && branch.shown < branch.parts;
+            ui.add(egui::Checkbox::new(&mut is_shown, label).indeterminate(is_partly_shown)).on_hover_text(hover)
+        })
+        .inner
     });
     if response.inner.changed() {
-        action = Some(if is_shown { PartAction::Show(number) } else { PartAction::Hide(number) });
+        action = Some(PartAction::Set(at, is_shown));
     }
     (response.inner, action)
 }
 
-/// What can be done with a part.
-fn part_entries(ui: &mut egui::Ui, parts: &[Part], part: usize) -> Option<PartAction> {
-    let (is_hidden, are_hidden) = (parts[part].is_hidden, parts.iter().any(|part| part.is_hidden));
+/// A button that stays pressed while something is on, with a name that says what it is about. Returns whether it was clicked.
+fn named_switch(ui: &mut egui::Ui, is_on: bool, text: &str, name: &str, hover: &str) -> bool {
+    let button = ui.add(switch_button(is_on, text));
+    button.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_on, name));
+    button.on_hover_text(hover).clicked()
+}
+
+/// What can be done with a part or a group.
+fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize) -> Option<PartAction> {
+    let (branch, are_hidden) = (&tree[at], leaves(tree).any(|leaf| leaf.shown == 0));
+    let (is_shown, what) = (branch.shown > 0, if branch.part.is_some() { "part" } else { "group" });
     let entries = [
-        (PartAction::Frame(part), "Frame this part", !is_hidden),
-        (PartAction::Solo(part), "Show only this part", true),
-        (PartAction::Hide(part), "Hide this part", !is_hidden),
-        (PartAction::Show(part), "Show this part", is_hidden),
-        (PartAction::ShowAll, "Show all parts", are_hidden),
+        (PartAction::Frame(at), format!("Frame this {what}"), is_shown),
+        (PartAction::Solo(at), format!("Show only this {what}"), true),
+        (PartAction::Set(at, false), format!("Hide this {what}"), is_shown),
+        (PartAction::Set(at, true), format!("Show this {what}"), branch.shown < branch.parts),
+        (PartAction::CopyName(at), "Copy its name".to_owned(), true),
+        (PartAction::ShowAll, "Show all parts".to_owned(), are_hidden),
     ];
-    let chosen = |(action, label, is_possible): (_, &str, bool)| {
+    let chosen = |(action, label, is_possible): (_, String, bool)| {
         ui.add_enabled(is_possible, egui::Button::new(label)).clicked().then_some(action)
     };
     let chosen = entries.into_iter().filter_map(chosen).last();

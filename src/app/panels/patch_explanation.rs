@@ -3,46 +3,37 @@
 
 use egui::Ui;
 
+use super::patch_panel::SelectedPatch;
 use crate::app::patch_names::ends_text;
 use crate::app::text::factor;
 use crate::app::widgets::{dense, title};
-use geometry::mesh::Topology;
-use geometry::tessellate::{
-    Convention, DecidedBy, EdgeFormula, ExplainedEdge, ExplainedPatch, PatchFactors, domain_side, inside_cut,
-    is_enough, triangle_count,
-};
+use geometry::tessellate::{DecidedBy, EdgeFormula, ExplainedEdge, domain_side, inside_cut, is_enough, triangle_count};
 
-pub(super) struct ShownExplanation<'a> {
-    pub topology: &'a Topology,
-    pub convention: Convention,
-    /// None until it is made, and if nothing is emitted. The rows then have ellipses, so that they don't jump.
-    pub explained: Option<&'a ExplainedPatch>,
-    pub by_error: bool,
-    /// What takes the place of LOD: a file of factors, or a shader.
-    pub given_by: Option<&'static str>,
-    pub factors: Option<PatchFactors>,
-}
-
-impl ShownExplanation<'_> {
-    pub(super) fn rows(&self, ui: &mut Ui) {
-        if !self.by_error {
+impl SelectedPatch<'_> {
+    pub(super) fn explanation_rows(&self, ui: &mut Ui) {
+        if !self.by_error() {
             title(ui, WHY, "What LOD computes the factor of each edge from.");
             (0..3).for_each(|i| self.formula_row(ui, domain_side(self.convention, i) as usize));
         }
-        let (name, hover) = if self.by_error {
+        let (name, hover) = if self.by_error() {
             (WHY, "What LOD by error was asked for, and how far the triangles are from the surface.")
         } else {
             ("Against LOD by error", "How the patch's triangles compare with the tolerance of LOD by error.")
         };
         title(ui, name, hover);
-        self.header(ui);
+        self.error_header(ui);
         // In the order of the factors above.
         for i in 0..3 {
-            self.edge_row(ui, domain_side(self.convention, i) as usize);
+            self.error_row(ui, domain_side(self.convention, i) as usize);
         }
         self.inside_row(ui);
         self.tolerance_row(ui);
         self.least_rows(ui);
+    }
+
+    /// Whether its factors are those of LOD by error.
+    fn by_error(&self) -> bool {
+        self.lod.is_by_error() && self.given_by.is_none()
     }
 
     /// An edge's factor as LOD computes it.
@@ -56,10 +47,10 @@ impl ShownExplanation<'_> {
         ui.label(dense(format!("{:<4}{text}", ends_text(k as u32)))).on_hover_text(hover);
     }
 
-    fn header(&self, ui: &mut Ui) {
+    fn error_header(&self, ui: &mut Ui) {
         let error = "Error: an upper bound, in px on screen, of how far the triangles in the row along the edge, or along no edge, are \
                      from the surface.";
-        let (text, hover) = if self.by_error {
+        let (text, hover) = if self.by_error() {
             let asked = "This asks: the factor that this patch asks the edge for. Others ask: the largest that a patch across the edge \
                          asks for. Gets: the largest of both. From: whose request that was; \u{201c}curve\u{201d} if nobody asked \
                          for more than the edge's curve needs by itself.";
@@ -73,7 +64,7 @@ impl ShownExplanation<'_> {
         ui.label(dense(text.join("\n")).weak()).on_hover_text(hover);
     }
 
-    fn edge_row(&self, ui: &mut Ui, k: usize) {
+    fn error_row(&self, ui: &mut Ui, k: usize) {
         let name = ends_text(k as u32);
         let px = self.explained.and_then(|explained| explained.errors?.rows).map(|rows| rows[k]);
         let seen = match (self.explained, px) {
@@ -88,11 +79,11 @@ impl ShownExplanation<'_> {
                 (row(&name, &asked[0], &asked[1], &asked[2], by_text(edge), &seen), self.requests(&name, edge))
             }
             None => {
-                let asked = if self.by_error { UNKNOWN } else { "" };
+                let asked = if self.by_error() { UNKNOWN } else { "" };
                 (row(&name, asked, asked, asked, asked, &seen), format!("The row of triangles along edge {name}."))
             }
         };
-        self.label(ui, &text, px).on_hover_text(hover);
+        self.error_label(ui, &text, px).on_hover_text(hover);
     }
 
     /// Who asked for what, in sentences.
@@ -143,13 +134,13 @@ impl ShownExplanation<'_> {
         };
         let px = errors.map(|errors| errors.inside);
         let seen = px.map_or_else(|| UNKNOWN.to_owned(), px_text);
-        self.label(ui, &format!("{name:<16}{cut:>5} {:<6}{seen:>6}", ""), px).on_hover_text(hover);
+        self.error_label(ui, &format!("{name:<16}{cut:>5} {:<6}{seen:>6}", ""), px).on_hover_text(hover);
     }
 
     fn tolerance_row(&self, ui: &mut Ui) {
         let tolerance = self.explained.map_or_else(|| UNKNOWN.to_owned(), |explained| px_text(explained.tolerance));
         let mut hover = "The largest distance to the surface that LOD by error allows, in px.".to_owned();
-        if !self.by_error {
+        if !self.by_error() {
             hover += " The LOD that is used doesn't keep it.";
         }
         ui.label(dense(format!("{:<28}{tolerance:>6}", "tolerance"))).on_hover_text(hover);
@@ -180,7 +171,7 @@ impl ShownExplanation<'_> {
     }
 
     /// A row, in the colour of warnings if its triangles are beyond the tolerance.
-    fn label(&self, ui: &mut Ui, text: &str, px: Option<f32>) -> egui::Response {
+    fn error_label(&self, ui: &mut Ui, text: &str, px: Option<f32>) -> egui::Response {
         let is_beyond = self.explained.is_some_and(|explained| px.is_some_and(|px| px > explained.tolerance));
         let color = ui.visuals().warn_fg_color;
         ui.label(if is_beyond { dense(text).color(color) } else { dense(text) })

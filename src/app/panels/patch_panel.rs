@@ -2,7 +2,6 @@
 
 use egui::{RichText, Ui};
 
-use super::patch_explanation::ShownExplanation;
 use super::patch_pattern::{pattern_plot, weights_text};
 use crate::app::jobs::explain_job::EmittedPatch;
 use crate::app::patch_names::{LETTERS, ends_text, letter, mistake};
@@ -14,8 +13,9 @@ use geometry::mesh::{Mesh, Topology, adjacency};
 use geometry::names;
 use geometry::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
 use geometry::tessellate::{
-    Convention, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh, Vertex, domain_plan,
-    domain_side, domain_triangle, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
+    Convention, ExplainedPatch, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh,
+    Vertex, domain_plan, domain_side, domain_triangle, factor_side, inside_cut, point_count, segments, triangle_count,
+    weight_corner,
 };
 use inspect::measure::EdgeSide;
 use inspect::render::PickedTriangle;
@@ -30,16 +30,21 @@ enum Wish {
 }
 
 /// The selected triangle, its patch, and what is known about them.
-struct SelectedPatch<'a> {
+pub(super) struct SelectedPatch<'a> {
     mesh: &'a Mesh,
-    topology: &'a Topology,
+    pub topology: &'a Topology,
     triangle: u32,
     patch: u32,
-    convention: Convention,
-    lod: Lod,
+    pub convention: Convention,
+    pub lod: Lod,
+    /// What takes the place of LOD: a file of factors, or a shader.
+    pub given_by: Option<&'static str>,
+    /// Why it has its factors. None until that is found, and if nothing is emitted: the rows then have ellipses, so that they don't
+    /// jump.
+    pub explained: Option<&'a ExplainedPatch>,
     selected_edge: Option<u32>,
     /// Known once measured. All are 0 if the patch emits nothing.
-    factors: Option<PatchFactors>,
+    pub factors: Option<PatchFactors>,
     sides: Option<[EdgeSide; 3]>,
     hit: Option<PickedTriangle>,
     /// Whether a clip plays, so that nothing is measured until it pauses.
@@ -73,6 +78,8 @@ impl App {
                     patch,
                     convention,
                     lod: self.settings.tessellation.used_lod(),
+                    given_by,
+                    explained: question.as_ref().and_then(|(question, _)| self.explained(question)),
                     selected_edge: self.selected_edge(),
                     factors: found.map(|found| found.outlines.factors(patch)),
                     sides: found.and_then(|found| found.outlines.patch(topology, patch)),
@@ -80,7 +87,7 @@ impl App {
                     is_playing: self.is_playing(),
                 };
                 if let Some((part, document)) = self.picked_part().zip(self.document.as_ref()) {
-                    let name = names::shown(&document.loaded.parts[part].name);
+                    let name = names::shown(&document.loaded.contents.parts[part].name);
                     ui.add(egui::Label::new(RichText::new(&name).strong()).truncate()).on_hover_text(name);
                 }
                 // The tables have less space between lines than the rest of the panel.
@@ -88,13 +95,10 @@ impl App {
                     ui.spacing_mut().item_spacing.y = 3.0;
                     ui.spacing_mut().interact_size.y = 16.0;
                     shown.factor_rows(ui);
-                    let explained = question.as_ref().and_then(|(question, _)| self.explained(question));
-                    let by_error = shown.lod.is_by_error() && given_by.is_none();
                     if is_of_shader {
                         ui.add(egui::Label::new(NOT_EXPLAINED).wrap());
                     } else {
-                        let (convention, factors) = (shown.convention, shown.factors);
-                        ShownExplanation { topology, convention, explained, by_error, given_by, factors }.rows(ui);
+                        shown.explanation_rows(ui);
                     }
                     shown.plot(ui);
                     shown.edge_rows(ui, &mut wish);

@@ -2,11 +2,11 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
+use crate::app::jobs::companion_files::LeftMesh;
 use crate::app::jobs::job_list::Work;
-use crate::app::jobs::left_mesh::LeftMesh;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
-use crate::app::widgets::{LABEL_WIDTH, chooser, fixed};
+use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, fixed, list_row};
 use crate::commands::{
     Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
 };
@@ -28,6 +28,7 @@ impl App {
                 app.section(ui, Section::Displacement, Self::height_rows);
             });
             self.parts_section(ui);
+            self.morphs_section(ui);
             self.section(ui, Section::Look, Self::look_rows);
             self.section(ui, Section::Import, Self::import_rows);
             self.of_half(|app| app.section(ui, Section::Advanced, Self::advanced_rows));
@@ -73,11 +74,10 @@ impl App {
 
     /// Which mesh the left half shows.
     fn left_mesh_row(&mut self, ui: &mut egui::Ui) {
-        let label = ui.label("Left mesh");
         let shown = self.left_mesh.as_ref().map_or_else(|| "The same".to_owned(), LeftMesh::title);
-        let combo = egui::ComboBox::from_id_salt("Left mesh").selected_text(shown).truncate().show_ui(ui, |ui| {
+        list_row(ui, "Left mesh", shown, &with_note(LEFT_MESH, "--split-with"), |ui| {
             if ui.selectable_label(self.left_mesh.is_none(), "The same").clicked() {
-                self.forget_left_mesh();
+                self.close_companion(CompanionFile::LeftMesh);
             }
             let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
             if has_before && ui.selectable_label(false, "Before the change on disk").clicked() {
@@ -87,8 +87,6 @@ impl App {
                 self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::LeftMesh));
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(with_note(LEFT_MESH, "--split-with"));
-        ui.end_row();
     }
 
     /// What the left half shows.
@@ -145,13 +143,9 @@ impl App {
         if let Some(given) = &self.given {
             let hover = "These factors take the place of those of LOD.";
             ui.label("Factors").on_hover_text(hover);
-            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.path.display().to_string());
+            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.from.display().to_string());
             ui.end_row();
-            ui.label("");
-            let button = ui.button("Close the file");
-            let is_over = button.on_hover_text("Closes the file of factors. LOD computes factors again.").clicked();
-            ui.end_row();
-            if is_over {
+            if button_row(ui, "Close the file", "Closes the file of factors. LOD computes factors again.") {
                 self.forget_factors();
             }
             return;
@@ -200,15 +194,13 @@ impl App {
         ui.end_row();
     }
 
-    /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     /// A choice of material variants, which is there only if the file has some. Another variant loads the mesh again.
     fn variant_row(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = self.document.as_ref().filter(|document| !document.loaded.variants.is_empty()) else {
-            return;
-        };
+        let contents = self.contents();
+        let Some(document) = self.document.as_ref().filter(|_| !contents.variants.is_empty()) else { return };
         let own = document.loaded.preparation.variant.as_deref();
         let mut chosen = own;
-        let names = document.loaded.variants.iter().map(String::as_str);
+        let names = contents.variants.iter().map(String::as_str);
         let choices: Vec<_> = [(None, "File's own", "Each primitive has its own material.")]
             .into_iter()
             .chain(names.map(|name| (Some(name), name, "Primitives have the materials of this variant.")))
@@ -223,29 +215,33 @@ impl App {
 
     /// A choice of scenes, which is there only if the file has several. Another scene loads the mesh again.
     fn scene_row(&mut self, ui: &mut egui::Ui) {
-        let Some(document) = self.document.as_ref().filter(|document| document.loaded.scenes.len() > 1) else { return };
-        let loaded = &document.loaded;
-        let own = loaded.scene;
+        let contents = self.contents();
+        let (scenes, own) = (&contents.scenes, contents.scene);
+        if scenes.len() <= 1 {
+            return;
+        }
         let mut chosen = own;
-        let names = loaded.scenes.iter().enumerate();
+        let names = scenes.iter().enumerate();
         let choices: Vec<_> =
             names.map(|(i, name)| (Some(i), name.as_str(), "What is shown of the file is this scene.")).collect();
         chooser(ui, "Scene", "Which of the file's scenes is shown (--scene).", &mut chosen, &choices);
         if let Some(scene) = chosen.filter(|_| chosen != own) {
             // By name if that is unique, so that it stays right when the file changes.
-            let name = &loaded.scenes[scene];
-            let is_first = loaded.scenes.iter().position(|other| other == name) == Some(scene);
+            let name = &scenes[scene];
+            let is_first = scenes.iter().position(|other| other == name) == Some(scene);
             let name = if is_first { name.clone() } else { scene.to_string() };
             self.prepare(ui.ctx(), |preparation| preparation.scene = Some(name));
         }
     }
 
+    /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let weld = document.loaded.preparation.weld;
-        let label = ui.label("Weld");
         let mut chosen = weld;
-        let combo = egui::ComboBox::from_id_salt("Weld").selected_text(tolerance(weld)).show_ui(ui, |ui| {
+        let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances \
+                     are relative to the bounding diagonal. The list says how many edges each would join.";
+        list_row(ui, "Weld", tolerance(weld), hover, |ui| {
             ui.selectable_value(&mut chosen, 0.0, "Exact").on_hover_text("Only exactly equal positions are one point.");
             match document.checks.joins.get() {
                 Some(all) => {
@@ -262,18 +258,22 @@ impl App {
                 None => drop(ui.weak("not tried")),
             }
         });
-        combo.response.labelled_by(label.id).on_hover_text(
-            "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances are \
-             relative to the bounding diagonal. The list says how many edges each would join.",
-        );
-        ui.end_row();
         if chosen != weld {
             self.prepare(ui.ctx(), |preparation| preparation.weld = chosen);
         }
     }
 
     fn look_rows(&mut self, ui: &mut egui::Ui) {
-        shown_option_row(ui, &options::CURVATURE_SCALE, &mut self.settings);
+        for option in [
+            &options::CURVATURE_KIND,
+            &options::CURVATURE_SCALE,
+            &options::ZEBRA_STRIPES,
+            &options::ZEBRA_DIRECTION,
+            &options::CHECKER_SQUARES,
+            &options::TEXEL_DENSITY_PER,
+        ] {
+            shown_option_row(ui, option, &mut self.settings);
+        }
         self.matcap_row(ui);
         self.light_rows(ui);
         self.background_row(ui);

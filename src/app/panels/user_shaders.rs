@@ -4,6 +4,7 @@ use egui::RichText;
 
 use crate::app::App;
 use crate::app::jobs::user_shader_job::UserShaderSlot;
+use crate::app::widgets::button_row;
 use crate::commands::{CLOSE_LOD_SHADER, CLOSE_SURFACE_SHADER};
 use gpu::{LodShader, SurfaceShader};
 
@@ -63,10 +64,7 @@ impl App {
             ui.add(egui::Label::new(text).wrap());
             ui.end_row();
         }
-        ui.label("");
-        let closes = ui.button(texts.close).on_hover_text(texts.close_hover).clicked();
-        ui.end_row();
-        if closes {
+        if button_row(ui, texts.close, texts.close_hover) {
             self.forget_shader::<S>();
         }
     }

@@ -306,7 +306,7 @@ impl App {
         self.forget_shader::<LodShader>();
         self.forget_shader::<SurfaceShader>();
         self.reset_settings();
-        self.close_environment();
+        self.close_companion(CompanionFile::Environment);
         self.history = Default::default();
         self.view_history = Default::default();
         self.viewport.bookmarks.clear();

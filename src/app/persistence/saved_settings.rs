@@ -1,33 +1,13 @@
 //! Settings as JSON, whose members and values have the names that options declare.
 
-use serde_json::{Map, Value as Json, json};
+use serde_json::{Value as Json, json};
 
 use inspect::settings::{Declaration, Kind, Settings, Value, options};
 
 /// Returns all settings as a JSON object.
 pub(super) fn written_settings(settings: &Settings) -> Json {
-    let mut members = Map::new();
-    for option in options::all() {
-        let values = match option.get(settings) {
-            Value::Pair(pair) => pair.map(|number| json!(number)).to_vec(),
-            value => vec![written(value)],
-        };
-        members.extend(option.members().into_iter().zip(values));
-    }
-    members.into()
-}
-
-fn written(value: Value) -> Json {
-    match value {
-        Value::Unset => Json::Null,
-        Value::Name(name) => json!(name),
-        Value::Names(names) => json!(names),
-        Value::Number(number) => json!(number),
-        Value::Pair(pair) => json!(pair),
-        Value::Switch(is_on) => json!(is_on),
-        Value::Color(color) => json!(color),
-        value @ Value::Options(_) => json!(value.to_string()),
-    }
+    let members = options::all().flat_map(|option| option.written(settings));
+    members.map(|(name, value)| (name, json!(value))).collect()
 }
 
 /// Reads settings. Members that are missing or invalid get the values of a first start.

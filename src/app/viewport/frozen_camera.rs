@@ -40,7 +40,7 @@ impl App {
     /// Freezes LOD and clipping as they are for the camera of the picture that is shown.
     fn freeze(&mut self) {
         let Some((document, drawn)) = self.document.as_ref().zip(self.viewport.picture.drawn) else { return };
-        let (camera, viewport) = (drawn.camera, drawn.viewport);
+        let (camera, viewport) = (drawn.camera, drawn.view.viewport);
         let view = camera.lod_view(viewport, &document.scene.bounds);
         self.viewport.frozen = Some(FrozenCamera { camera, viewport, view });
     }

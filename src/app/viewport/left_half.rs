@@ -39,7 +39,7 @@ impl App {
         document.scene.set_left(None)?;
         let Some(wanted) = wanted else { return Ok(()) };
         let (engine, sibling) = (self.engine.clone(), document.scene.sibling(arena_bytes(&self.engine)));
-        let other = self.left_mesh.as_ref().map(|left| left.loaded.clone());
+        let other = self.left_mesh.as_ref().map(|left| left.content.clone());
         let make = move |_: &_| match other {
             Some(other) => scene_of(&engine, &other),
             None => engine.gpu.attempt(sibling)?,

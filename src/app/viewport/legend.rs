@@ -31,8 +31,8 @@ impl PaintedLegend {
 impl App {
     /// Shows the legend of the colours over a picture, if they have one. It is painted anew only if it changes.
     pub(super) fn legend(&mut self, ui: &egui::Ui, picture: Rect) {
-        let radius = self.document.as_ref().map(|document| document.scene.bounds.radius());
-        let legend = radius.and_then(|radius| legend_of(&self.settings, radius, &self.legend_distances()));
+        let usual = self.document.as_ref().map(|document| document.scene.usual());
+        let legend = usual.and_then(|usual| legend_of(&self.settings, &usual, &self.legend_distances()));
         let Some(legend) = legend else { return self.viewport.legend = None };
         let point = ui.ctx().pixels_per_point();
         let room = [picture.width(), picture.height()].map(|side| (side * point).max(1.0) as u32);

@@ -33,9 +33,10 @@ use preview::Preview;
 use ruler::Ruler;
 use warm_up::WarmUp;
 
+#[derive(Default)]
 pub(super) struct Viewport {
     /// Where it was in the last frame, in points.
-    pub rect: egui::Rect,
+    pub rect: Option<egui::Rect>,
     pub camera: Camera,
     /// The camera as it was when it last framed the whole mesh.
     pub framed: Option<Camera>,
@@ -70,25 +71,11 @@ pub(super) struct Viewport {
 impl Viewport {
     pub(super) fn new(engine: &Engine) -> Self {
         Self {
-            rect: egui::Rect::NOTHING,
             camera: Camera::framing(&Default::default(), glam::Vec2::ONE),
-            framed: None,
-            framed_size: glam::Vec2::ZERO,
-            opened: None,
-            through: None,
-            bookmarks: Vec::new(),
-            frozen: None,
             last_split: 0.5,
-            greets: false,
             picture: Picture::new(engine),
-            legend: None,
-            pace: Pace::default(),
             preview: Preview::new(engine),
-            warm_up: WarmUp::default(),
-            playback: Playback::default(),
-            closes_list: false,
-            ruler: None,
-            pointer: None,
+            ..Self::default()
         }
     }
 }

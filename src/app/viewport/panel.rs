@@ -43,7 +43,7 @@ const GREETING: &str =
 impl App {
     pub(in crate::app) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
         let rect = ui.available_rect_before_wrap();
-        self.viewport.rect = rect;
+        self.viewport.rect = Some(rect);
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         let points = vec2(rect.width(), rect.height());
@@ -174,8 +174,7 @@ impl App {
             camera,
             settings,
             inputs: settings.inputs(view),
-            clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds),
-            viewport,
+            view: ScreenView { clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds), viewport },
         };
         Ok(Some((wanted, document.from_files == from_files && document.moment == moment)))
     }
@@ -193,8 +192,8 @@ impl App {
             return Ok(());
         }
         let bounds = document.scene.bounds;
-        let view = ScreenView { clip_from_object: wanted.clip_from_object, viewport: wanted.viewport };
-        let seen = wanted.camera.lod_view(wanted.viewport, &bounds);
+        let view = wanted.view;
+        let seen = wanted.camera.lod_view(view.viewport, &bounds);
         let silhouette = SilhouetteView { size, seen, lod: wanted.inputs.view };
         // What is counted in a view stays that of the frozen one, with all other numbers.
         let (camera, counted_in) = match self.viewport.frozen {

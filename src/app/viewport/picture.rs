@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-use glam::{Mat4, Vec2, vec2};
+use glam::{Vec2, vec2};
 
 use super::pace::next_steps;
 use crate::app::Document;
@@ -29,9 +29,7 @@ pub(crate) struct PictureRequest {
     pub camera: Camera,
     pub settings: Settings,
     pub inputs: Inputs,
-    pub clip_from_object: Mat4,
-    /// Width and height in px.
-    pub viewport: Vec2,
+    pub view: ScreenView,
 }
 
 impl PictureRequest {
@@ -132,17 +130,16 @@ impl Picture {
 
     /// A pixel of the last picture, counted from the left and the top, and the half that is there.
     pub(crate) fn pixel(&self, scene: &Scene, at: [u32; 2]) -> Option<(SplitSide, Pixel)> {
-        let PictureRequest { camera, viewport, settings, .. } = self.drawn?;
+        let PictureRequest { camera, view, settings, .. } = self.drawn?;
         let size = self.target.as_ref()?.0.size;
         let (half, at) = half_at(at, size, &settings);
         let bounds = scene.half(half).map_or(&scene.bounds, |own| &own.bounds);
-        let clip_from_object = section::clip_from_object(&camera, viewport, bounds, &settings);
+        let clip_from_object = section::clip_from_object(&camera, view.viewport, bounds, &settings);
         Some((half, Pixel { clip_from_object, size, at, has_input: false }))
     }
 
     pub(crate) fn seen_from(&self) -> Option<ScreenView> {
-        let PictureRequest { clip_from_object, viewport, .. } = self.drawn?;
-        Some(ScreenView { clip_from_object, viewport })
+        self.drawn.map(|drawn| drawn.view)
     }
 
     /// Bytes of the textures that are drawn into.
@@ -224,7 +221,7 @@ impl Picture {
         if self.drawn != Some(wanted) {
             self.begun.get_or_insert_with(Instant::now);
         }
-        let is_counted = self.count(engine, scene, &wanted, under_way.is_none())?;
+        let is_counted = self.count(scene, &wanted, under_way.is_none())?;
         let Some((target, _)) = &self.target else { return Ok(()) };
         if self.in_flight.is_some() || !is_counted {
             return Ok(());
@@ -255,13 +252,7 @@ impl Picture {
 
     /// Lets the device count what each half will emit, with the wanted inputs if `anew` is set. Returns true once the counts
     /// are known, and false while the left half is still being made.
-    fn count(
-        &mut self,
-        engine: &Engine,
-        scene: &mut Scene,
-        wanted: &PictureRequest,
-        anew: bool,
-    ) -> Result<bool, GpuError> {
+    fn count(&mut self, scene: &mut Scene, wanted: &PictureRequest, anew: bool) -> Result<bool, GpuError> {
         let mut is_counted = true;
         for half in SplitSide::BOTH {
             let Some(inputs) = wanted.inputs_of(half) else { continue };
@@ -270,11 +261,7 @@ impl Picture {
             if anew {
                 tessellator.set(&inputs)?;
             }
-            if tessellator.needs_count() {
-                let mut recorder = Recorder::new(&engine.gpu, &mut self.timing);
-                tessellator.count(&mut recorder)?;
-                recorder.submit();
-                tessellator.request_counts();
+            if tessellator.count(&mut self.timing)? {
                 self.counting = Some(*wanted);
             }
             is_counted &= self.in_flight.is_none() && tessellator.poll_counts()?;

@@ -3,16 +3,16 @@
 use std::time::{Duration, Instant};
 
 use egui::{PopupAnchor, Response};
-use glam::{Vec3, vec2};
+use glam::{Mat4, Vec2, Vec3, vec2};
 
 use crate::app::App;
 use crate::app::text::{factor, short};
-use geometry::tessellate::factor_side;
+use geometry::tessellate::{CurvatureKind, FIXED_ONE, LodView, Vertex, factor_side, patch_curvature, patch_net};
 use geometry::view::{ScreenView, seen_on_plane};
 use gpu::GpuError;
 use inspect::measure::size_px;
-use inspect::render::{Picked, Picking, Pixel};
-use inspect::settings::{Colors, DeviationUnit, SplitSide};
+use inspect::render::{Picked, Picking, Pixel, texel_density};
+use inspect::settings::{Colors, SplitSide, SurfaceUnit};
 
 /// How long the pointer rests before the place under it is looked up.
 const REST: Duration = Duration::from_millis(120);
@@ -70,7 +70,12 @@ impl App {
     fn place_under(&self, response: &Response) -> Option<PointerValue> {
         let has_numbers = matches!(
             self.settings.overlays.colors,
-            Colors::Factors | Colors::LowFactors | Colors::TriangleSize | Colors::Deviation
+            Colors::Factors
+                | Colors::LowFactors
+                | Colors::TriangleSize
+                | Colors::Deviation
+                | Colors::Curvature
+                | Colors::TexelDensity
         );
         let pointer = response
             .hover_pos()
@@ -101,19 +106,39 @@ impl App {
     fn value_at(&self, place: &PointerValue, found: &Picked) -> Option<String> {
         let Pixel { clip_from_object, size, at, .. } = place.pixel;
         let view = ScreenView { clip_from_object, viewport: vec2(size[0] as f32, size[1] as f32) };
-        let corners = found.triangle?.vertices.map(|vertex| Vec3::from(vertex.position));
+        let vertices = found.triangle?.vertices;
+        let corners = vertices.map(|vertex| Vec3::from(vertex.position));
+        let middle = vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5);
         match self.settings.overlays.colors {
             Colors::TriangleSize => {
                 let size = size_px(corners.map(|corner| view.clip_from_object * corner.extend(1.0)), view.viewport)?;
                 Some(format!("{} px", short(size)))
             }
             Colors::Deviation => {
-                if self.settings.deviation_in == DeviationUnit::Px {
+                if self.settings.deviation_in == SurfaceUnit::Px {
                     return None;
                 }
                 let reference = self.yardstick().1?;
-                let point = seen_on_plane(&view, vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5), corners)?;
+                let point = seen_on_plane(&view, middle, corners)?;
                 Some(format!("{} units", short(reference.closest(point.as_dvec3()).distance)))
+            }
+            Colors::Curvature => {
+                let domain = |vertex: &Vertex| vertex.domain().map(|weight| weight as f32);
+                self.curvature_at(place.half, found.patch, mean_at(&view, middle, &vertices, domain)?)
+            }
+            Colors::TexelDensity => {
+                let scene = self.document.as_ref()?.scene.half(place.half)?;
+                let material = scene.tessellator.topology().material_of(found.patch);
+                let material = &scene.tessellator.mesh().materials[material];
+                let (density, unit) = match self.settings.texel_density_per {
+                    SurfaceUnit::Units => (texel_density(material, vertices.map(|own| own.uv.into()), corners), "unit"),
+                    SurfaceUnit::Px => {
+                        let seen = |aside: Vec2| mean_at(&view, middle + aside, &vertices, |own| own.uv);
+                        let uvs = [seen(Vec2::ZERO)?, seen(Vec2::X)?, seen(Vec2::Y)?];
+                        (texel_density(material, uvs, [Vec3::ZERO, Vec3::X, Vec3::Y]), "px")
+                    }
+                };
+                Some(format!("{} texels / {unit}", short(density?.into())))
             }
             _ => {
                 let scene = self.document.as_ref()?.scene.half(place.half)?;
@@ -123,6 +148,37 @@ impl App {
                 Some(format!("Factors {}", factors.join(", ")))
             }
         }
+    }
+}
+
+/// The mean of something that a triangle's vertices have, as it is at the place of its plane that is seen at `px` of the picture.
+fn mean_at(view: &ScreenView, px: Vec2, vertices: &[Vertex; 3], of: impl Fn(&Vertex) -> [f32; 2]) -> Option<Vec2> {
+    let corners = vertices.map(|vertex| Vec3::from(vertex.position));
+    let point = seen_on_plane(view, px, corners)?;
+    let [a, b, c] = corners.map(|corner| (corner - point).as_dvec3());
+    let whole = (b - a).cross(c - a);
+    let shares = [b.cross(c), c.cross(a), a.cross(b)].map(|part| part.dot(whole) / whole.length_squared());
+    let mean: Vec2 = shares.iter().zip(vertices).map(|(share, vertex)| *share as f32 * Vec2::from(of(vertex))).sum();
+    mean.is_finite().then_some(mean)
+}
+
+impl App {
+    /// The curvature of a patch in a half at domain coordinates `at`, in fixed point; none of a shader's surface, and in a pose as
+    /// long as that isn't known on the CPU.
+    fn curvature_at(&self, half: SplitSide, patch: u32, at: Vec2) -> Option<String> {
+        if half == SplitSide::Right && self.uses_surface_shader() {
+            return None;
+        }
+        let scene = self.document.as_ref()?.scene.half(half)?;
+        let (mesh, topology) = scene.tessellator.posed().deformed_if_quick()?;
+        let inputs = self.settings.half(half)?.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        // A pixel at a border may have its middle beside the triangle.
+        let u = (at.x.max(0.0) as u32).min(FIXED_ONE);
+        let v = (at.y.max(0.0) as u32).min(FIXED_ONE - u);
+        let (kind, net) = (self.settings.curvature_kind, patch_net(&mesh, &topology, &inputs, patch));
+        let curvature = patch_curvature(kind, inputs.tessellation.surface, &net, u, v);
+        let unit = if kind == CurvatureKind::Gaussian { "unit²" } else { "unit" };
+        Some(format!("{} / {unit}", short(curvature.into())))
     }
 }
 

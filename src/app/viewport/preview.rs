@@ -12,7 +12,7 @@ use crate::app::painting::{Painting, ShownPicture};
 use crate::app::{App, Document};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::ScreenView;
-use gpu::{GpuError, Recorder, Timing};
+use gpu::{GpuError, Timing, submit_untimed};
 use inspect::engine::Engine;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ColorSource, Colors, Settings, SplitSide, SplitView};
@@ -71,11 +71,6 @@ impl Preview {
     pub(crate) fn new(engine: &Engine) -> Self {
         let finest = if engine.gpu.is_software() { 2 } else { 1 };
         Self { is_on: true, coarseness: finest, finest, ..Self::default() }
-    }
-
-    /// The same, switched on or off.
-    pub(crate) fn with(self, is_on: bool) -> Self {
-        Self { is_on, ..self }
     }
 
     /// Whether a picture that takes as long as the last full one is replaced by a preview while the camera moves.
@@ -164,7 +159,7 @@ impl Preview {
         wanted: &PictureRequest,
         shape: Shape,
     ) -> Result<(), GpuError> {
-        if !count(engine, scene, wanted)? || !self.pace.is_free() {
+        if !count(scene, wanted)? || !self.pace.is_free() {
             return Ok(());
         }
         if self.drawn == Some((*wanted, shape)) {
@@ -185,10 +180,9 @@ pub(super) fn draw(
     target: &Target,
     wanted: &PictureRequest,
 ) -> Result<Arc<AtomicBool>, GpuError> {
-    let mut timing = Timing::Off;
-    let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-    engine.renderer.draw(&mut recorder, scene, target, &wanted.camera, &wanted.settings)?;
-    recorder.submit();
+    submit_untimed(&engine.gpu, |recorder| {
+        engine.renderer.draw(recorder, scene, target, &wanted.camera, &wanted.settings)
+    })?;
     let done = Arc::new(AtomicBool::new(false));
     let own = done.clone();
     engine.gpu.queue.on_submitted_work_done(move || own.store(true, Ordering::Release));
@@ -196,21 +190,14 @@ pub(super) fn draw(
 }
 
 /// Lets the device count what each half emits. Returns true once that is known.
-pub(super) fn count(engine: &Engine, scene: &mut Scene, wanted: &PictureRequest) -> Result<bool, GpuError> {
+pub(super) fn count(scene: &mut Scene, wanted: &PictureRequest) -> Result<bool, GpuError> {
     let mut is_counted = true;
     for half in SplitSide::BOTH {
         let Some(inputs) = wanted.inputs_of(half) else { continue };
         let Some(scene) = scene.half_mut(half) else { return Ok(false) };
-        let tessellator = &mut scene.tessellator;
-        tessellator.set(&inputs)?;
-        if tessellator.needs_count() {
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-            tessellator.count(&mut recorder)?;
-            recorder.submit();
-            tessellator.request_counts();
-        }
-        is_counted &= tessellator.poll_counts()?;
+        scene.tessellator.set(&inputs)?;
+        scene.tessellator.count(&mut Timing::Off)?;
+        is_counted &= scene.tessellator.poll_counts()?;
     }
     Ok(is_counted)
 }
@@ -290,7 +277,7 @@ impl App {
         self.viewport.warm_up.give_way();
         let preview = &mut self.viewport.preview;
         preview.land();
-        preview.fit(&self.painting, &self.engine, full.viewport)?;
+        preview.fit(&self.painting, &self.engine, full.view.viewport)?;
         let light = self
             .environment
             .as_ref()
@@ -332,11 +319,6 @@ impl App {
     /// The view of what is shown: of a preview, or of the full picture.
     pub(in crate::app) fn shown_view(&self) -> Option<ScreenView> {
         let picture = &self.viewport.picture;
-        match self.viewport.preview.shown(picture) {
-            Some((PictureRequest { clip_from_object, viewport, .. }, _)) => {
-                Some(ScreenView { clip_from_object: *clip_from_object, viewport: *viewport })
-            }
-            None => picture.seen_from(),
-        }
+        self.viewport.preview.shown(picture).map(|(drawn, _)| drawn.view).or(picture.seen_from())
     }
 }

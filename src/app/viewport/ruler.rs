@@ -49,10 +49,7 @@ impl Ruler {
 impl App {
     /// Starts to measure distances: clicks take places until it is stopped.
     pub(in crate::app) fn toggle_ruler(&mut self) {
-        self.viewport.ruler = match self.viewport.ruler {
-            Some(_) => None,
-            None => Some(Ruler::default()),
-        };
+        self.viewport.ruler = self.viewport.ruler.is_none().then(Ruler::default);
     }
 
     /// The ends of the distance that is measured, in object units.

@@ -76,7 +76,7 @@ impl WarmUp {
             },
             Step::Counting(mut scene, wanted) => {
                 context.request_repaint();
-                if !count(engine, &mut scene, &wanted)? {
+                if !count(&mut scene, &wanted)? {
                     return Ok(Some(Step::Counting(scene, wanted)));
                 }
                 self.drawings += 1;

@@ -109,7 +109,8 @@ impl App {
         let scene = self.document.as_ref().map(|document| scene_of(&engine, &document.loaded)).transpose()?;
         let mut viewport = Picture::new(&engine);
         viewport.cancelled = self.viewport.picture.cancelled;
-        let preview = Preview::new(&engine).with(self.viewport.preview.is_on);
+        let mut preview = Preview::new(&engine);
+        preview.is_on = self.viewport.preview.is_on;
         (self.engine, self.render_state, self.painting) = (engine, render_state, painting);
         (self.viewport.picture, self.viewport.preview) = (viewport, preview);
         (self.viewport.warm_up, self.viewport.legend) = (WarmUp::default(), None);

@@ -1,6 +1,5 @@
 //! `--report`: the folder that `pnaen chart` writes its page to, and what is charted if no mesh was named.
 
-use std::ffi::OsString;
 use std::path::Path;
 use std::time::SystemTime;
 
@@ -8,6 +7,7 @@ use super::super::{CliError, write_text};
 use geometry::mesh::Shape;
 use geometry::numbers::utc;
 use gpu::Gpu;
+use inspect::shot::given;
 use lab::chart::report::{Occasion, PAGE, Part, page};
 use lab::chart::svg;
 use load::Source;
@@ -52,18 +52,8 @@ pub(super) fn occasion(gpu: &Gpu) -> Occasion {
         driver: driver.join(", "),
         is_software: gpu.is_software(),
         date: utc(SystemTime::now()),
-        command: command_line(std::env::args_os().skip(1)),
+        command: given(std::env::args_os()),
     }
-}
-
-/// Returns the command line, quoted for a shell.
-fn command_line(arguments: impl Iterator<Item = OsString>) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "_@%+=:,./-".contains(letter);
-    let typed = |argument: OsString| {
-        let text = argument.to_string_lossy().into_owned();
-        if !text.is_empty() && text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
-    };
-    ["pnaen".to_owned()].into_iter().chain(arguments.map(typed)).collect::<Vec<_>>().join(" ")
 }
 
 /// Writes the page and its pictures.
@@ -83,15 +73,5 @@ mod tests {
         let source = |text: &str| text.parse::<Source>().expect("a source");
         let meshes = ["shape:torus", "shape:torus@2", "a/Low poly.glb", "b/low poly.gltf", "torus.glb"].map(source);
         assert_eq!(pictures(&meshes), ["torus.svg", "torus-2.svg", "low-poly.svg", "low-poly-2.svg", "torus-3.svg"]);
-    }
-
-    #[test]
-    fn the_command_line_can_be_typed_again() {
-        let line = |words: &[&str]| command_line(words.iter().map(OsString::from));
-        assert_eq!(
-            line(&["chart", "shape:torus@2", "--report", "docs/results"]),
-            "pnaen chart shape:torus@2 --report docs/results"
-        );
-        assert_eq!(line(&["chart", "it's a.glb", ""]), "pnaen chart 'it'\\''s a.glb' ''");
     }
 }

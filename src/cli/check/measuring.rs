@@ -19,6 +19,7 @@ use inspect::shot::png_bytes;
 use lab::check::{Asset, Cache, GOLDEN, GateResult, View};
 use load::LoadError;
 use load::files::file_reason;
+use load::selection::is_part_of;
 
 /// The most px along a side of a picture on the page.
 const MOST_PX: u32 = 704;
@@ -95,7 +96,11 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
     let mut absent = Vec::new();
     let loaded = match inspect::engine::load(&job.source, &preparation, progress) {
         Err(LoadError::Absent { what: "part", known, .. }) => {
-            absent = preparation.parts.hidden.extract_if(.., |part| !known.contains(part)).collect();
+            absent = preparation
+                .parts
+                .hidden
+                .extract_if(.., |part| !known.iter().any(|known| is_part_of(known, part)))
+                .collect();
             inspect::engine::load(&job.source, &preparation, progress)
         }
         other => other,

@@ -4,9 +4,10 @@ use std::fmt::Write;
 
 use glam::Vec3;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 use geometry::names::shown;
-use geometry::numbers::{grouped, short};
+use geometry::numbers::{counted, grouped, short};
 use lab::compare::{Comparison, Farthest, Finding, OurTessellation, SideDifference, Tolerances, plural, point};
 
 /// How many sides are printed, and how many JSON has.
@@ -35,11 +36,11 @@ impl Report<'_> {
         let _ = writeln!(
             text,
             "\n{} and {} on {} of {} patches; ours are {}.",
-            plural(found.triangles, "triangle", "triangles"),
+            counted(found.triangles, "triangle"),
             plural(found.vertices, "vertex", "vertices"),
             grouped(found.patches),
             grouped(self.ours.topology.patches.len() as u64),
-            plural(self.ours.tessellated.triangles.len() as u64, "triangle", "triangles")
+            counted(self.ours.tessellated.triangles.len() as u64, "triangle")
         );
         let _ = writeln!(text, "Largest distance of a vertex from the surface: {}.", self.distance(found.from_surface));
         if let Some(farthest) = found.farthest {
@@ -76,7 +77,7 @@ impl Report<'_> {
                 text,
                 "triangle {triangle}, corners {k} to {}, {from} to {to}: {} (factor {}), ours {} (factor {})",
                 (k + 1) % 3,
-                plural(theirs.segments, "segment", "segments"),
+                counted(theirs.segments, "segment"),
                 short(theirs.factor),
                 ours.segments,
                 short(ours.factor)
@@ -93,7 +94,7 @@ impl Report<'_> {
             ours: farthest.ours.to_array(),
             distance: distance(farthest.distance),
         };
-        let finding = |finding: &Finding| JsonFinding { kind: finding.kind(), text: finding.to_string() };
+        let finding = |finding: &Finding| json!({ "kind": finding.kind(), "text": finding.to_string() });
         let triangle = |patch: &u32| self.ours.topology.patches[*patch as usize].triangle;
         Json {
             theirs: self.theirs,
@@ -122,7 +123,7 @@ pub(super) struct Json<'a> {
     theirs: &'a str,
     mesh: &'a str,
     same: bool,
-    findings: Vec<JsonFinding>,
+    findings: Vec<Value>,
     vertices: u64,
     triangles: u64,
     our_triangles: u64,
@@ -136,12 +137,6 @@ pub(super) struct Json<'a> {
     /// Triangles of the mesh whose patches differ, and those whose patches have no triangles.
     triangles_different: Vec<u32>,
     triangles_missing: Vec<u32>,
-}
-
-#[derive(Debug, Serialize)]
-struct JsonFinding {
-    kind: &'static str,
-    text: String,
 }
 
 #[derive(Debug, Serialize)]

@@ -10,7 +10,12 @@ use load::{Import, ShownParts};
 
 /// How the window takes the mesh that it opens first. What isn't given is as the window was left, or as it was chosen for the file.
 #[derive(Clone, Debug, Default, Args)]
-#[command(mut_arg("hide_part", |arg| arg.requires("file")), mut_arg("show_part", |arg| arg.requires("file")))]
+#[command(
+    mut_arg("hide_part", |arg| arg.requires("file")),
+    mut_arg("show_part", |arg| arg.requires("file")),
+    mut_arg("part", |arg| arg.requires("file")),
+    mut_arg("morph", |arg| arg.requires("file"))
+)]
 pub struct OpeningOptions {
     #[command(flatten)]
     import: Declared<GivenImport>,
@@ -18,9 +23,9 @@ pub struct OpeningOptions {
     pub parts: PartOptions,
 }
 
-/// The options of [`options::IMPORT`] that were given, with their values.
-#[derive(Clone, Default)]
-struct GivenImport(Vec<(&'static Declaration, Value)>);
+/// The names of those of [`options::IMPORT`] that were given, with their values.
+#[derive(Clone, Debug, Default)]
+struct GivenImport(Vec<(&'static str, Value)>);
 
 impl OpeningOptions {
     /// Whether none was given.
@@ -37,8 +42,9 @@ impl OpeningOptions {
     /// How the geometry of a file is taken, which is `usual` without options.
     pub fn import(&self, usual: Import) -> Import {
         let mut settings = Settings { import: usual, ..Settings::default() };
-        for (declaration, value) in &self.import.0.0 {
-            declaration.set(&mut settings, value.clone());
+        for (name, value) in &self.import.0.0 {
+            let declared = options::IMPORT.into_iter().filter(|own| own.name == *name);
+            declared.for_each(|own| _ = own.set(&mut settings, value.clone()));
         }
         settings.import
     }
@@ -52,15 +58,9 @@ impl Group for GivenImport {
     }
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        let value = |declaration: &&'static Declaration| Some((*declaration, given(declaration, matches)?));
+        let value = |declaration: &&'static Declaration| Some((declaration.name, given(declaration, matches)?));
         self.0 = Self::ALL.iter().filter_map(value).collect();
         Ok(())
-    }
-}
-
-impl std::fmt::Debug for GivenImport {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        f.debug_map().entries(self.0.iter().map(|(declaration, value)| (declaration.name, value))).finish()
     }
 }
 
@@ -108,6 +108,8 @@ mod tests {
     #[test]
     fn parts_need_a_file_and_commands_have_options_of_their_own() {
         assert!(Cli::try_parse_from(["pnaen", "--hide-part", "a"]).is_err());
+        assert!(Cli::try_parse_from(["pnaen", "--morph", "a=1"]).is_err());
+        assert_eq!(options(&["a.obj", "--morph", "a=1", "--morph=b=2"]).parts.shown().morphs.len(), 2);
         assert!(Cli::try_parse_from(["pnaen", "--up", "z", "info", "a.obj"]).is_err());
         for unit in ["parsec", "0", "-1", "nan", "inf", "1e300", "1e-40", "0.0254 m", ""] {
             assert!(Cli::try_parse_from(["pnaen", "a.obj", "--unit", unit]).is_err(), "{unit}");

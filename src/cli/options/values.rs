@@ -8,6 +8,7 @@ use std::str::FromStr;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec3;
 
+use geometry::mesh::PartStyle;
 use inspect::export::ending;
 use inspect::render::camera::FIELDS_OF_VIEW;
 use load::format::Format;
@@ -56,6 +57,12 @@ pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
     ending_in(&["glb", "obj"], "meshes are written as .glb or .obj files: name it one of these")
 }
 
+/// Parses the name of a part, and what it has in place of what is set for all.
+pub(crate) fn part_style(text: &str) -> Result<(String, PartStyle), String> {
+    let (name, style) = text.rsplit_once(':').ok_or("expected NAME:surface=SURFACE,detail=NUMBER")?;
+    Ok((name.to_owned(), style.parse()?))
+}
+
 /// Parses a width and height in px.
 pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse().ok().filter(|side| (1..=16384).contains(side));
@@ -88,17 +95,35 @@ impl FromStr for CameraOption {
     }
 }
 
+/// Parses the name of a morph target, which may have equals signs, and its weight.
+pub(super) fn morph(text: &str) -> Result<(String, f32), String> {
+    let (name, weight) = text.rsplit_once('=').unwrap_or_default();
+    let weight = number(weight, |weight: &f32| weight.is_finite(), "NAME=WEIGHT, such as Smile=0.7")?;
+    Ok((name.to_owned(), weight))
+}
+
 /// Parses a vertical field of view in degrees.
 pub(crate) fn field_of_view(text: &str) -> Result<f32, String> {
-    let angle = text.trim().parse().ok().filter(|angle| FIELDS_OF_VIEW.contains(angle));
-    let [least, most] = [FIELDS_OF_VIEW.start(), FIELDS_OF_VIEW.end()];
-    angle.ok_or_else(|| format!("expected degrees from {least} to {most}"))
+    number(text, |angle| FIELDS_OF_VIEW.contains(angle), &in_range("degrees", &FIELDS_OF_VIEW))
+}
+
+/// Parses a number that is good.
+fn number<T: FromStr>(text: &str, is_good: impl Fn(&T) -> bool, expected: &str) -> Result<T, String> {
+    text.trim().parse().ok().filter(is_good).ok_or_else(|| format!("expected {expected}"))
+}
+
+fn in_range<T: Display>(what: &str, range: &RangeInclusive<T>) -> String {
+    format!("{what} from {} to {}", range.start(), range.end())
 }
 
 /// Parses an angle in degrees.
 pub(crate) fn angle(text: &str) -> Result<f32, String> {
-    let angle = text.trim().parse().ok().filter(|angle: &f32| angle.is_finite());
-    angle.ok_or_else(|| "expected a number of degrees".to_owned())
+    number(text, |angle: &f32| angle.is_finite(), "a number of degrees")
+}
+
+/// Parses a time that is finite and not negative.
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
+    number(text, |time: &f64| time.is_finite() && *time >= 0.0, "a number of seconds, 0 or more")
 }
 
 /// Parses a position in object units.
@@ -137,10 +162,7 @@ pub(crate) fn whole<T>(range: RangeInclusive<T>) -> impl Fn(&str) -> Result<T, S
 where
     T: Copy + FromStr + PartialOrd + Display,
 {
-    move |text: &str| {
-        let number = text.trim().parse().ok().filter(|number| range.contains(number));
-        number.ok_or_else(|| format!("expected a whole number from {} to {}", range.start(), range.end()))
-    }
+    move |text: &str| number(text, |number| range.contains(number), &in_range("a whole number", &range))
 }
 
 /// Parses a whole number that is at least this one.
@@ -148,18 +170,12 @@ pub(crate) fn whole_from<T>(least: T) -> impl Fn(&str) -> Result<T, String> + Cl
 where
     T: Copy + FromStr + PartialOrd + Display,
 {
-    move |text: &str| {
-        let number = text.trim().parse().ok().filter(|number| *number >= least);
-        number.ok_or_else(|| format!("expected a whole number, {least} or more"))
-    }
+    move |text: &str| number(text, |number| *number >= least, &format!("a whole number, {least} or more"))
 }
 
 /// Parses a number of a range.
 pub(crate) fn within(range: RangeInclusive<f32>) -> impl Fn(&str) -> Result<f32, String> + Clone {
-    move |text: &str| {
-        let number = text.trim().parse().ok().filter(|number| range.contains(number));
-        number.ok_or_else(|| format!("expected a number from {} to {}", range.start(), range.end()))
-    }
+    move |text: &str| number(text, |number| range.contains(number), &in_range("a number", &range))
 }
 
 /// Reads finite numbers between commas.
@@ -188,6 +204,16 @@ mod tests {
         assert_eq!((jobs("256"), jobs("0")), (Ok(256), Err("expected a whole number from 1 to 256".to_owned())));
         assert_eq!(whole_from(1_u64)("x"), Err("expected a whole number, 1 or more".to_owned()));
         assert!(["", "-1", "1.5", "99999999999"].into_iter().all(|bad| whole_from(0_u32)(bad).is_err()));
+    }
+
+    #[test]
+    fn morph_targets_have_a_name_and_a_weight() {
+        for (text, name, weight) in [("Smile=0.7", "Smile", 0.7), ("a = b=-1", "a = b", -1.0), ("=2", "", 2.0)] {
+            assert_eq!(morph(text), Ok((name.to_owned(), weight)));
+        }
+        for bad in ["", "Smile", "Smile=", "Smile=x", "Smile=nan", "Smile=inf", "0.7"] {
+            assert!(morph(bad).is_err(), "{bad}");
+        }
     }
 
     #[test]

@@ -1,16 +1,16 @@
-//! The options of a camera: ours, one of the file, or the matrix of an engine's frame.
+//! The options of cameras: ours, one of the file, or the matrix of an engine's frame; and another one that LOD is computed for.
 
-use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Args, ValueEnum};
 use glam::{DMat4, Vec2, Vec3};
 
-use super::values::{angle, field_of_view, position};
-use super::{CameraOption, SurfaceOptions, file_camera, named};
+use super::values::{angle, field_of_view, position, size};
+use super::{CameraOption, SurfaceOptions, choice, file_camera};
 use crate::cli::CliError;
 use geometry::mesh::{Bounds, Mesh, Moment};
 use inspect::render::Camera;
 use inspect::render::camera::FIELD_OF_VIEW;
 use inspect::render::view_projection::{ClipY, DepthRange, ViewProjection};
+use inspect::settings::Choice;
 
 /// A mesh, a moment of one of its clips, and its bounds.
 pub(crate) type MeshAt<'a> = (&'a Mesh, Option<Moment>, &'a Bounds);
@@ -58,10 +58,10 @@ pub struct ViewOptions {
     #[arg(long, value_enum, default_value_t = MatrixOrder::ColumnMajor, requires = "view_projection")]
     pub matrix_order: MatrixOrder,
     /// The depth that the matrix gives the near plane and what is far away
-    #[arg(long, value_parser = one_of(&DEPTHS), default_value = "zero-to-one", requires = "view_projection")]
+    #[arg(long, value_parser = choice::<DepthRange>(), default_value = DepthRange::ZeroToOne.name(), requires = "view_projection")]
     pub depth: DepthRange,
     /// Where the matrix has +y on the screen
-    #[arg(long, value_parser = one_of(&UPWARDS), default_value = "up", requires = "view_projection")]
+    #[arg(long, value_parser = choice::<ClipY>(), default_value = ClipY::Up.name(), requires = "view_projection")]
     pub clip_y: ClipY,
 }
 
@@ -86,23 +86,6 @@ pub enum MatrixOrder {
     /// Column after column: OpenGL, glTF, glm, three.js, Bevy and Godot; also row after row of a matrix for row vectors, v * M
     /// (DirectXMath, Unreal Engine)
     ColumnMajor,
-}
-
-/// Depth after the division by w.
-const DEPTHS: [(&str, &str, DepthRange); 3] = [
-    ("zero-to-one", "0 on the near plane, 1 far away (Direct3D, Vulkan, Metal, WebGPU)", DepthRange::ZeroToOne),
-    ("reversed", "1 on the near plane, 0 far away (the same with depth reversed)", DepthRange::Reversed),
-    ("minus-one-to-one", "-1 on the near plane, 1 far away (OpenGL)", DepthRange::MinusOneToOne),
-];
-
-/// Where +y of clip space is on the screen.
-const UPWARDS: [(&str, &str, ClipY); 2] =
-    [("up", "Direct3D, Metal, WebGPU, OpenGL", ClipY::Up), ("down", "Vulkan", ClipY::Down)];
-
-/// Reads one of these, each of which has a name and a text.
-fn one_of<T: Copy + Send + Sync + 'static>(all: &'static [(&str, &str, T)]) -> impl TypedValueParser<Value = T> {
-    let names = all.iter().map(|(name, text, _)| PossibleValue::new(*name).help(*text));
-    named(names, |name| all.iter().find(|own| own.0 == name).map(|own| own.2))
 }
 
 impl ViewOptions {
@@ -140,6 +123,54 @@ impl ViewOptions {
             MatrixOrder::RowMajor => listed.transpose(),
         };
         Some(ViewProjection { clip_from_object, depth: self.depth, y: self.clip_y })
+    }
+}
+
+/// A camera that LOD, clipping and culling are computed for, in place of the picture's.
+#[derive(Clone, Copy, Debug, Args)]
+pub struct LodCameraOption {
+    /// Compute LOD, clipping and culling for this camera in place of the picture's, and draw its frustum as lines; the numbers are
+    /// those of --camera
+    #[arg(long, value_name = "AZIMUTH,ELEVATION[,DISTANCE]", allow_hyphen_values = true)]
+    pub lod_camera: Option<CameraOption>,
+    /// The point that the LOD camera looks at, in object units (by default the centre of everything that is shown)
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = position, requires = "lod_camera")]
+    pub lod_target: Option<Vec3>,
+    /// Width and height of the LOD camera's view, in px (by default those of --size)
+    #[arg(long, value_name = "WxH", value_parser = size, requires = "lod_camera")]
+    pub lod_size: Option<[u32; 2]>,
+    /// Orthographic projection for the LOD camera
+    #[arg(long, requires = "lod_camera")]
+    pub lod_orthographic: bool,
+    /// Vertical field of view of the LOD camera in degrees, 0.1 to 170
+    #[arg(long, value_name = "DEGREES", default_value_t = FIELD_OF_VIEW, value_parser = field_of_view, requires = "lod_camera")]
+    pub lod_field_of_view: f32,
+    /// Turn the LOD camera about its direction of view, counterclockwise by so many degrees
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, value_parser = angle, allow_hyphen_values = true, requires = "lod_camera")]
+    pub lod_roll: f32,
+}
+
+impl LodCameraOption {
+    /// The LOD camera and its view's size in px, if it isn't the picture's. `own` are the options of the picture's camera.
+    pub fn camera(
+        &self,
+        own: &SurfaceOptions,
+        mesh: &Mesh,
+        bounds: &Bounds,
+    ) -> Result<Option<(Camera, Vec2)>, CliError> {
+        let Some(camera) = self.lod_camera else { return Ok(None) };
+        let view = ViewOptions {
+            camera,
+            target: self.lod_target,
+            orthographic: self.lod_orthographic,
+            field_of_view: self.lod_field_of_view,
+            roll: self.lod_roll,
+            file_camera: None,
+            view_projection: None,
+            ..own.view.clone()
+        };
+        let options = SurfaceOptions { view, size: self.lod_size.unwrap_or(own.size), ..own.clone() };
+        Ok(Some((options.view.camera(&options, (mesh, None, bounds), options.viewport())?, options.viewport())))
     }
 }
 

@@ -1,11 +1,10 @@
 //! The pictures of `--evidence`: the worst place of each gate that failed, in the tessellation in which it was found.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use super::{Loaded, file_name};
 use crate::cli::CliError;
-use crate::cli::gate_options::write_evidence_of;
+use crate::cli::gate_options::GateOptions;
 use geometry::mesh::Topology;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded as LoadedMesh};
@@ -18,7 +17,7 @@ use lab::stability::{Failure, Subject, Tried, viewport};
 const ENLARGED: u32 = 3;
 
 /// Draws the worst place of each gate that failed.
-pub(super) fn write(folder: &Path, engine: &Engine, all: &[Loaded], failed: &[Failure]) -> Result<(), CliError> {
+pub(super) fn write(gates: &GateOptions, engine: &Engine, all: &[Loaded], failed: &[Failure]) -> Result<(), CliError> {
     for failure in failed {
         let Some(own) = all.iter().find(|own| own.subject.name == failure.case) else { continue };
         let tried = failure.tried.unwrap_or_else(|| Tried::from_mesh(&own.subject));
@@ -26,9 +25,8 @@ pub(super) fn write(folder: &Path, engine: &Engine, all: &[Loaded], failed: &[Fa
         // The sentence has the numbers of the run; here only the place counts, which is the worst for any limit.
         let gate = Gate { kind: failure.kind, limit: Limit::Count(0) };
         let tolerance = tried.settings.tessellation.tolerance;
-        for judgement in shot.judge(&[gate], tolerance, &Progress::new())? {
-            write_evidence_of(&mut shot, &judgement, folder, file_name(&own.subject.name).as_ref())?;
-        }
+        let judged = shot.judge(&[gate], tolerance, &Progress::new())?;
+        gates.write_evidence(&mut shot, &judged, file_name(&own.subject.name).as_ref())?;
     }
     Ok(())
 }

@@ -6,6 +6,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::{Edge, Mesh, Topology};
 use crate::casts::to_u32;
+use crate::surface_kind::Surface;
 
 /// Which sides of an edge share a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +31,26 @@ impl Sharing {
     pub fn is_per_patch(self) -> bool {
         matches!(self, Self::None | Self::NoneAveraged)
     }
+
+    /// Returns the same for edges of another surface: whether it is computed for each side stays. Sides of different surfaces
+    /// share all.
+    fn under(self, surface: Surface, differs: bool) -> Self {
+        match self {
+            Self::AllSides | Self::EqualNormals if surface.tears() && !differs => Self::EqualNormals,
+            Self::AllSides | Self::EqualNormals => Self::AllSides,
+            Self::EachSide => Self::EachSide,
+            Self::None | Self::NoneAveraged if surface.is_averaged() || surface.has_creases() => Self::NoneAveraged,
+            Self::None | Self::NoneAveraged => Self::None,
+        }
+    }
+}
+
+/// What the parts beside a curve have in place of what the tessellation says for all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveStyle {
+    pub surface: Surface,
+    /// As [`PartStyle::detail`](super::PartStyle::detail).
+    pub detail: f32,
 }
 
 /// The sides of an edge that share control points.
@@ -55,23 +76,31 @@ pub struct Curves {
     pub factor_curves: Vec<u32>,
     /// For each side of the topology, its curve.
     pub side_curves: Vec<u32>,
+    /// For each curve; empty if no part of the mesh has a style of its own.
+    pub styles: Vec<CurveStyle>,
     per_patch: bool,
 }
 
 impl Curves {
-    /// Groups the sides of every edge into curves. Takes time linear in the number of sides, except for edges with many
-    /// sides.
+    /// Groups the sides of every edge into curves, whatever the styles of parts. Takes time linear in the number of sides, except
+    /// for edges with many sides.
     pub fn build(mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Self {
-        Self::build_some(mesh, topology, sharing, 0..to_u32(topology.edges.len()))
+        Self::build_some(mesh, topology, (sharing, None), 0..to_u32(topology.edges.len()))
     }
 
-    /// Does the same for some edges alone, in ascending order. The other edges have no curves.
+    /// The same for a surface, which parts of the mesh may replace by their own.
+    pub fn of_surface(mesh: &Mesh, topology: &Topology, sharing: Sharing, surface: Surface) -> Self {
+        Self::build_some(mesh, topology, (sharing, Some(surface)), 0..to_u32(topology.edges.len()))
+    }
+
+    /// Does that for some edges alone, in ascending order. The other edges have no curves.
     pub(crate) fn build_some(
         mesh: &Mesh,
         topology: &Topology,
-        sharing: Sharing,
+        (sharing, surface): (Sharing, Option<Surface>),
         edges: impl Iterator<Item = u32>,
     ) -> Self {
+        let surface = surface.filter(|_| !mesh.part_styles.is_empty());
         let per_patch = sharing.is_per_patch();
         let mut curves = Curves { side_curves: vec![0; topology.sides.len()], per_patch, ..Curves::default() };
         if !per_patch {
@@ -80,6 +109,8 @@ impl Curves {
         for index in edges {
             let edge = &topology.edges[index as usize];
             let first = to_u32(curves.curves.len());
+            let style = surface.map(|surface| topology.edge_style(mesh, edge, surface));
+            let sharing = style.map_or(sharing, |(surface, _, differs)| sharing.under(surface, differs));
             match sharing {
                 Sharing::AllSides => {
                     let sides = topology.side_range(edge);
@@ -89,6 +120,14 @@ impl Curves {
                 Sharing::EachSide | Sharing::None | Sharing::NoneAveraged => {
                     curves.push_own(topology, edge, sharing != Sharing::None);
                 }
+            }
+            if let Some((surface, detail, _)) = style {
+                curves.styles.resize(curves.curves.len(), CurveStyle { surface, detail });
+            }
+            if let Some(surface) = surface.filter(|_| per_patch) {
+                let own =
+                    topology.edge_sides(edge).iter().map(|side| topology.patch_style(mesh, side.patch(), surface));
+                curves.styles.splice(first as usize.., own.map(|(surface, detail)| CurveStyle { surface, detail }));
             }
             if !per_patch {
                 // The next edge starts where this one ends.

@@ -102,6 +102,15 @@ impl Heights {
         Self::of_materials(mesh, &vec![Some(map); mesh.materials.len()], &Progress::new()).expect("not cancelled")
     }
 
+    /// Uses a map made in code, of `side` px a side, with so many waves across and down. It can be repeated without a seam.
+    pub fn waves(mesh: &Mesh, side: u32, [across, down]: [f32; 2]) -> Self {
+        let height = |i: u32| {
+            let [x, y] = [i % side, i / side].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / side as f32);
+            0.5 + 0.25 * (across * x).sin() * (down * y).cos() + 0.2 * (x + 2.0 * y).cos()
+        };
+        Self::everywhere(mesh, HeightMap::new([side; 2], (0..side * side).map(height).collect()))
+    }
+
     /// Uses a map for each material that has one. Materials whose maps are equal share one.
     ///
     /// # Errors

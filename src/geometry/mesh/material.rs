@@ -94,13 +94,23 @@ pub struct Look {
     /// Factor of the first two components of the normals that the coat's own map has.
     #[serde(skip)]
     pub clearcoat_normal_scale: f32,
-    /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1. The surface is thin: it bends no light
-    /// (KHR_materials_transmission).
+    /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1 (KHR_materials_transmission).
     pub transmission: f32,
     /// Linear RGB of the light that fibres over the surface reflect, as those of cloth do; 0 without them (KHR_materials_sheen).
     pub sheen_color: [f32; 3],
     /// Perceptual roughness of the fibres, 0 (they stand upright) to 1.
     pub sheen_roughness: f32,
+    /// How much longer highlights are along a direction than across it, 0 to 1 (KHR_materials_anisotropy).
+    pub anisotropy: f32,
+    /// The angle of that direction, in radians from the tangent towards the bitangent.
+    pub anisotropy_rotation: f32,
+    /// How far light goes through the body behind the surface, in object units; 0 for a thin surface, which bends no light
+    /// (KHR_materials_volume).
+    pub thickness: f32,
+    /// After how many object units the body leaves `attenuation_color` of white light; infinitely many if it absorbs none.
+    pub attenuation_distance: f32,
+    /// Linear RGB.
+    pub attenuation_color: [f32; 3],
     /// The images beside that of the base colour, by [`Slot`].
     #[serde(skip)]
     pub maps: [Option<Map>; Slot::COUNT],
@@ -125,23 +135,55 @@ impl Default for Look {
             transmission: 0.0,
             sheen_color: [0.0; 3],
             sheen_roughness: 0.0,
+            anisotropy: 0.0,
+            anisotropy_rotation: 0.0,
+            thickness: 0.0,
+            attenuation_distance: f32::INFINITY,
+            attenuation_color: [1.0; 3],
             maps: Default::default(),
         }
     }
 }
 
 impl Look {
-    /// The maps whose texture coordinates tangents go along: those of the first one that there is.
-    pub const TANGENT_SLOTS: [Slot; 2] = [Slot::Normal, Slot::ClearcoatNormal];
+    /// How many images pictures show of a material beside that of the base colour. Where more are needed, the last slots' are
+    /// left out. A body that refracts light needs one more, of what is behind it.
+    pub const MOST_IMAGES: usize = 12;
 
-    /// The map that needs tangents: see [`Self::TANGENT_SLOTS`].
-    pub fn tangent_map(&self) -> Option<&Map> {
-        Self::TANGENT_SLOTS.iter().find_map(|slot| self.maps[*slot as usize].as_ref())
+    /// The maps whose texture coordinates tangents go along: those of the first one that there is.
+    pub const TANGENT_SLOTS: [Slot; 3] = [Slot::Normal, Slot::ClearcoatNormal, Slot::Anisotropy];
+
+    /// The texture coordinates that tangents go along, if any are needed: see [`Self::TANGENT_SLOTS`]. Without such a map, long
+    /// highlights go along those of the base colour.
+    pub fn tangent_uv(&self) -> Option<MapUv> {
+        let map = Self::TANGENT_SLOTS.iter().find_map(|slot| self.maps[*slot as usize].as_ref());
+        map.map(|map| map.uv).or_else(|| self.has_anisotropy().then_some(MapUv::Own))
+    }
+
+    /// Which of the file's sets of texture coordinates its maps use: see [`MapUv::Set`].
+    pub fn uv_sets(&self) -> [bool; 2] {
+        let uses = |set| self.maps.iter().flatten().any(|map| matches!(map.uv, MapUv::Set(own, _) if own == set));
+        [uses(0), uses(1)]
     }
 
     /// Whether light goes through it. None does where it is unlit.
     pub fn transmits(&self) -> bool {
         self.transmission > 0.0 && !self.unlit
+    }
+
+    /// Whether light that goes through it is bent, and absorbed behind the surface.
+    pub fn refracts(&self) -> bool {
+        self.transmits() && self.thickness > 0.0
+    }
+
+    /// The part of light that the body absorbs in an object unit, for short ways, as linear RGB (Beer and Lambert's coefficient).
+    pub fn absorption(&self) -> [f32; 3] {
+        self.attenuation_color.map(|left| -left.max(f32::MIN_POSITIVE).ln() / self.attenuation_distance)
+    }
+
+    /// Whether highlights are longer along a direction than across it.
+    pub fn has_anisotropy(&self) -> bool {
+        self.anisotropy > 0.0 && !self.unlit
     }
 
     /// Whether fibres over the surface reflect light. None do where it is unlit.
@@ -178,6 +220,8 @@ choices! {
         ClearcoatNormal => "clearcoat-normal", "clear coat normal map", "Normals of the coat in tangent space, linear.";
         Specular => "specular", "specular map", "Strength of a dielectric's reflection in alpha, linear.";
         SpecularColor => "specular-color", "specular colour map", "Colour of a dielectric's reflection seen head-on, sRGB.";
+        Anisotropy => "anisotropy", "anisotropy map", "Direction of long highlights in red and green, strength in blue, linear.";
+        Thickness => "thickness", "thickness map", "Thickness of the body behind the surface in green, linear.";
     }
 }
 

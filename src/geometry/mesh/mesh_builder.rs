@@ -206,6 +206,25 @@ impl MeshBuilder {
         self.part = part;
     }
 
+    /// Returns how many materials have triangles.
+    pub fn used_materials(&self) -> usize {
+        self.groups.iter().filter(|group| group.triangles > 0).count()
+    }
+
+    /// Removes the triangles of each material for which `is_left_out`, which gets its name and their number, says so.
+    ///
+    /// # Errors
+    /// Those of `is_left_out`.
+    pub fn leave_out<E>(&mut self, mut is_left_out: impl FnMut(&str, u32) -> Result<bool, E>) -> Result<(), E> {
+        for group in self.groups.iter_mut().filter(|group| group.triangles > 0) {
+            if is_left_out(&group.material.name, group.triangles)? {
+                self.triangles -= group.triangles as usize;
+                (group.runs, group.parts, group.triangles) = Default::default();
+            }
+        }
+        Ok(())
+    }
+
     /// A material that was added.
     ///
     /// # Panics

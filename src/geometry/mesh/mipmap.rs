@@ -42,6 +42,7 @@ impl MipFilter {
             Slot::Normal | Slot::ClearcoatNormal => Self::Normals,
             Slot::MetallicRoughness | Slot::Occlusion | Slot::Transmission | Slot::SheenRoughness => Self::Numbers,
             Slot::Clearcoat | Slot::ClearcoatRoughness | Slot::Specular => Self::Numbers,
+            Slot::Anisotropy | Slot::Thickness => Self::Numbers,
         }
     }
 }

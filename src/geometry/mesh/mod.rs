@@ -27,6 +27,7 @@ mod near_points;
 pub mod normal_faults;
 pub mod normals;
 pub mod orientation;
+mod part_style;
 pub mod polygon;
 pub mod repairs;
 pub mod rig;
@@ -60,11 +61,12 @@ pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
 pub use build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};
-pub use curves::{Curve, CurveItems, Curves, Sharing};
+pub use curves::{Curve, CurveItems, CurveStyle, Curves, Sharing};
 pub use dominance::Dominance;
 pub use heights::{MAX_MAPS, PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 pub use normal_faults::NormalFaults;
 pub use orientation::UpAxis;
+pub use part_style::PartStyle;
 pub use shapes::Shape;
 pub use t_junctions::{TJunction, t_junctions};
 pub use weld_preview::{WeldPreview, weld_previews};
@@ -95,6 +97,8 @@ pub struct Mesh {
     pub materials: Vec<Material>,
     /// Which triangles are whose part of the file, in their order. Triangles that belong to no part are in none of these.
     pub part_ranges: Vec<PartRange>,
+    /// What each of the file's parts has in place of what the tessellation says for all; empty if none differs.
+    pub part_styles: Vec<PartStyle>,
     /// The height images that displacement can move the surface by.
     pub heights: Option<Arc<Heights>>,
     /// More about each corner, for meshes whose materials need it.
@@ -125,10 +129,8 @@ impl Mesh {
         range.triangles.contains(&triangle).then_some(range.part)
     }
 
-    /// The box around a part of the file; none if it has no triangles.
-    pub fn part_bounds(&self, part: u32) -> Option<Bounds> {
-        let triangles =
-            self.part_ranges.iter().filter(|range| range.part == part).flat_map(|range| range.triangles.clone());
+    /// The box around triangles; none if there are none.
+    pub fn bounds_of(&self, triangles: impl Iterator<Item = u32> + Clone) -> Option<Bounds> {
         let corners = triangles.flat_map(|triangle| self.triangles[triangle as usize]);
         let positions = corners.map(|corner| self.corners[corner as usize].position);
         positions.clone().next().map(|_| Bounds::new(positions))

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, Vec3};
 
-use super::{LightKind, Mesh, Projection, Rig};
+use super::{LightKind, Material, Mesh, Projection, Rig};
 use crate::casts::to_f32;
 
 choices! {
@@ -67,8 +67,11 @@ pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
     if let Some(rig) = &mut mesh.rig {
         reorient_rig(Arc::make_mut(rig), DMat4::from_mat3(up.matrix() * scale));
     }
-    for amount in mesh.materials.iter_mut().filter_map(|material| material.height.as_mut()?.amount.as_mut()) {
-        amount.scale = length(amount.scale);
+    for Material { look, height, .. } in &mut mesh.materials {
+        (look.thickness, look.attenuation_distance) = (length(look.thickness), length(look.attenuation_distance));
+        if let Some(amount) = height.as_mut().and_then(|map| map.amount.as_mut()) {
+            amount.scale = length(amount.scale);
+        }
     }
     for light in &mut mesh.lights {
         (light.place, light.direction) = (place(light.place), up.turn(light.direction));
@@ -128,6 +131,19 @@ mod tests {
             assert_eq!([x, y], [0, 0], "{scale}");
             mesh.corners[0].position = position;
         }
+    }
+
+    #[test]
+    fn what_is_in_a_body_is_scaled_with_it() {
+        let mut material = crate::mesh::Material::plain("body", [1.0; 4]);
+        material.look.thickness = 4.0;
+        let mut mesh = Mesh { materials: vec![material], ..Mesh::default() };
+        for distance in [2.0, f32::INFINITY] {
+            mesh.materials[0].look.attenuation_distance = distance;
+            reorient(&mut mesh, UpAxis::Z, 0.5);
+            assert_eq!(mesh.materials[0].look.attenuation_distance, 0.5 * distance);
+        }
+        assert_eq!(mesh.materials[0].look.thickness, 1.0);
     }
 
     proptest! {

@@ -10,6 +10,7 @@ mod animated_node;
 pub mod clip;
 
 use crate::casts::to_f32;
+use crate::numbers::counted;
 use std::fmt;
 
 use bytemuck::{Pod, Zeroable};
@@ -169,11 +170,8 @@ impl fmt::Display for AnimatedCounts {
     /// Writes the counts as text, leaving out those that are 0.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let counts = [(self.joints, "joint"), (self.nodes, "node"), (self.targets, "morph target")];
-        for (i, (count, what)) in counts.into_iter().filter(|(count, _)| *count > 0).enumerate() {
-            let (comma, plural) = (if i > 0 { ", " } else { "" }, if count == 1 { "" } else { "s" });
-            write!(f, "{comma}{count} {what}{plural}")?;
-        }
-        Ok(())
+        let some = counts.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| counted(count as u64, what));
+        f.write_str(&some.collect::<Vec<_>>().join(", "))
     }
 }
 
@@ -193,9 +191,9 @@ impl Rig {
             named(name, number.parse::<usize>().ok()?.checked_sub(1)?)
         };
         let exact = named(name, 0).or_else(of_several);
-        let alike = |clip: &Clip| clip.name.to_lowercase() == name.to_lowercase();
-        let only = || self.clips.iter().filter(|clip| alike(clip)).count() == 1;
-        exact.or_else(|| self.clips.iter().position(alike).filter(|_| only()))
+        let mut alike =
+            (0..self.clips.len()).filter(|clip| self.clips[*clip].name.to_lowercase() == name.to_lowercase());
+        exact.or_else(|| alike.next().filter(|_| alike.next().is_none()))
     }
 
     /// Returns the name by which [`Self::clip`] finds a clip.
@@ -213,18 +211,7 @@ impl Rig {
     /// Computes the pose at a moment. Before its first and after its last key frame, a channel keeps the value of that
     /// key frame. If coordinates would leave f32, the result is the pose at rest.
     pub fn pose(&self, Moment { clip, time }: Moment) -> Pose {
-        let mut placements: Vec<Placement> = self.nodes.iter().map(|node| node.rest).collect();
-        let mut weights = self.rest_weights();
-        for channel in self.clips.get(clip).map_or(&[][..], |clip| &clip.channels) {
-            let target = channel.target as usize;
-            if channel.property == Property::Weights {
-                let first = self.morphs[target].first_weight as usize;
-                channel.keys.sample(time, |i, value| weights[first + i] = to_f32(value));
-            } else {
-                placements[target].animate(channel, time);
-            }
-        }
-        let pose = self.posed(&placements, weights);
+        let pose = self.posed(self.clips.get(clip).map_or(&[], |clip| &clip.channels), time);
         if self.is_held(&pose) { pose } else { self.rest() }
     }
 
@@ -246,12 +233,22 @@ impl Rig {
 
     /// Returns the pose without any clip.
     pub fn rest(&self) -> Pose {
-        let placements: Vec<Placement> = self.nodes.iter().map(|node| node.rest).collect();
-        self.posed(&placements, self.rest_weights())
+        self.posed(&[], 0.0)
     }
 
-    fn posed(&self, placements: &[Placement], weights: Vec<f32>) -> Pose {
-        let global = self.global(placements);
+    fn posed(&self, channels: &[Channel], time: f64) -> Pose {
+        let mut placements: Vec<Placement> = self.nodes.iter().map(|node| node.rest).collect();
+        let mut weights = self.rest_weights();
+        for channel in channels {
+            let target = channel.target as usize;
+            if channel.property == Property::Weights {
+                let first = self.morphs[target].first_weight as usize;
+                channel.keys.sample(time, |i, value| weights[first + i] = to_f32(value));
+            } else {
+                placements[target].animate(channel, time);
+            }
+        }
+        let global = self.global(&placements);
         let matrix =
             |joint: &Joint| joint.place * joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset);
         Pose {

@@ -8,11 +8,19 @@ use super::{
 };
 use crate::mesh::{Curves, Mesh, Topology};
 
+/// Returns the control net of one patch of a mesh, without those of the others.
+pub fn patch_net(mesh: &Mesh, topology: &Topology, inputs: &Inputs, patch: u32) -> ControlNet {
+    let mut edges = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize].edge);
+    edges.sort_unstable();
+    ControlNets::from_edges(mesh, topology, inputs, edges.into_iter()).patch(patch)
+}
+
 /// The control nets of a mesh: two control points for each curve, and one for each patch, which is computed when
 /// needed.
 pub(super) struct ControlNets<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) topology: &'a Topology,
+    /// The surface as which all patches are evaluated.
     pub(super) surface: Surface,
     pub(super) normals: Normals,
     pub(super) edges: Edges,
@@ -35,8 +43,12 @@ impl<'a> ControlNets<'a> {
         some: impl Iterator<Item = u32>,
     ) -> Self {
         let Tessellation { surface, alpha, normals, edges, .. } = inputs.tessellation;
-        let curves = Curves::build_some(mesh, topology, sharing(surface, edges), some);
-        let net = |curve: &crate::mesh::Curve| {
+        let mut curves = Curves::build_some(mesh, topology, (sharing(surface, edges), Some(surface)), some);
+        if inputs.tessellation.partitioning.has_one_factor() {
+            curves.styles.iter_mut().for_each(|style| style.detail = 1.0);
+        }
+        let net = |(index, curve): (usize, &crate::mesh::Curve)| {
+            let surface = curves.styles.get(index).map_or(surface, |style| style.surface);
             let [a, b] = curve.points.map(|p| topology.points[p as usize]);
             let sides = &curves.sides[curve.first_side as usize..][..curve.side_count as usize];
             let (mut ab, mut ba) = (Vec3::ZERO, Vec3::ZERO);
@@ -56,8 +68,8 @@ impl<'a> ControlNets<'a> {
             }
             [ab, ba]
         };
-        let curve_nets = curves.curves.iter().map(net).collect();
-        Self { mesh, topology, surface, normals, edges, curves, curve_nets }
+        let curve_nets = curves.curves.iter().enumerate().map(net).collect();
+        Self { mesh, topology, surface: mesh.evaluated_surface(surface), normals, edges, curves, curve_nets }
     }
 
     /// Returns the curve of a patch's side, and whether the side runs in the opposite direction.

@@ -1,15 +1,47 @@
-//! How a patch's surface curves, without displacement: twin of `shaders/curvature.wgsl`. Draws compute this at pixels, so only
-//! tests use it here.
+//! How a patch's surface curves, without displacement: twin of `shaders/curvature.wgsl`. Draws compute this at pixels, and the CPU
+//! where somebody points.
 
-use glam::Vec3;
+use glam::{Vec3, vec2};
 
+use super::Surface;
 use super::factors::FIXED_ONE;
-use super::surface::{ControlNet, Surface, UNIT};
+use super::surface::{ControlNet, UNIT, patch_tangents};
+use crate::choice::choices;
+
+choices! {
+    /// Which of a surface's curvatures.
+    #[derive(Default)]
+    pub enum CurvatureKind {
+        #[default]
+        Mean => "mean", "Mean",
+            "Half the sum of the largest and the least curvature. It is above 0 where the surface bulges towards the side that it \
+             faces, below 0 where it is hollow, and 0 where it is flat or a saddle that bends as much both ways.";
+        Gaussian => "gaussian", "Gaussian",
+            "The product of the largest and the least curvature, in 1 / object unit squared. It is above 0 on bulges and hollows, \
+             below 0 on saddles, and 0 where the surface bends one way only, so that it could be unrolled.";
+        Largest => "largest", "Largest",
+            "The larger principal curvature: that along the direction in which the surface bulges most.";
+        Least => "least", "Least",
+            "The smaller principal curvature: that along the direction in which the surface bulges least, or is most hollow.";
+    }
+}
+
+/// Returns a curvature of a patch at weights `u` and `v` (16.16 fixed point; w = 1 - u - v): see [`principal_curvatures`].
+pub fn patch_curvature(kind: CurvatureKind, surface: Surface, net: &ControlNet, u: u32, v: u32) -> f32 {
+    let second = patch_second_derivatives(surface, net, u, v);
+    let [largest, least] = principal_curvatures(patch_tangents(surface, net, u, v), second);
+    match kind {
+        CurvatureKind::Mean => 0.5 * (largest + least),
+        CurvatureKind::Gaussian => largest * least,
+        CurvatureKind::Largest => largest,
+        CurvatureKind::Least => least,
+    }
+}
 
 /// Returns the second derivatives of a patch's position at weights `u` and `v` (16.16 fixed point; w = 1 - u - v), in
 /// object units: twice by u, by u and v, and twice by v. They are linear Bézier triangles of second differences of
 /// control points, times 6 (Farin, Triangular Bernstein-Bézier patches, 1986, section 1.4).
-pub fn patch_second_derivatives(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 3] {
+fn patch_second_derivatives(surface: Surface, net: &ControlNet, u: u32, v: u32) -> [Vec3; 3] {
     if surface.is_flat() {
         return [Vec3::ZERO; 3];
     }
@@ -26,15 +58,18 @@ pub fn patch_second_derivatives(surface: Surface, net: &ControlNet, u: u32, v: u
     [by_uu * 6.0, by_uv * 6.0, by_vv * 6.0]
 }
 
-/// Returns the mean curvature (half the sum of the principal curvatures) of a surface with these first and second
-/// derivatives, in 1 / object unit: (E N - 2 F M + G L) / (2 (E G - F²)) in the coefficients of both fundamental forms
-/// (do Carmo, Differential geometry of curves and surfaces, 1976, section 3-3). It is above 0 where the surface bulges
-/// towards the side that it faces, and 0 where it has no tangent plane.
-pub fn mean_curvature(tangents: [Vec3; 2], second: [Vec3; 3]) -> f32 {
+/// Returns the principal curvatures of a surface with these first and second derivatives, the larger one first, in
+/// 1 / object unit. Both are above 0 where the surface bulges towards the side that it faces, and 0 where it has no tangent
+/// plane.
+///
+/// Their mean is (E N - 2 F M + G L) / (2 (E G - F²)) in the coefficients of both fundamental forms (do Carmo, Differential
+/// geometry of curves and surfaces, 1976, section 3-3). How far they are from it follows from the curvature L / E along the
+/// first tangent, and from the twist there: their squares add up as on Mohr's circle.
+fn principal_curvatures(tangents: [Vec3; 2], second: [Vec3; 3]) -> [f32; 2] {
     // At this size products of derivatives neither underflow nor overflow.
     let size = tangents[0].abs().max_element().max(tangents[1].abs().max_element());
     if size == 0.0 {
-        return 0.0;
+        return [0.0; 2];
     }
     let scale = 1.0 / size;
     let along_u = tangents[0] * scale;
@@ -43,15 +78,19 @@ pub fn mean_curvature(tangents: [Vec3; 2], second: [Vec3; 3]) -> f32 {
     // E G - F², by Lagrange's identity.
     let area_squared = across.dot(across);
     if area_squared <= FLAT_ANGLE * FLAT_ANGLE {
-        return 0.0;
+        return [0.0; 2];
     }
-    let normal = across * (1.0 / area_squared.sqrt());
+    let area = area_squared.sqrt();
+    let normal = across * (1.0 / area);
     let by_uu = normal.dot(second[0] * scale);
     let by_uv = normal.dot(second[1] * scale);
     let by_vv = normal.dot(second[2] * scale);
-    let sum = along_u.dot(along_u) * by_vv - 2.0 * along_u.dot(along_v) * by_uv + along_v.dot(along_v) * by_uu;
+    let (uu, uv) = (along_u.dot(along_u), along_u.dot(along_v));
+    let mean = (uu * by_vv - 2.0 * uv * by_uv + along_v.dot(along_v) * by_uu) / (2.0 * area_squared);
+    let own = by_uu / uu;
+    let aside = vec2(own - mean, (by_uv - uv * own) / area).length();
     // The normal of a sphere points away from where its derivatives do.
-    -sum / (2.0 * area_squared) * scale
+    [(aside - mean) * scale, -(aside + mean) * scale]
 }
 
 /// Tangents that span less area, with the longer coordinate at 1, are parallel.
@@ -63,13 +102,12 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::tessellate::surface::{patch_position, patch_tangents};
+    use crate::tessellate::surface::patch_position;
     use crate::tessellate::{center_control_point, side_control_points};
 
     /// Returns the mean curvature of a patch.
     fn curvature(net: &ControlNet, u: u32, v: u32) -> f32 {
-        let second = patch_second_derivatives(Surface::Pn, net, u, v);
-        mean_curvature(patch_tangents(Surface::Pn, net, u, v), second)
+        patch_curvature(CurvatureKind::Mean, Surface::Pn, net, u, v)
     }
 
     /// Returns places all over a patch.
@@ -107,6 +145,30 @@ mod tests {
                 let graph = ((1.0 + slope_y * slope_y) * a + (1.0 + slope_x * slope_x) * b) / (2.0 * steep.powf(1.5));
                 let found = curvature(&net, u, v);
                 assert!((found + graph).abs() < 2e-5, "{a} {b} at {at}: {found}, not {}", -graph);
+            }
+        }
+    }
+
+    #[test]
+    fn principal_curvatures_of_quadrics_are_those_of_their_closed_form() {
+        // A bowl, a paraboloid of revolution, a cylinder, a saddle, a skew saddle and a plane.
+        for (a, b) in [(1.5, 0.5), (-2.0, -2.0), (0.0, 1.0), (1.0, -1.0), (2.0, -0.5), (0.0, 0.0)] {
+            let net = quadric(a, b);
+            for [u, v] in places() {
+                let at = patch_position(Surface::Pn, &net, u, v);
+                // do Carmo 1976, section 3-3, example 5. The graph's normal is up, so that a bowl is hollow.
+                let (slope_x, slope_y) = (a * at.x, b * at.y);
+                let steep = 1.0 + slope_x * slope_x + slope_y * slope_y;
+                let gaussian = a * b / (steep * steep);
+                let mean = -((1.0 + slope_y * slope_y) * a + (1.0 + slope_x * slope_x) * b) / (2.0 * steep.powf(1.5));
+                let apart = (mean * mean - gaussian).max(0.0).sqrt();
+                let found = CurvatureKind::ALL.map(|kind| patch_curvature(kind, Surface::Pn, &net, u, v));
+                let expected = [mean, gaussian, mean + apart, mean - apart];
+                // Where both are equal, a root of what rounding leaves of 0 is expected.
+                let tolerances = [2e-5, 2e-4, 2e-3, 2e-3];
+                let is_near = (0..4).all(|k| (found[k] - expected[k]).abs() < tolerances[k]);
+                assert!(is_near, "{a} {b} at {at}: {found:?}, not {expected:?}");
+                assert!(found[2] >= found[3], "{found:?}");
             }
         }
     }

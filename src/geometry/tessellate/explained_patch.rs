@@ -212,6 +212,9 @@ fn edge_formula(nets: &ControlNets, inputs: &Inputs, patch: u32, side: usize) ->
     let Inputs { tessellation: Tessellation { lod, factor, pixels, near, far, .. }, ref view } = *inputs;
     let at = nets.patch_factor(patch, side) as usize;
     let curves = nets.curves.factor_curves[at]..nets.curves.factor_curves[at + 1];
+    // All curves of an edge have its detail.
+    let detail = nets.detail_of_curve(curves.start);
+    let (view, factor) = (&view.magnified(detail), factor * detail);
     let nets = curves.map(|curve| nets.curve_points(curve));
     let longest = |px: fn(&LodView, f32, [Vec3; 4]) -> f32| EdgeFormula::Length {
         px: nets.clone().map(|net| px(view, FINE, net) * FINE).fold(0.0, f32::max),

@@ -141,6 +141,12 @@ impl LodView {
         Self { eye, radius, ..self }
     }
 
+    /// The view in which lengths are so many times as many px. Twin: `magnified` in `shaders/patch_traits.wgsl`.
+    #[must_use]
+    pub(super) fn magnified(&self, times: f32) -> Self {
+        Self { half_viewport: self.half_viewport * times, ..*self }
+    }
+
     /// The largest distance in object units by which displacement moves a point.
     pub fn reach(&self) -> f32 {
         self.reach

@@ -48,18 +48,20 @@ impl MeshLod<'_> {
         if self.inputs.tessellation.lod.is_by_error() {
             return self.factors_by_error();
         }
-        let largest = |form: &dyn Fn([Vec3; 4]) -> f32, curves: &[u32]| {
-            (curves[0]..curves[1]).map(|curve| form(self.nets.curve_points(curve))).fold(1.0, f32::max)
+        let of_curve = |curve: u32| {
+            let Tessellation { factor, pixels, near, far, lod, .. } = self.inputs.tessellation;
+            let (net, detail) = (self.nets.curve_points(curve), self.nets.detail_of_curve(curve));
+            let view = &self.inputs.view.magnified(detail);
+            match lod {
+                Lod::Uniform => factor * detail,
+                Lod::Paper => paper_edge_factor(view, pixels, net),
+                Lod::EdgeLength => edge_length_factor(view, pixels, net),
+                Lod::Distance => distance_factor(view, factor * detail, near, far, net),
+                Lod::Error => 1.0,
+            }
         };
         let edge = |curves: &[u32]| {
-            let Inputs { tessellation: Tessellation { factor, pixels, near, far, .. }, ref view } = *self.inputs;
-            let factor = match self.inputs.tessellation.lod {
-                Lod::Uniform => factor,
-                Lod::Paper => largest(&|net| paper_edge_factor(view, pixels, net), curves),
-                Lod::EdgeLength => largest(&|net| edge_length_factor(view, pixels, net), curves),
-                Lod::Distance => largest(&|net| distance_factor(view, factor, near, far, net), curves),
-                Lod::Error => 1.0,
-            };
+            let factor = (curves[0]..curves[1]).map(of_curve).fold(1.0, f32::max);
             self.inputs.tessellation.partitioning.hull_factor(factor)
         };
         MeshFactors { edges: self.nets.curves.factor_curves.windows(2).map(edge).collect(), insides: Vec::new() }
@@ -166,13 +168,17 @@ impl MeshLod<'_> {
     /// Returns a patch as it is seen.
     pub(super) fn seen_patch(&self, patch: u32) -> SeenPatch {
         let net = self.nets.patch(patch);
-        let mut seen = seen_patch(&self.inputs.view, &net);
+        let view = &self
+            .inputs
+            .view
+            .magnified(self.nets.mesh.style_of(self.nets.topology.patches[patch as usize].triangle).detail);
+        let mut seen = seen_patch(view, &net);
         if self.is_plain(patch) {
-            seen.off_plane = plane_error(&self.inputs.view, &net);
-            seen.off_line = line_error(&self.inputs.view, &net);
+            seen.off_plane = plane_error(view, &net);
+            seen.off_line = line_error(view, &net);
         }
         if let Some((directions, scale, relief)) = self.displacement.map(|displacement| displacement.relief(patch)) {
-            seen.relief = seen_relief(&self.inputs.view, seen.scale, directions, scale, relief);
+            seen.relief = seen_relief(view, seen.scale, directions, scale, relief);
         }
         seen
     }
@@ -229,16 +235,19 @@ impl MeshLod<'_> {
 
     /// Whether triangles of any size are the surface.
     fn is_exact(&self) -> bool {
-        self.inputs.tessellation.surface.is_flat() && self.displacement.is_none()
+        self.nets.surface.is_flat() && self.displacement.is_none()
     }
 
     /// Returns the least factor that an edge may get, for its curves.
     pub(super) fn least_edge_factor(&self, factor: u32) -> f32 {
-        let Tessellation { surface, partitioning, tolerance, .. } = self.inputs.tessellation;
+        let Tessellation { partitioning, tolerance, .. } = self.inputs.tessellation;
         let curves = &self.nets.curves.factor_curves[factor as usize..factor as usize + 2];
-        let own = |curve: u32| match surface.is_flat() {
+        let own = |curve: u32| match self.nets.surface.is_flat() {
             true => 1.0,
-            false => least_edge_factor(&self.inputs.view, tolerance, partitioning, self.nets.curve_points(curve)),
+            false => {
+                let view = self.inputs.view.magnified(self.nets.detail_of_curve(curve));
+                least_edge_factor(&view, tolerance, partitioning, self.nets.curve_points(curve))
+            }
         };
         whole_segments(partitioning, (curves[0]..curves[1]).map(own).fold(1.0, f32::max))
     }
@@ -265,6 +274,11 @@ impl ControlNets<'_> {
         let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
         let [ab, ba] = self.curve_nets[curve as usize];
         [a, ab, ba, b]
+    }
+
+    /// Returns how many times as fine as others LOD makes a curve.
+    pub(super) fn detail_of_curve(&self, curve: u32) -> f32 {
+        self.curves.styles.get(curve as usize).map_or(1.0, |style| style.detail)
     }
 
     /// Returns the factors of the edges U == 0, V == 0 and W == 0 of a patch. LOD takes each by the opposite corner, whatever

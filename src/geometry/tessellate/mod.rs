@@ -47,9 +47,11 @@ mod surface;
 mod triangle_budget;
 mod vertex;
 
+pub use crate::surface_kind::{Surface, SurfaceFamily};
 pub use crate::view::DepthRange;
 pub use convention::Convention;
 pub use cull::Clip;
+pub use curvature::CurvatureKind;
 pub use displace::Displacement;
 pub use domain_kind::DomainKind;
 pub use factors::{Partitioning, PatchFactors};
@@ -60,9 +62,9 @@ pub use mesh_tessellation::{Tessellated, tessellate};
 pub use normal::Normals;
 pub use octahedral_normal::unpack_normal;
 pub use quad::QuadFactors;
-pub use surface::{Surface, SurfaceFamily};
 pub use vertex::Vertex;
 
+pub use control_nets::patch_net;
 #[cfg(test)]
 pub(crate) use control_points::edge_control_point;
 pub(crate) use control_points::{DistinctNormals, add_normal, crease_control_point, side_control_points};
@@ -70,7 +72,7 @@ pub use control_points::{center_control_point, straight_control_point};
 pub use convention::{corner_weights, domain_side, factor_side, weight_corner};
 pub use coverage::{CoverageView, covers_nothing, screen_corner};
 pub use cull::{FACING_AWAY, NOT_CULLED, OUT_OF_VIEW, cull_reason, planes_outside};
-pub use curvature::{mean_curvature, patch_second_derivatives};
+pub use curvature::patch_curvature;
 pub use domain::{domain_plan, domain_point, domain_triangle};
 pub use explained_patch::minimum_triangles;
 pub use explained_patch::{

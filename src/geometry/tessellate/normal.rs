@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
+use super::Surface;
 use super::factors::FIXED_ONE;
-use super::surface::{ControlNet, Surface, UNIT, patch_tangents};
+use super::surface::{ControlNet, UNIT, patch_tangents};
 use crate::choice::choices;
 
 choices! {

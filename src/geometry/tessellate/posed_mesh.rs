@@ -129,11 +129,18 @@ pub fn bounds_through(mesh: &Mesh, clip: Option<usize>) -> Bounds {
 /// Applies morph targets and then joints to a corner's position (glTF 2.0, section 3.7.2.2).
 fn posed_position(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
     let bound = &rig.bindings[corner as usize];
-    let mut position = Vec3::from(bound.position);
-    for delta in &rig.deltas[bound.first_delta as usize..][..bound.delta_count as usize] {
-        position += Vec3::from(delta.position) * pose.weights[delta.weight as usize];
-    }
+    let position = morphed(bound.position.into(), deltas_of(rig, bound), pose, |delta| delta.position.into());
     deform_position(&posed_matrix(pose, bound), position)
+}
+
+/// Returns the displacements of a corner by morph targets.
+fn deltas_of<'a>(rig: &'a Rig, bound: &Binding) -> &'a [Delta] {
+    &rig.deltas[bound.first_delta as usize..][..bound.delta_count as usize]
+}
+
+/// Adds what each morph target adds, times its weight.
+fn morphed(own: Vec3, deltas: &[Delta], pose: &Pose, added: impl Fn(&Delta) -> Vec3) -> Vec3 {
+    deltas.iter().fold(own, |sum, delta| sum + added(delta) * pose.weights[delta.weight as usize])
 }
 
 /// Applies morph targets and then joints to a corner's normal.
@@ -144,10 +151,7 @@ fn posed_normal(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
 
 /// Returns the unit normal of a corner that morph targets have turned.
 fn morphed_normal(rig: &Rig, pose: &Pose, bound: &Binding) -> Vec3 {
-    let mut normal = Vec3::from(bound.normal);
-    for delta in &rig.deltas[bound.first_delta as usize..][..bound.delta_count as usize] {
-        normal += Vec3::from(delta.normal) * pose.weights[delta.weight as usize];
-    }
+    let normal = morphed(bound.normal.into(), deltas_of(rig, bound), pose, |delta| delta.normal.into());
     unit_or(normal, bound.normal.into())
 }
 
@@ -157,26 +161,17 @@ fn posed_tangent(rig: &Rig, pose: &Pose, corner: u32) -> Vec4 {
     let bound = &rig.bindings[corner as usize];
     let rest = Vec4::from(rig.tangents[corner as usize]);
     let (own, sign) = (rest.truncate(), rest.w);
-    let deltas = &rig.deltas[bound.first_delta as usize..][..bound.delta_count as usize];
+    let deltas = deltas_of(rig, bound);
+    let displacement = |delta: &Delta| Vec4::from(rig.tangents[delta.tangent as usize]).truncate();
     let tangent = match deltas.first() {
         None => own,
-        Some(first) if first.tangent > 0 => displaced_tangent(rig, pose, deltas, own),
+        Some(first) if first.tangent > 0 => scaled_unit_or(morphed(own, deltas, pose, displacement), own),
         Some(_) => {
             let normal = Vec3::from(bound.normal);
             turn_along(own, unit_or(normal, normal), morphed_normal(rig, pose, bound))
         }
     };
     deform_tangent(&posed_matrix(pose, bound), tangent.extend(sign))
-}
-
-/// Returns the unit tangent of a corner that morph targets have displaced.
-fn displaced_tangent(rig: &Rig, pose: &Pose, deltas: &[Delta], own: Vec3) -> Vec3 {
-    let mut tangent = own;
-    for delta in deltas {
-        let displacement = Vec4::from(rig.tangents[delta.tangent as usize]).truncate();
-        tangent += displacement * pose.weights[delta.weight as usize];
-    }
-    scaled_unit_or(tangent, own)
 }
 
 /// Returns the blended matrix of a corner's joints.

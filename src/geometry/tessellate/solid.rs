@@ -45,13 +45,14 @@ impl Solid {
     /// Returns whether no back face can be seen with these inputs: the tessellation has no cracks, and the near plane
     /// doesn't cut the mesh, which is the one that [`Self::find`] was given.
     pub fn hides_backs(&self, mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
-        let tears = inputs.tessellation.surface.tears() && self.has_split_normals;
+        let surfaces = || mesh.surfaces(inputs.tessellation.surface);
+        let tears = surfaces().any(Surface::tears) && self.has_split_normals;
         // A displaced surface may show its back anywhere.
         let whole = !inputs.tessellation.displacement.is_on() && !tears;
         let holds =
             inputs.tessellation.edges == Edges::PerEdge && inputs.tessellation.convention.is_consistent() && whole;
-        let extent = || self.extent_of(inputs.tessellation.surface, mesh, topology);
-        holds && is_beyond_near(inputs.view.clip_from_object, extent())
+        let is_beyond = |surface| is_beyond_near(inputs.view.clip_from_object, self.extent_of(surface, mesh, topology));
+        holds && surfaces().all(is_beyond)
     }
 
     /// Returns the least and the greatest coordinates of all control points of a surface, in object units.

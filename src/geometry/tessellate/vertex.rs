@@ -32,6 +32,11 @@ impl Vertex {
         [self.key[0] & 0x1ffff, (self.key[0] >> 17) | ((self.key[1] & 3) << 15)]
     }
 
+    /// Returns the domain point as numbers, which hold it exactly.
+    pub fn exact_domain(&self) -> [f64; 2] {
+        self.domain().map(|weight| f64::from(weight) / f64::from(FIXED_ONE))
+    }
+
     /// Returns how much each of the patch's corners counts at the domain point. They add up to 1.
     pub fn weights(&self) -> [f32; 3] {
         let [u, v] = self.domain();

@@ -14,7 +14,7 @@ use crate::pipelines::{
     FACTOR_LEVELS, FRAMES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
 };
 use crate::readback::Readback;
-use crate::recorder::{RecordPasses, Recorder};
+use crate::recorder::{RecordPasses, Recorder, Timing};
 use crate::search_passes::search_passes;
 use crate::slab::SCAN_BLOCK;
 use crate::{Given, GpuError, UserPipelines};
@@ -59,18 +59,27 @@ fn record(recorder: &mut impl RecordPasses, name: &'static str, steps: &[Step]) 
 }
 
 impl Tessellator {
-    /// Records the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
-    /// scan, chunks. The recorder must be submitted before [`Self::read_counts`] or [`Self::poll_counts`].
+    /// Submits the passes that decide what will be emitted: deform and nets (where they are out of date), factors, counts,
+    /// scan, chunks. It does nothing if they have run. [`Self::read_counts`] waits for the counts, and [`Self::poll_counts`] says when
+    /// they are here. Returns whether it submitted anything.
     ///
     /// # Errors
     /// A pipeline can't be made: out of memory, or a lost device.
-    pub fn count(&mut self, recorder: &mut Recorder) -> Result<(), GpuError> {
-        self.record_chunks(recorder)?;
+    pub fn count(&mut self, timing: &mut Timing) -> Result<bool, GpuError> {
+        if self.counts_done || self.pending.is_some() {
+            return Ok(false);
+        }
+        let gpu = self.gpu.clone();
+        let mut recorder = Recorder::new(&gpu, timing);
+        self.record_chunks(&mut recorder)?;
         let tables = self.slabs.iter().map(|slab| (&slab.chunks, 0..slab.chunks.size()));
         let reports = self.user_report.iter().chain(self.user_surface.as_ref().map(|own| &own.report));
         let tables = tables.chain(reports.map(|report| (report, 0..report.size())));
-        self.pending = Some(Readback::from_buffers(&self.gpu, recorder.encoder(), tables));
-        Ok(())
+        let mut pending = Readback::from_buffers(&gpu, recorder.encoder(), tables);
+        recorder.submit();
+        pending.request();
+        self.pending = Some(pending);
+        Ok(true)
     }
 
     /// Records everything up to the first chunk's output in the arena, without a readback; and nothing if the arena holds that
@@ -91,7 +100,7 @@ impl Tessellator {
             record(recorder, "deform", &rig.steps(&self.inputs_of_passes())?);
             self.is_deformed = true;
         }
-        let shape = (self.params.surface, self.params.alpha);
+        let shape = (self.params.chosen_surface, self.params.alpha);
         if self.nets_done != Some(shape) {
             record(recorder, "nets", &self.nets()?);
             record(recorder, "directions", &self.directions()?);

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::Tessellator;
 use crate::buffer::empty;
+use crate::mesh_buffers::Grouping;
 use crate::{GpuError, LodShader, SurfaceShader, UserReport, UserShader};
-use geometry::mesh::Sharing;
 use geometry::tessellate::{Inputs, Surface, Tessellation, sharing, user_sharing};
 
 /// A function that gives control points.
@@ -66,8 +66,10 @@ impl Tessellator {
     }
 
     /// Which sides of an edge share its curve.
-    pub(super) fn sharing(&self, inputs: &Inputs) -> Sharing {
+    pub(super) fn grouping(&self, inputs: &Inputs) -> Grouping {
         let own = inputs.tessellation;
-        if self.user_surface.is_some() { user_sharing(own.edges) } else { sharing(own.surface, own.edges) }
+        let sharing =
+            if self.user_surface.is_some() { user_sharing(own.edges) } else { sharing(own.surface, own.edges) };
+        Grouping::new(&self.mesh, sharing, own.surface)
     }
 }

@@ -9,12 +9,12 @@ use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
 use load::heights::load_heights;
-use load::parts::Part;
+use load::part_tree::{self, Branch};
 use load::selection::Selection;
-use load::{Budget, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings};
+use load::{Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings};
 
 /// A mesh with its topology, and how long both took.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Loaded {
     pub source: Source,
     /// The preparation that was requested. The crease band may have become narrower than that.
@@ -25,14 +25,10 @@ pub struct Loaded {
     pub mesh: Arc<Mesh>,
     /// Sentences about what was left out or repaired.
     pub warnings: Vec<String>,
-    /// The names of the material variants that the file has.
-    pub variants: Vec<String>,
-    /// The names of the scenes that the file has.
-    pub scenes: Vec<String>,
-    /// Which of them this is.
-    pub scene: Option<usize>,
-    /// The parts of the file, also those that are left out.
-    pub parts: Arc<Vec<Part>>,
+    /// What the file offers.
+    pub contents: Arc<Contents>,
+    /// Its parts as a tree.
+    pub part_tree: Arc<Vec<Branch>>,
     /// Files that the mesh's own file names and that were read, with links resolved.
     pub files: Vec<PathBuf>,
     pub topology: Arc<Topology>,
@@ -43,22 +39,7 @@ pub struct Loaded {
 impl Loaded {
     /// A mesh that no file has.
     pub fn from_mesh(mesh: Arc<Mesh>, topology: Arc<Topology>) -> Self {
-        Self {
-            source: Source::default(),
-            preparation: Preparation::default(),
-            crease_band: CreaseBand::default(),
-            read: mesh.clone(),
-            mesh,
-            warnings: Vec::new(),
-            variants: Vec::new(),
-            scenes: Vec::new(),
-            scene: None,
-            parts: Arc::default(),
-            files: Vec::new(),
-            topology,
-            load_ms: 0.0,
-            topology_ms: 0.0,
-        }
+        Self { read: mesh.clone(), mesh, topology, ..Self::default() }
     }
 
     /// Returns this mesh at a moment of one of its clips, deformed on the CPU. Without a moment it is at rest.
@@ -83,7 +64,7 @@ pub struct Preparation {
     pub variant: Option<String>,
     /// The scene of the file, by name or by number from 0; none for its default scene.
     pub scene: Option<String>,
-    /// Which parts of the file are read.
+    /// Which parts of the file are read, and in which shape.
     pub parts: ShownParts,
     /// How the geometry of the file is taken.
     pub import: Import,
@@ -101,11 +82,10 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let selected = Selection {
         variant: preparation.variant.as_deref(),
         scene: preparation.scene.as_deref(),
-        hidden: &preparation.parts.hidden,
-        only: &preparation.parts.only,
+        parts: Some(&preparation.parts),
         import: preparation.import,
     };
-    let LoadedMesh { mesh: mut read, mut warnings, variants, scenes, scene, parts, files, file_bytes, is_refined: _ } =
+    let LoadedMesh { mesh: mut read, mut warnings, contents, files, file_bytes, is_refined: _ } =
         source.load_selected(selected, &preparation.limits, &progress.part(0.0, of_mesh))?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
@@ -143,10 +123,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
         warnings,
-        variants,
-        scenes,
-        scene,
-        parts: Arc::new(parts),
+        part_tree: Arc::new(part_tree::tree(&contents.parts)),
+        contents: Arc::new(contents),
         files,
         topology: Arc::new(topology),
         load_ms: (loaded - start).as_secs_f64() * 1e3,

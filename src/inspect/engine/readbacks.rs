@@ -7,12 +7,11 @@ use glam::Vec3;
 use super::Engine;
 use crate::measure::{EmittedChunk, PointsAgreement, RequestedFactors, Visitor};
 use crate::render::Scene;
-use geometry::mesh::Curves;
 use geometry::progress::Progress;
 use geometry::tessellate::{HullFactors, Inputs, PatchFactors, Tessellated, Tessellation, Vertex};
 use gpu::layout::Chunk;
 use gpu::layout::CurveNet;
-use gpu::{Given, Gpu, GpuError, Readback, Recorder, Timing, put_together, read_buffer, read_buffers};
+use gpu::{Given, Gpu, GpuError, Readback, Timing, put_together, read_buffer, read_buffers, submit_untimed};
 
 /// A chunk on its way back from the device.
 pub struct CopiedChunk {
@@ -28,10 +27,7 @@ impl CopiedChunk {
     /// # Errors
     /// The device was lost.
     pub fn start(gpu: &Gpu, scene: &mut Scene, index: usize) -> Result<Self, GpuError> {
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(gpu, &mut timing);
-        scene.tessellator.emit(&mut recorder, index)?;
-        recorder.submit();
+        submit_untimed(gpu, |recorder| scene.tessellator.emit(recorder, index))?;
         let buffers = scene.tessellator.chunk(index);
         let Chunk { first_patch, vertex_count, triangle_count, .. } = buffers.chunk;
         let triangle_bytes = u64::from(triangle_count) * size_of::<[u32; 3]>() as u64;
@@ -151,7 +147,7 @@ impl Engine {
         let bytes = u64::from(buffers.curve_count) * size_of::<CurveNet>() as u64;
         let nets: Vec<CurveNet> = cast(&read_buffer(&self.gpu, &buffers.curve_nets, 0, bytes)?);
         let nets: Vec<_> = nets.iter().map(|net| [net.ab, net.ba].map(Vec3::from)).collect();
-        let curves = Curves::build(tessellator.mesh(), topology, buffers.sharing);
+        let curves = buffers.grouping.curves(tessellator.mesh(), topology);
         Ok(Some(PointsAgreement::new(topology, &curves, &nets)))
     }
 
@@ -202,10 +198,7 @@ impl Engine {
     /// # Errors
     /// More patches than the adapter binds memory for, or a lost device.
     pub fn minimum(&self, scene: &mut Scene) -> Result<Vec<u32>, GpuError> {
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(&self.gpu, &mut timing);
-        scene.tessellator.record_minimum(&mut recorder)?;
-        recorder.submit();
+        submit_untimed(&self.gpu, |recorder| scene.tessellator.record_minimum(recorder))?;
         let Some(buffer) = scene.tessellator.minimum() else { return Ok(Vec::new()) };
         let bytes = u64::from(scene.tessellator.buffers().patch_count) * size_of::<u32>() as u64;
         Ok(cast(&read_buffer(&self.gpu, buffer, 0, bytes)?))

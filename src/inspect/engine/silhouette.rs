@@ -5,7 +5,7 @@ use crate::measure::{OutlineOf, SampleGrid, Silhouette};
 use crate::render::{Scene, SilhouetteCoverage, padded_clip};
 use geometry::progress::Progress;
 use geometry::tessellate::{Clip, Convention, Edges, Inputs, LodView, Partitioning, Surface, Tessellation};
-use gpu::{Gpu, GpuError, Readback, Recorder, Tessellator, Timing};
+use gpu::{Gpu, GpuError, Readback, Tessellator, Timing, submit_untimed};
 
 /// Memory for the output of the tessellator that outlines are drawn with, in bytes.
 const ARENA_BYTES: u64 = 32 << 20;
@@ -22,6 +22,13 @@ pub struct SilhouetteView {
     pub seen: LodView,
     /// What LOD and clipping are computed for, which may be another camera's view.
     pub lod: LodView,
+}
+
+impl SilhouetteView {
+    /// The samples of the picture that are compared on this device.
+    pub fn grid(&self, gpu: &Gpu) -> SampleGrid {
+        SampleGrid::new(self.size, gpu.device.limits().max_texture_dimension_2d)
+    }
 }
 
 /// A drawing under way. It has a tessellator of its own, so that what is shown stays as it is.
@@ -56,22 +63,15 @@ impl SilhouetteDrawing {
             self.tessellator.set(&inputs)?;
             (self.is_set, self.next_chunk) = (true, 0);
         }
-        let mut timing = Timing::Off;
-        if self.tessellator.needs_count() {
-            let mut recorder = Recorder::new(gpu, &mut timing);
-            self.tessellator.count(&mut recorder)?;
-            recorder.submit();
-            self.tessellator.request_counts();
-            return Ok(None);
-        }
-        if !self.tessellator.poll_counts()? {
+        if self.tessellator.count(&mut Timing::Off)? || !self.tessellator.poll_counts()? {
             return Ok(None);
         }
         if self.next_chunk < self.tessellator.chunk_count() {
-            let mut recorder = Recorder::new(gpu, &mut timing);
-            self.tessellator.emit(&mut recorder, self.next_chunk)?;
-            self.coverage.draw(&mut recorder, of, Some(&self.tessellator.chunk(self.next_chunk)));
-            recorder.submit();
+            submit_untimed(gpu, |recorder| {
+                self.tessellator.emit(recorder, self.next_chunk)?;
+                self.coverage.draw(recorder, of, Some(&self.tessellator.chunk(self.next_chunk)));
+                Ok(())
+            })?;
             self.next_chunk += 1;
         }
         if self.next_chunk >= self.tessellator.chunk_count() {
@@ -82,12 +82,11 @@ impl SilhouetteDrawing {
     }
 
     fn read(&mut self, gpu: &Gpu) -> Result<Readback, GpuError> {
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(gpu, &mut timing);
-        // An empty mesh covers nothing, which has to be drawn as well.
-        self.coverage.draw(&mut recorder, OutlineOf::Triangles, None);
-        let mut texels = self.coverage.read(gpu, &mut recorder);
-        recorder.submit();
+        let mut texels = submit_untimed(gpu, |recorder| {
+            // An empty mesh covers nothing, which has to be drawn as well.
+            self.coverage.draw(recorder, OutlineOf::Triangles, None);
+            Ok(self.coverage.read(gpu, recorder))
+        })?;
         texels.request();
         Ok(texels)
     }
@@ -105,7 +104,7 @@ impl Engine {
         tessellation: &Tessellation,
         view: &SilhouetteView,
     ) -> Result<SilhouetteDrawing, GpuError> {
-        let grid = SampleGrid::new(view.size, self.gpu.device.limits().max_texture_dimension_2d);
+        let grid = view.grid(&self.gpu);
         let coverage = self.silhouettes.start(&self.gpu, grid, view.seen.clip_from_object)?;
         tessellator.pose_as(scene.tessellator.posed())?;
         if scene.tessellator.given() != tessellator.given() {

@@ -2,7 +2,7 @@
 
 use glam::Vec4;
 
-use geometry::mesh::{MapUv, Mesh};
+use geometry::mesh::Mesh;
 
 /// The optional attributes of a mesh's vertices.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,17 +18,12 @@ impl Attributes {
     pub(super) fn new(mesh: &Mesh) -> Self {
         let Some(details) = &mesh.details else { return Self::default() };
         let looks = || mesh.materials.iter().map(|material| &material.look);
-        let mut sets = [false; 2];
-        for map in looks().flat_map(|look| look.maps.iter().flatten()) {
-            if let MapUv::Set(set, _) = map.uv {
-                sets[set] = true;
-            }
-        }
-        let has_normal_map = looks().any(|look| look.tangent_map().is_some());
+        let sets = [0, 1].map(|set| looks().any(|look| look.uv_sets()[set]));
+        let needs_tangents = looks().any(|look| look.tangent_uv().is_some());
         Self {
             sets,
             colors: details.iter().any(|detail| detail.color != Vec4::ONE),
-            tangents: has_normal_map && details.iter().any(|detail| detail.tangent != glam::Vec3::ZERO),
+            tangents: needs_tangents && details.iter().any(|detail| detail.tangent != glam::Vec3::ZERO),
         }
     }
 

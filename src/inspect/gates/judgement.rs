@@ -327,9 +327,9 @@ impl EdgePlace {
         format!("{between} at {}", position(self.spot.at))
     }
 
-    /// The place with these words.
-    fn with(self, text: String) -> Place {
-        Place { text, triangles: self.triangles, spot: Spot::Edge(self.spot) }
+    /// The place, said after these words.
+    fn after(self, words: &str) -> Place {
+        Place { text: format!("{words} {}", self.words()), triangles: self.triangles, spot: Spot::Edge(self.spot) }
     }
 }
 
@@ -345,13 +345,13 @@ fn worst_crack(facts: &Facts) -> Option<Place> {
     let gap = short(crack.gap);
     let [a, b] = crack.widest;
     let place = EdgePlace::new(facts.topology, crack.edge, Some(a * 0.5 + b * 0.5));
+    let mut place = place.after(&format!("the widest gap, {gap} object units, is"));
     let left_out = |patch: u32| {
         let triangle = facts.topology.patches[patch as usize].triangle;
         format!(", where the factors of triangle {triangle} leave it out")
     };
-    let left_out = crack.discarded.map(left_out).unwrap_or_default();
-    let text = format!("the widest gap, {gap} object units, is {}{left_out}", place.words());
-    Some(place.with(text))
+    place.text.extend(crack.discarded.map(left_out));
+    Some(place)
 }
 
 fn worst_factors(facts: &Facts) -> Option<Place> {
@@ -373,9 +373,7 @@ fn worst_factors(facts: &Facts) -> Option<Place> {
     let emitted = outlines.edge(facts.topology, edge).into_iter().next();
     let emitted: Vec<Vec3> = emitted.iter().flat_map(EdgeSide::positions).collect();
     let at = emitted.get(emitted.len() / 2).copied();
-    let place = EdgePlace::new(facts.topology, edge, at);
-    let text = format!("the factors differ most, {factors}, {}", place.words());
-    Some(place.with(text))
+    Some(EdgePlace::new(facts.topology, edge, at).after(&format!("the factors differ most, {factors},")))
 }
 
 fn worst_leak(facts: &Facts) -> Option<Place> {
@@ -424,8 +422,7 @@ fn worst_junction(facts: &Facts) -> Option<Place> {
     let at = facts.topology.points[worst.point as usize];
     let distance = short(f64::from(worst.distance));
     let place = EdgePlace::new(facts.topology, worst.edge, Some(at));
-    let text = format!("the farthest point lies {distance} object units beside the edge {}", place.words());
-    Some(place.with(text))
+    Some(place.after(&format!("the farthest point lies {distance} object units beside the edge")))
 }
 
 /// The longest edge or the largest triangle that has a defect, or the one that rises most.
@@ -443,9 +440,7 @@ fn worst_defect(defects: Defects, mesh: &Mesh, topology: &Topology) -> Option<Pl
                 topology.points[a as usize].distance_squared(topology.points[b as usize])
             };
             let longest = edges.into_iter().max_by(|a, b| length(a).total_cmp(&length(b)))?;
-            let place = EdgePlace::new(topology, longest, None);
-            let text = format!("the longest is {}", place.words());
-            place.with(text)
+            EdgePlace::new(topology, longest, None).after("the longest is")
         }
         Defects::Triangles(triangles) => {
             let longest = |triangle: &u32| {

@@ -173,23 +173,18 @@ impl FromStr for Gate {
         let (name, limit) = text.split_once(':').map_or((text, None), |(name, limit)| (name, Some(limit)));
         let names = || GateKind::ALL.map(GateKind::name).join(", ");
         let kind = GateKind::named(name).ok_or_else(|| format!("expected one of {}", names()))?;
-        let read = |text: &str| match kind.subject() {
-            GateSubject::Distance => text.parse().ok().map(Limit::Length),
-            GateSubject::Flight => Limit::from_px(text),
-            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation | GateSubject::Budget => {
-                text.parse().ok().map(Limit::Count)
-            }
-        };
-        let expected = || match kind.subject() {
-            GateSubject::Distance => format!(
-                "expected a length after {name}, such as {name}:0.2mm, {name}:0.1% (of the diagonal) or {name}:0.003"
+        let (read, expected): (fn(&str) -> Option<Limit>, _) = match kind.subject() {
+            GateSubject::Distance => (
+                |text| text.parse().ok().map(Limit::Length),
+                format!("a length after {name}, such as {name}:0.2mm, {name}:0.1% (of the diagonal) or {name}:0.003"),
             ),
-            GateSubject::Flight => format!("expected a number of px after {name}, such as {name}:0.1px"),
-            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation | GateSubject::Budget => {
-                format!("expected a whole number after {name}, such as {name}:100000")
-            }
+            GateSubject::Flight => (Limit::from_px, format!("a number of px after {name}, such as {name}:0.1px")),
+            GateSubject::Mesh | GateSubject::Survey | GateSubject::Tessellation | GateSubject::Budget => (
+                |text| text.parse().ok().map(Limit::Count),
+                format!("a whole number after {name}, such as {name}:100000"),
+            ),
         };
-        let limit = limit.map_or(kind.usual_limit(), read).ok_or_else(expected)?;
+        let limit = limit.map_or(kind.usual_limit(), read).ok_or_else(|| format!("expected {expected}"))?;
         Ok(Self { kind, limit })
     }
 }

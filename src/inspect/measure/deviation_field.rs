@@ -12,7 +12,7 @@ use crate::reference_shape::ReferenceShape;
 use geometry::mesh::{Mesh, Topology};
 use geometry::near::Interval;
 use geometry::progress::{Cancelled, Progress};
-use geometry::tessellate::{FIXED_ONE, Inputs, LimitSurface, Vertex};
+use geometry::tessellate::{Inputs, LimitSurface, Vertex};
 
 /// The surface that deviation is measured from.
 #[derive(Clone)]
@@ -217,7 +217,7 @@ impl Sums {
             TargetSurface::Limit(limit) => Some(limit.net(corners[0].patch())),
             TargetSurface::ReferenceShape(_) => None,
         };
-        let domains = corners.map(|vertex| vertex.domain().map(|x| f64::from(x) / f64::from(FIXED_ONE)));
+        let domains = corners.map(|vertex| vertex.exact_domain());
         for (weights, share) in grid(steps) {
             let emitted = (0..3).map(|k| positions[k] * weights[k]).sum();
             let reference_shape = match (target, &net) {

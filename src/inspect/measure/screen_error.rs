@@ -5,7 +5,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use super::visitor::{EmittedChunk, Visitor};
 use geometry::cores::in_ranges;
 use geometry::mesh::{Mesh, Topology};
-use geometry::tessellate::{ControlNet, FIXED_ONE, Inputs, LimitSurface, LodView, Vertex};
+use geometry::tessellate::{ControlNet, Inputs, LimitSurface, LodView, Vertex};
 
 /// Measures the largest distance on screen between an emitted point and the point of the limit surface at the same place of the
 /// domain. It is at least the distance to the nearest point of that surface, and is the distance that LOD by error bounds. On flat
@@ -110,7 +110,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
 
     fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet, slides: bool) -> Option<ScreenError> {
         let (patch, steps) = (corners[0].patch(), self.steps);
-        let domains = corners.map(|vertex| vertex.domain().map(|x| f64::from(x) / f64::from(FIXED_ONE)));
+        let domains = corners.map(|vertex| vertex.exact_domain());
         let positions = corners.map(|vertex| DVec3::from(vertex.position.map(f64::from)));
         let mut worst: Option<ScreenError> = None;
         for i in 0..=steps {

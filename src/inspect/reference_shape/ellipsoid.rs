@@ -36,10 +36,6 @@ impl Surface for Ellipsoid {
         [-self.radii, self.radii]
     }
 
-    fn charts(&self) -> usize {
-        1
-    }
-
     /// Stretches the sphere with its latitude and longitude.
     fn at(&self, _: usize, s: f64, t: f64) -> (Sample, f64) {
         let (across, y) = (PI * s).sin_cos();

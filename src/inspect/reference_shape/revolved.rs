@@ -46,10 +46,6 @@ impl Surface for Torus {
         [-corner, corner]
     }
 
-    fn charts(&self) -> usize {
-        1
-    }
-
     fn at(&self, _: usize, s: f64, t: f64) -> (Sample, f64) {
         let (sin, cos) = (TAU * s).sin_cos();
         let out = self.major + self.minor * cos;

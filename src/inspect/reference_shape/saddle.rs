@@ -45,10 +45,6 @@ impl Surface for Saddle {
         [-corner, corner]
     }
 
-    fn charts(&self) -> usize {
-        1
-    }
-
     fn at(&self, _: usize, s: f64, t: f64) -> (Sample, f64) {
         let [x, z] = [s, t].map(|part| self.half * (2.0 * part - 1.0));
         let area = 4.0 * self.half * self.half * (1.0 + x * x + z * z).sqrt();

@@ -13,7 +13,9 @@ pub(super) trait Surface: Send + Sync {
     fn extent(&self) -> [DVec3; 2];
 
     /// Returns the number of charts.
-    fn charts(&self) -> usize;
+    fn charts(&self) -> usize {
+        1
+    }
 
     /// Returns the point at `s` and `t` (0 to 1) of a chart, and the surface's area there per area of the unit square.
     fn at(&self, chart: usize, s: f64, t: f64) -> (Sample, f64);

@@ -3,6 +3,7 @@
 use glam::Mat4;
 
 use super::render_pipeline::PipelineParts;
+use super::target::color_attachment;
 use gpu::{
     ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, VERTEX_HALF, flat_texture, uniform_buffer,
     whole,
@@ -82,24 +83,16 @@ impl Added {
         let view = whole(&self.texture);
         let load = if self.is_cleared { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
         self.is_cleared = true;
-        let mut pass = recorder.encoder().begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("adding"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-            })],
-            ..Default::default()
+        recorder.render("adding", Some(color_attachment(&view, load)), None, |pass| {
+            let Some(chunk) = chunk else { return };
+            pass.set_pipeline(&self.pipeline);
+            pass.set_bind_group(0, &self.group, &[]);
+            pass.set_blend_constant(constant);
+            let [(places, bytes), _] = chunk.vertices();
+            pass.set_vertex_buffer(0, places.slice(bytes));
+            pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
+            pass.draw_indexed(0..3 * chunk.chunk.triangle_count, 0, 0..1);
         });
-        let Some(chunk) = chunk else { return };
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
-        pass.set_blend_constant(constant);
-        let [(places, bytes), _] = chunk.vertices();
-        pass.set_vertex_buffer(0, places.slice(bytes));
-        pass.set_index_buffer(chunk.indices.slice(..), wgpu::IndexFormat::Uint32);
-        pass.draw_indexed(0..3 * chunk.chunk.triangle_count, 0, 0..1);
     }
 
     /// Records a copy of all samples, row by row.

@@ -1,10 +1,8 @@
 //! Deviation on the device: the distances to a reference surface, and the colour scales for them.
 
 use super::Scale;
-use super::colors::DrawnColors;
-use super::scale::{FACTOR_SCALE, curvature_scale, hex_colors};
+use super::scale::hex_colors;
 use crate::measure::DeviationField;
-use crate::settings::{ColorSource, DeviationUnit, Settings};
 use gpu::{Gpu, uniform_buffer};
 
 /// The distances from what is emitted to the reference surface.
@@ -55,17 +53,6 @@ pub fn deviation_scale(largest: f64, ulp: f32) -> Scale {
     let decade = 10.0_f64.powf(largest.log10().floor());
     let most = ROUND.iter().map(|round| round * decade).find(|most| *most >= largest).unwrap_or(10.0 * decade);
     Scale { least: (most / SPAN) as f32, most: most as f32, ..DEVIATION_PX_SCALE }
-}
-
-/// The scale for the numbers that a picture's colours stand for, of a mesh with this bounding radius in object units; any scale if
-/// they stand for none.
-pub(super) fn scale_of(settings: &Settings, known: Option<&Deviations>, radius: f32) -> Scale {
-    match (settings.overlays.colors.source(), settings.deviation_in) {
-        (ColorSource::ReferenceSurface, DeviationUnit::Units) => known.map_or(DEVIATION_PX_SCALE, |known| known.scale),
-        (ColorSource::ReferenceSurface, DeviationUnit::Px) => DEVIATION_PX_SCALE,
-        (ColorSource::Curvature, _) => curvature_scale(settings.curvature_scale, radius),
-        _ => *DrawnColors::new(settings.overlays.colors).scale.unwrap_or(&FACTOR_SCALE),
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::group_layouts::{FRAGMENT, IMAGE, group_layout};
 use super::render_pipeline::PipelineParts;
-use super::target::{SHOWN_FORMAT, Target};
+use super::target::{SHOWN_FORMAT, Target, color_attachment};
 use gpu::{Gpu, GpuError, Lazy, Recorder, ShaderModule, bind_group, whole};
 
 /// Draws how much two pictures differ, pixel by pixel: see `shaders/draw_difference.wgsl`.
@@ -34,13 +34,7 @@ impl DifferenceDrawer {
         let bound = (0..).zip(views.each_ref().map(wgpu::BindingResource::TextureView));
         let group = bind_group(gpu, "difference", &self.layout, bound);
         let view = target.shown_view(false);
-        let color = wgpu::RenderPassColorAttachment {
-            view: &view,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store },
-        };
-        recorder.render("difference", Some(color), None, |pass| {
+        recorder.render("difference", Some(color_attachment(&view, wgpu::LoadOp::Load)), None, |pass| {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &group, &[]);
             pass.draw(0..3, 0..1);

@@ -39,7 +39,7 @@ impl SurfaceDraw {
     fn constants(self) -> Vec<(&'static str, f64)> {
         let mut constants = match self.shading {
             Shading::Plain | Shading::Textured => Vec::new(),
-            Shading::Lit(needs) => needs.constants().to_vec(),
+            Shading::Lit(needs) => needs.constants(),
             Shading::Cut(cut) => vec![("HAS_DETAILS", f64::from(u8::from(cut.details))), ("LIGHT_COUNT", 0.0)],
             Shading::Look(look) => vec![("LOOK", f64::from(look as u32))],
         };

@@ -1,8 +1,7 @@
 //! What the pipelines of pictures draw.
 
-use super::colors::Look;
 use super::needs::{Cut, Needs};
-use crate::settings::NormalsAt;
+use crate::settings::{Colors, NormalsAt};
 
 /// What a pipeline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -75,6 +74,9 @@ impl Triangles {
     }
 }
 
+/// Colours that have a variant of the surface's shader for themselves, so that no other picture pays for what they need.
+pub(super) const LOOKS: [Colors; 4] = [Colors::SurfaceNormals, Colors::Curvature, Colors::Matcap, Colors::TexelDensity];
+
 /// What colours a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Shading {
@@ -84,8 +86,8 @@ pub(super) enum Shading {
     Textured,
     /// The same where a mask cuts the material.
     Cut(Cut),
-    /// A look, which has a variant of the shader.
-    Look(Look),
+    /// One of [`LOOKS`].
+    Look(Colors),
     /// Materials in light from all around.
     Lit(Needs),
 }
@@ -109,55 +111,4 @@ pub(super) enum Occluded {
 
 impl Occluded {
     pub(super) const BOTH: [Self; 2] = [Self::Through, Self::InSight];
-}
-
-impl Draw {
-    /// Every pipeline that there is; of those that light materials, the ones with all that materials can need.
-    pub(super) fn all() -> Vec<Self> {
-        let masked = Needs { masked_samples: true, ..Needs::ALL };
-        let cuts = [false, true].map(|samples| Shading::Cut(Cut { details: true, samples }));
-        let mut shadings = vec![Shading::Plain, Shading::Textured, Shading::Lit(Needs::ALL), Shading::Lit(masked)];
-        shadings.extend(cuts.into_iter().chain(Look::ALL.map(Shading::Look)));
-        let layers = [LayerDraw::Over, LayerDraw::Filter, LayerDraw::Add, LayerDraw::Away, LayerDraw::Toward];
-        let mut all = vec![Self::Background, Self::Ground];
-        all.extend(Occluded::BOTH.into_iter().flat_map(|part| [Self::Lines(part), Self::Normals(part)]));
-        for (at_infinity, has_colors) in [(false, false), (true, false), (false, true)] {
-            all.push(Self::LayerClear { at_infinity, has_colors });
-        }
-        let all_faces = [Faces::Both, Faces::Fronts];
-        for triangles in [Triangles::Bare, Triangles::Indexed, Triangles::Pulled] {
-            for (&normals, faces) in NormalsAt::ALL.iter().flat_map(|at| all_faces.map(|faces| (at, faces))) {
-                for &shading in &shadings {
-                    let draws = [None].into_iter().chain(layers.map(Some)).map(|layer| SurfaceDraw {
-                        triangles,
-                        faces,
-                        normals,
-                        shading,
-                        layer,
-                    });
-                    all.extend(draws.filter(SurfaceDraw::is_common).map(Self::Surface));
-                }
-            }
-        }
-        all
-    }
-}
-
-impl SurfaceDraw {
-    /// Whether pictures have such surfaces. Of those that are seldom culled, the fronts alone count as none.
-    fn is_common(&self) -> bool {
-        let (is_bare, at_vertices) = (self.triangles == Triangles::Bare, self.normals == NormalsAt::Vertices);
-        let is_shaded = match self.shading {
-            Shading::Plain => is_bare && at_vertices,
-            Shading::Cut(_) | Shading::Look(_) => !is_bare,
-            Shading::Textured | Shading::Lit(_) => true,
-        };
-        let is_layer = match self.layer {
-            Some(layer) => self.shading == Shading::Lit(Needs::ALL) && (at_vertices || !layer.finds()),
-            None => true,
-        };
-        let is_masked = matches!(self.shading, Shading::Cut(_) | Shading::Lit(Needs { masked_samples: true, .. }));
-        let has_fronts = !is_masked && self.layer.is_none();
-        is_shaded && is_layer && (has_fronts || self.faces == Faces::Both)
-    }
 }

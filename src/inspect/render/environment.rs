@@ -187,9 +187,10 @@ fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
     }
 }
 
-fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
+/// A sampler that blends texels and levels, and goes on beyond the borders as on them.
+pub(super) fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("environment"),
+        label: Some("linear"),
         mag_filter: wgpu::FilterMode::Linear,
         min_filter: wgpu::FilterMode::Linear,
         mipmap_filter: wgpu::MipmapFilterMode::Linear,

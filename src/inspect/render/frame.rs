@@ -1,20 +1,19 @@
 //! The constants that all draws of a picture read.
 
-use super::deviation::scale_of;
 use super::ground::Ground;
 use super::halves::HalfPlace;
 use super::layout::{Frame, SECTION_BIT, overlay_bits};
 use super::section::clip_from_object;
-use super::{Camera, Scene, Target};
-use crate::settings::{DeviationUnit, Settings};
+use super::{Camera, Scene, Target, Usual};
+use crate::settings::{Colors, Settings, SurfaceUnit};
 use gpu::{Gpu, uniform_buffer};
 
-/// Uploads the constants of a picture of a scene, or of a half of it at this place. `radius` is the bounding
-/// radius that scales are for, which both halves share.
+/// Uploads the constants of a picture of a scene, or of a half of it at this place. Scales are for what
+/// is `usual`, which both halves share.
 pub(super) fn frame(
     gpu: &Gpu,
     scene: &Scene,
-    radius: f32,
+    usual: &Usual,
     target: &Target,
     camera: &Camera,
     settings: &Settings,
@@ -23,11 +22,13 @@ pub(super) fn frame(
     let viewport = target.viewport();
     let [right, up, back] = camera.axes();
     let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
-    let scale = scale_of(settings, scene.known_deviation(), radius);
+    let scale = usual.scale(settings, scene.known_deviation().map(|known| known.scale));
     // In clip space, w is 1 everywhere in an orthographic view, and the distance from the eye in a perspective view.
     let px_where_w_is_1 =
         (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
-    let in_px = settings.deviation_in == DeviationUnit::Px;
+    let is_of_texels = settings.overlays.colors == Colors::TexelDensity;
+    let (sine, cosine) = settings.zebra_direction.to_radians().sin_cos();
+    let in_px = settings.deviation_in == SurfaceUnit::Px;
     let frame = Frame {
         clip_from_object: clip_from_object(camera, viewport, &scene.bounds, settings).to_cols_array_2d(),
         key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
@@ -45,7 +46,10 @@ pub(super) fn frame(
         left: place.area[0] as f32,
         coarseness: target.coarseness as f32,
         shift: place.shift as f32,
-        _pad: 0.0,
+        kind: if is_of_texels { settings.texel_density_per as u32 } else { settings.curvature_kind as u32 },
+        zebra_axis: [cosine, sine],
+        zebra_stripes: settings.zebra_stripes,
+        checker_squares: settings.checker_squares.round(),
     };
     uniform_buffer(gpu, "frame", bytemuck::bytes_of(&frame))
 }

@@ -3,7 +3,6 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::Scale;
-use super::colors::DrawnColors;
 use crate::settings::Overlays;
 use geometry::mesh::{EdgeKind, Slot};
 use gpu::layout::Vertex;
@@ -41,7 +40,15 @@ pub struct Frame {
     pub coarseness: f32,
     /// By how many columns all that is drawn is moved to the right.
     pub shift: f32,
-    pub _pad: f32,
+    /// The kind of the numbers that colours stand for: a [`geometry::tessellate::CurvatureKind`], or under texel density a
+    /// [`crate::settings::SurfaceUnit`].
+    pub kind: u32,
+    /// The unit direction along the zebra's stripes, to the right and up in the view.
+    pub zebra_axis: [f32; 2],
+    /// Stripes over half a turn of the normal.
+    pub zebra_stripes: f32,
+    /// Squares of the checker in one unit of u or v.
+    pub checker_squares: f32,
 }
 
 /// A material's constants.
@@ -75,10 +82,18 @@ pub struct Material {
     pub transmission: f32,
     /// 0 without a normal map of the coat.
     pub coat_normal_scale: f32,
-    pub _pad: f32,
+    /// How much longer highlights are along a direction than across it.
+    pub anisotropy: f32,
     /// Linear RGB of the sheen; 0 without one.
     pub sheen_color: [f32; 3],
     pub sheen_roughness: f32,
+    /// What the body behind the surface absorbs in an object unit.
+    pub absorption: [f32; 3],
+    /// How far light goes through that body, in object units.
+    pub thickness: f32,
+    /// The direction of long highlights: along the tangent, and along the bitangent.
+    pub anisotropy_direction: [f32; 2],
+    pub _pad: [f32; 2],
     /// In the order of [`Slot::ALL`].
     pub maps: [MapPlace; Slot::COUNT],
 }
@@ -116,12 +131,11 @@ pub(crate) const FOUND_EMITTED: u32 = 1;
 /// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and normals are drawn as lines
 /// instead, and the ground has a shader of its own.
 pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
-    DrawnColors::new(overlays.colors).bit()
-        | u32::from(overlays.wireframe)
-        | u32::from(overlays.patches) << 1
-        | u32::from(overlays.adjacency) << 3
-        | u32::from(overlays.folds) << 4
-        | u32::from(overlays.back_faces) << 5
+    let Overlays { colors, wireframe, patches, adjacency, folds, back_faces, .. } = *overlays;
+    // Colours have a bit each above those, but for the mesh's own, which are the first.
+    let colors = (1_u32 << colors as u32) & !1;
+    let switches = [wireframe, patches, adjacency, folds, back_faces];
+    (0..).zip(switches).fold(colors << (switches.len() - 1), |bits, (bit, is_on)| bits | u32::from(is_on) << bit)
 }
 
 /// sRGB colour of an edge kind, for legends; `edge_color` in `shaders/draw_surface_color.wgsl` has the same in linear light.
@@ -155,7 +169,7 @@ pub(crate) const BACK_FACE_COLOR: [u8; 3] = [225, 30, 110];
 pub(crate) const SECTION_COLOR: [u8; 3] = [176, 150, 120];
 
 /// The bit of a picture with a section among those of [`overlay_bits`].
-pub(crate) const SECTION_BIT: u32 = 1 << 16;
+pub(crate) const SECTION_BIT: u32 = 1 << 20;
 
 /// sRGB colour of waste: triangles that are too small, and patches whose factors are too low. `WASTE_COLOR` in
 /// `shaders/draw_overlays.wgsl` has the same in linear light. It is vermilion (Okabe and Ito 2008).

@@ -8,7 +8,7 @@ use glam::{DVec2, Mat4, Vec2, dvec2};
 use super::Scene;
 use super::adding::{Added, Adding};
 use geometry::mesh::Topology;
-use gpu::{Gpu, GpuError, Readback, Recorder, Timing};
+use gpu::{Gpu, GpuError, Readback, submit_untimed};
 
 /// The count of each pixel, which may be negative. This format holds every whole number up to 2048, and every adapter can blend
 /// it.
@@ -71,18 +71,17 @@ impl LeakCount {
     /// # Errors
     /// The device was lost.
     pub fn draw_next(&mut self, gpu: &Gpu, scene: &mut Scene) -> Result<Option<Readback>, GpuError> {
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(gpu, &mut timing);
         let (index, chunks) = (self.next_chunk, scene.tessellator.chunk_count());
         self.next_chunk += 1;
-        if index < chunks {
-            scene.tessellator.emit(&mut recorder, index)?;
-        }
-        let chunk = (index < chunks).then(|| scene.tessellator.chunk(index));
-        self.added.draw(&mut recorder, wgpu::Color::WHITE, chunk.as_ref());
         let is_last = index + 1 >= chunks;
-        let mut counts = is_last.then(|| self.added.read(gpu, &mut recorder));
-        recorder.submit();
+        let mut counts = submit_untimed(gpu, |recorder| {
+            if index < chunks {
+                scene.tessellator.emit(recorder, index)?;
+            }
+            let chunk = (index < chunks).then(|| scene.tessellator.chunk(index));
+            self.added.draw(recorder, wgpu::Color::WHITE, chunk.as_ref());
+            Ok(is_last.then(|| self.added.read(gpu, recorder)))
+        })?;
         counts.iter_mut().for_each(Readback::request);
         Ok(counts)
     }

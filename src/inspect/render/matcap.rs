@@ -1,9 +1,8 @@
 //! Matcaps that are made in code: pictures of lit spheres, and how they are bound in place of a material.
 
-use std::array;
-
 use glam::{Vec3, vec3};
 
+use super::environment::linear_sampler;
 use super::layout::{self, srgb};
 use super::materials::Materials;
 use super::textures::{ImageUse, upload};
@@ -19,21 +18,16 @@ const SIDE: u32 = 512;
 pub const MATCAP_REACH: f32 = 0.98;
 
 /// Matcaps on the device, each made when it is first needed.
-pub(super) struct Matcaps {
-    groups: [Lazy<wgpu::BindGroup>; Matcap::ALL.len()],
-}
+#[derive(Default)]
+pub(super) struct Matcaps([Lazy<wgpu::BindGroup>; Matcap::ALL.len()]);
 
 impl Matcaps {
-    pub(super) fn new() -> Self {
-        Self { groups: array::from_fn(|_| Lazy::default()) }
-    }
-
     /// The bind group that stands for every material's.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn group(&self, gpu: &Gpu, materials: &Materials, matcap: Matcap) -> Result<&wgpu::BindGroup, GpuError> {
-        self.groups[matcap as usize].get_or_try_make(|| sphere_group(gpu, materials, &picture(matcap)))
+        self.0[matcap as usize].get_or_try_make(|| sphere_group(gpu, materials, &picture(matcap)))
     }
 }
 
@@ -41,24 +35,14 @@ impl Matcaps {
 #[derive(Clone)]
 pub struct MatcapPicture(pub(super) wgpu::BindGroup);
 
-impl MatcapPicture {
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub(super) fn new(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<Self, GpuError> {
-        sphere_group(gpu, materials, picture).map(Self)
-    }
-}
-
-fn sphere_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgpu::BindGroup, GpuError> {
+/// Uploads a picture of a lit sphere.
+///
+/// # Errors
+/// Out of memory, or a lost device.
+pub(super) fn sphere_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgpu::BindGroup, GpuError> {
     // Nothing of the material is seen.
     let constants = uniform_buffer(gpu, "matcap", &[0; size_of::<layout::Material>()]);
-    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("matcap"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
-    });
+    let sampler = linear_sampler(gpu);
     let view = upload(gpu, &materials.mipmaps, picture, ImageUse::new(MipFilter::Colors))?;
     let bound = [
         (0, constants.as_entire_binding()),

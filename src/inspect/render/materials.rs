@@ -4,10 +4,12 @@ use super::environment::Environment;
 use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, depths, group_layout};
 use super::layout::{self, LEAST_SEEN, MapPlace};
 use super::mipmap_pass::Mipmaps;
+use super::needs::BEHIND;
 use super::punctual::upload_lights;
 use super::textures::{ImageUse, Samplers, Textures, white};
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot};
+use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Wrap};
+use gpu::shader_constants::image_binding;
 use gpu::{Gpu, GpuError, bind_group, uniform_buffer};
 
 /// Where the bindings of the light from all around begin in the group of a lit material; the same in `shaders/environment.wgsl`.
@@ -15,19 +17,12 @@ const LIGHT_BINDING: u32 = 16;
 /// The binding of the lights of the file; the same in `shaders/draw_material.wgsl`.
 const FILE_LIGHTS_BINDING: u32 = 20;
 
-/// Where the bindings of the images go on that have no room below the light's; the same in `shaders/draw_material.wgsl`.
-const LATER_IMAGES_BINDING: u32 = 21;
-
 /// The binding of the depths of what hides everything behind it, where layers are found; the same in `shaders/layers_single.wgsl` and
 /// `shaders/layers_multisampled.wgsl`.
 const HIDING_DEPTHS_BINDING: u32 = 35;
 
-/// Images of a material: that of the base colour, and the maps.
-const IMAGES: usize = 1 + Slot::COUNT;
-/// How many of them have their bindings below the light's.
-const EARLY_IMAGES: usize = 6;
-/// Those that say where a material shows what is behind it: that of the base colour, and how much light goes through.
-const IMAGES_OF_LAYERS: [usize; 2] = [0, 1 + Slot::Transmission as usize];
+/// Images of a shader: that of the base colour, and the places for others.
+const IMAGES: usize = 1 + Look::MOST_IMAGES;
 
 /// What the materials of all scenes share: layouts, samplers and a white texture.
 pub struct Materials {
@@ -52,17 +47,24 @@ pub struct UploadedMaterial {
     /// Its base colour.
     pub group: wgpu::BindGroup,
     constants: wgpu::Buffer,
-    images: [(wgpu::TextureView, wgpu::Sampler); IMAGES],
+    /// That of the base colour, those of all slots, and one in place of what is [`BEHIND`].
+    images: [Image; 2 + Slot::COUNT],
 }
+
+/// An image, and how it is sampled.
+type Image = (wgpu::TextureView, wgpu::Sampler);
+
+/// A material, and the images that its shader has places for: see [`Needs::maps`](super::needs::Needs::maps).
+pub(super) type PlacedMaterial<'a> = (&'a UploadedMaterial, u32);
 
 impl Materials {
     pub fn new(gpu: &Gpu) -> Self {
         let depths = [(HIDING_DEPTHS_BINDING, FRAGMENT, depths(gpu))];
         let lights = [&Environment::bindings(LIGHT_BINDING)[..], &[(FILE_LIGHTS_BINDING, FRAGMENT, UNIFORM)]].concat();
-        let lit = [user_bindings(&all_images()), lights].concat();
-        let found = [&user_bindings(&IMAGES_OF_LAYERS)[..], &depths].concat();
+        let lit = [user_bindings(IMAGES), lights].concat();
+        let found = [&user_bindings(IMAGES)[..], &depths].concat();
         Self {
-            layout: group_layout(gpu, "material", &user_bindings(&[0])),
+            layout: group_layout(gpu, "material", &user_bindings(1)),
             lit_layout: group_layout(gpu, "lit material", &lit),
             found_layout: group_layout(gpu, "found material", &found),
             white: white(gpu),
@@ -90,6 +92,7 @@ impl Materials {
         let constants = uniform_buffer(gpu, "material", bytemuck::bytes_of(&constants(material)));
         let sampler = |sampling| self.samplers.get(gpu, sampling);
         let mut images = std::array::from_fn(|_| (self.white.clone(), sampler(Sampling::default())));
+        images[1 + BEHIND].1 = sampler(Sampling { wrap: [Wrap::Clamp; 2], ..Sampling::default() });
         if let Some(texture) = &material.texture {
             let view = textures.view(gpu, &self.mipmaps, texture, ImageUse::base_color(material))?;
             images[0] = (view, sampler(material.sampling));
@@ -100,23 +103,26 @@ impl Materials {
                 images[1 + slot as usize] = (view, sampler(map.sampling));
             }
         }
-        let group = bind_group(gpu, "material", &self.layout, own_bound(&constants, &images, &[0]));
+        let group = bind_group(gpu, "material", &self.layout, own_bound(&constants, &images[..1]));
         Ok(UploadedMaterial { group, constants, images })
     }
 
-    /// The bind groups of materials that a light shines on, and the lights of a file, if there are any.
+    /// The bind groups of materials that a light shines on, and the lights of a file, if there are any; and a picture of what is
+    /// behind bodies that refract light.
     pub(super) fn lit_groups(
         &self,
         gpu: &Gpu,
-        materials: &[UploadedMaterial],
+        materials: &[PlacedMaterial],
         environment: &Environment,
         surroundings: &wgpu::Buffer,
         lights: Option<&wgpu::Buffer>,
+        behind: Option<&wgpu::TextureView>,
     ) -> Vec<wgpu::BindGroup> {
         let lights = (FILE_LIGHTS_BINDING, lights.unwrap_or(&self.no_lights).as_entire_binding());
         let light = [&environment.bound(LIGHT_BINDING, surroundings)[..], &[lights]].concat();
-        let group = |own: &UploadedMaterial| {
-            let bound = [own_bound(&own.constants, &own.images, &all_images()), light.clone()].concat();
+        let group = |&(own, maps): &PlacedMaterial| {
+            let images = own.placed(maps, behind);
+            let bound = [own_bound(&own.constants, &images), light.clone()].concat();
             bind_group(gpu, "lit material", &self.lit_layout, bound)
         };
         materials.iter().map(group).collect()
@@ -126,15 +132,28 @@ impl Materials {
     pub(super) fn found_groups(
         &self,
         gpu: &Gpu,
-        materials: &[UploadedMaterial],
+        materials: &[PlacedMaterial],
         hiding: &wgpu::TextureView,
     ) -> Vec<wgpu::BindGroup> {
         let depths = [(HIDING_DEPTHS_BINDING, wgpu::BindingResource::TextureView(hiding))];
-        let group = |own: &UploadedMaterial| {
-            let bound = [&own_bound(&own.constants, &own.images, &IMAGES_OF_LAYERS)[..], &depths].concat();
+        let group = |&(own, maps): &PlacedMaterial| {
+            let images = own.placed(maps, None);
+            let bound = [&own_bound(&own.constants, &images)[..], &depths].concat();
             bind_group(gpu, "found material", &self.found_layout, bound)
         };
         materials.iter().map(group).collect()
+    }
+}
+
+impl UploadedMaterial {
+    /// The images in the places of a shader that has these maps.
+    fn placed(&self, maps: u32, behind: Option<&wgpu::TextureView>) -> Vec<Image> {
+        let mut images = self.images.clone();
+        images[1 + BEHIND].0 = behind.unwrap_or(&images[1 + BEHIND].0).clone();
+        let base = images[0].clone();
+        let own = images.into_iter().enumerate().filter(|(image, _)| *image == 0 || maps >> (image - 1) & 1 == 1);
+        // Places without an image aren't read.
+        own.map(|(_, image)| image).chain(std::iter::repeat(base)).take(IMAGES).collect()
     }
 }
 
@@ -163,9 +182,13 @@ fn constants(material: &Material) -> layout::Material {
         blends: f32::from(u8::from(look.alpha == Alpha::Blend)),
         transmission: if look.transmits() { look.transmission } else { 0.0 },
         coat_normal_scale: scale_of(Slot::ClearcoatNormal, look.clearcoat_normal_scale),
-        _pad: 0.0,
+        anisotropy: if look.has_anisotropy() { look.anisotropy } else { 0.0 },
         sheen_color: if look.has_sheen() { look.sheen_color } else { [0.0; 3] },
         sheen_roughness: look.sheen_roughness,
+        absorption: look.absorption(),
+        thickness: look.thickness,
+        anisotropy_direction: glam::Vec2::from_angle(look.anisotropy_rotation).to_array(),
+        _pad: [0.0; 2],
         maps: look.maps.each_ref().map(|map| map_place(map.as_ref())),
     }
 }
@@ -179,33 +202,22 @@ fn map_place(map: Option<&Map>) -> MapPlace {
     }
 }
 
-/// The constants, and a texture and a sampler for each of these images.
-fn user_bindings(images: &[usize]) -> Vec<Binding> {
-    let both = images.iter().map(|&image| image_binding(image));
+/// The constants, and a texture and a sampler for each of so many images.
+fn user_bindings(images: usize) -> Vec<Binding> {
+    let both = (0..images).map(binding_of);
     let both = both.flat_map(|binding| [(binding, FRAGMENT, IMAGE), (binding + 1, FRAGMENT, SAMPLER)]);
     std::iter::once((0, FRAGMENT, UNIFORM)).chain(both).collect()
 }
 
-fn all_images() -> [usize; IMAGES] {
-    std::array::from_fn(|image| image)
-}
-
-/// The binding of an image. That of its sampler comes next.
-fn image_binding(image: usize) -> u32 {
-    match image.checked_sub(EARLY_IMAGES) {
-        Some(later) => LATER_IMAGES_BINDING + 2 * later as u32,
-        None => 1 + 2 * image as u32,
-    }
+/// The binding of an image: the first is that of the base colour. That of its sampler comes next.
+fn binding_of(image: usize) -> u32 {
+    image.checked_sub(1).map_or(1, image_binding)
 }
 
 /// What is bound at [`user_bindings`].
-fn own_bound<'a>(
-    constants: &'a wgpu::Buffer,
-    images: &'a [(wgpu::TextureView, wgpu::Sampler); IMAGES],
-    bound: &[usize],
-) -> Vec<(u32, wgpu::BindingResource<'a>)> {
-    let both = bound.iter().flat_map(|&image| {
-        let ((view, sampler), binding) = (&images[image], image_binding(image));
+fn own_bound<'a>(constants: &'a wgpu::Buffer, images: &'a [Image]) -> Vec<(u32, wgpu::BindingResource<'a>)> {
+    let both = images.iter().enumerate().flat_map(|(image, (view, sampler))| {
+        let binding = binding_of(image);
         let view = wgpu::BindingResource::TextureView(view);
         [(binding, view), (binding + 1, wgpu::BindingResource::Sampler(sampler))]
     });

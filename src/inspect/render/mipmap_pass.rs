@@ -49,38 +49,37 @@ impl Mipmaps {
         Self { average: pass("mip_main"), tested: ["mip_count", "mip_choose", "mip_cover"].map(pass) }
     }
 
-    /// Fills all levels of an image of 8-bit RGBA but the first, which must be there already. `first` is a view of that, without
-    /// a transfer function. The result is the same every time.
+    /// Records passes that fill all levels of an image of 8-bit RGBA but the first, which must be there before. `first` is a
+    /// view of that, without a transfer function. The result is the same every time.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn fill(
         &self,
         gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
         image: &wgpu::Texture,
         first: &wgpu::TextureView,
         filter: MipFilter,
         test: Option<AlphaTest>,
     ) -> Result<(), GpuError> {
         let size = [image.width(), image.height()];
-        if level_count(size) == 1 {
+        if image.mip_level_count() == 1 {
             return Ok(());
         }
         let tested = if test.is_some() { &self.tested[..] } else { &[] };
         std::iter::once(&self.average).chain(tested).try_for_each(|pass| pass.get(gpu).map(|_| ()))?;
         let levels: Vec<_> = level_params(size, filter, test).collect();
         let buffers = gpu.attempt(|| Buffers::new(gpu, size))?;
-        let descriptor = wgpu::CommandEncoderDescriptor { label: Some("mipmap") };
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
         // Each level is averaged from the one before before any alpha is scaled.
         for params in &levels {
-            record(&self.average, gpu, &mut encoder, &buffers, first, params)?;
+            record(&self.average, gpu, encoder, &buffers, first, params)?;
         }
         for (params, pass) in levels.iter().flat_map(|params| tested.iter().map(move |pass| (params, pass))) {
-            record(pass, gpu, &mut encoder, &buffers, first, params)?;
+            record(pass, gpu, encoder, &buffers, first, params)?;
         }
-        levels.iter().for_each(|params| copy(params, &mut encoder, &buffers.texels, image));
-        gpu.attempt(|| gpu.queue.submit([encoder.finish()])).map(|_| ())
+        levels.iter().for_each(|params| copy(params, encoder, &buffers.texels, image));
+        Ok(())
     }
 }
 

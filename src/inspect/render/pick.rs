@@ -7,11 +7,11 @@ use glam::{DMat4, DVec4, Mat4, dvec2};
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
 use super::render_pipeline::{PipelineParts, depth_state};
-use super::target::DEPTH_FORMAT;
+use super::target::{DEPTH_FORMAT, color_attachment, depth_attachment};
 use gpu::layout::Vertex;
 use gpu::{
-    ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, Timing, empty, flat_texture,
-    uniform_buffer, whole,
+    ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, empty, flat_texture,
+    submit_untimed, uniform_buffer, whole,
 };
 
 /// `pick_fragment` draws two numbers. Every adapter can draw into this format, which has four.
@@ -96,19 +96,18 @@ impl Picker {
     /// A pipeline can't be made: out of memory, or a lost device.
     pub fn start(&self, gpu: &Gpu, scene: &mut Scene, pixel: &Pixel) -> Result<Picking, GpuError> {
         let run = Run::new(gpu, pixel)?;
-        let mut timing = Timing::Off;
-        let mut recorder = Recorder::new(gpu, &mut timing);
-        if pixel.has_input {
-            run.record(&mut recorder, scene, &self.source, 3 * scene.tessellator.buffers().patch_count, true)?;
-        } else {
-            for index in 0..scene.tessellator.chunk_count() {
-                scene.tessellator.emit(&mut recorder, index)?;
-                let triangles = scene.tessellator.chunk(index).chunk.triangle_count;
-                run.record(&mut recorder, scene, &self.emitted, 3 * triangles, index == 0)?;
+        let mut readback = submit_untimed(gpu, |recorder| {
+            if pixel.has_input {
+                run.record(recorder, scene, &self.source, 3 * scene.tessellator.buffers().patch_count, true)?;
+            } else {
+                for index in 0..scene.tessellator.chunk_count() {
+                    scene.tessellator.emit(recorder, index)?;
+                    let triangles = scene.tessellator.chunk(index).chunk.triangle_count;
+                    run.record(recorder, scene, &self.emitted, 3 * triangles, index == 0)?;
+                }
             }
-        }
-        let mut readback = Readback::from_buffers(gpu, recorder.encoder(), [(&run.pick, 0..run.pick.size())]);
-        recorder.submit();
+            Ok(Readback::from_buffers(gpu, recorder.encoder(), [(&run.pick, 0..run.pick.size())]))
+        })?;
         readback.request();
         Ok(Picking(readback))
     }
@@ -176,18 +175,8 @@ impl<'a> Run<'a> {
     ) -> Result<(), GpuError> {
         let module = search.module.get(self.gpu)?;
         let draw = search.draw.get_or_make(self.gpu, || pipeline(self.gpu, module, search.vertex))?;
-        let depth = if first { wgpu::LoadOp::Clear(0.0) } else { wgpu::LoadOp::Load };
-        let color = wgpu::RenderPassColorAttachment {
-            view: &self.drawn,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-        };
-        let depth = wgpu::RenderPassDepthStencilAttachment {
-            view: &self.depth,
-            depth_ops: Some(wgpu::Operations { load: depth, store: wgpu::StoreOp::Store }),
-            stencil_ops: None,
-        };
+        let color = color_attachment(&self.drawn, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
+        let depth = depth_attachment(&self.depth, first.then_some(0.0));
         let resource = |name: &str| self.resource(scene, name);
         let group = search.module.bind(self.gpu, search.vertex, &draw.get_bind_group_layout(0), resource);
         recorder.render("pick", Some(color), Some(depth), |pass| {

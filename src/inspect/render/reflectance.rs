@@ -4,7 +4,7 @@
 use std::f32::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Vec2, Vec3};
+use glam::{Vec2, Vec3, vec2};
 
 use super::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_visibility};
 
@@ -24,6 +24,8 @@ pub struct LookAt {
     pub specular: f32,
     pub coat_normal: Vec3,
     pub coat: f32,
+    pub direction: Vec3,
+    pub anisotropy: f32,
     pub roughness: f32,
     pub coat_roughness: f32,
     pub ior: f32,
@@ -44,6 +46,8 @@ impl Default for LookAt {
             specular: 1.0,
             coat_normal: Vec3::Z,
             coat: 0.0,
+            direction: Vec3::X,
+            anisotropy: 0.0,
             roughness: 0.5,
             coat_roughness: 0.0,
             ior: 1.5,
@@ -83,17 +87,33 @@ pub fn largest_component(color: Vec3) -> f32 {
     color.max_element()
 }
 
-pub(crate) fn ggx_distribution(normal: Vec3, half_way: Vec3, alpha: f32) -> f32 {
+pub(crate) fn ggx_distribution(normal: Vec3, half_way: Vec3, alphas: Vec2, direction: Vec3) -> f32 {
     let cosine = normal.dot(half_way).max(0.0);
-    let spread = cosine * cosine * alpha * alpha + normal.cross(half_way).length_squared();
-    alpha * alpha / (PI * spread * spread)
+    let across = normal.cross(half_way);
+    let (aside, ratio) = (across.dot(direction), alphas.x / alphas.y);
+    let spread =
+        cosine * cosine * alphas.x * alphas.x + across.length_squared() + (ratio * ratio - 1.0) * aside * aside;
+    ratio * alphas.x * alphas.x / (PI * spread * spread)
 }
 
-pub(crate) fn ggx_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
-    let square = alpha * alpha;
-    let eye_part = lit * (facing * facing * (1.0 - square) + square).sqrt();
-    let light_part = facing * (lit * lit * (1.0 - square) + square).sqrt();
+pub(crate) fn ggx_visibility(lit: f32, facing: f32, alphas: Vec2, along: Vec2) -> f32 {
+    let square = alphas.y * alphas.y;
+    let more = (alphas.x * alphas.x - square) * along * along;
+    let eye_part = lit * (facing * facing * (1.0 - square) + square + more.y).sqrt();
+    let light_part = facing * (lit * lit * (1.0 - square) + square + more.x).sqrt();
     0.5 / (eye_part + light_part).max(1e-7)
+}
+
+pub fn stretched_alphas(look: &LookAt) -> Vec2 {
+    let alpha = look.roughness * look.roughness;
+    vec2(alpha + (1.0 - alpha) * look.anisotropy * look.anisotropy, alpha)
+}
+
+pub fn mean_roughness(look: &LookAt) -> f32 {
+    if look.anisotropy <= 0.0 {
+        return look.roughness;
+    }
+    (0.5 * stretched_alphas(look).length_squared()).sqrt().sqrt()
 }
 
 pub(crate) fn albedo_at_once(f0: Vec3, f90: f32, dfg: Vec2) -> Vec3 {
@@ -182,16 +202,25 @@ pub fn direct_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Ve
     }
     let coat_fresnel = COAT_F0 + (1.0 - COAT_F0) * fifth_power(1.0 - look.coat_normal.dot(to_eye).abs());
     let coat = look.coat * coat_fresnel;
-    base * (1.0 - coat) + coat * direct_lobe(look.coat_normal, to_eye, to_light, half_way, look.coat_roughness)
+    let coat_alphas = Vec2::splat(look.coat_roughness * look.coat_roughness);
+    base * (1.0 - coat) + coat * direct_lobe(look.coat_normal, to_eye, to_light, half_way, coat_alphas, look.direction)
 }
 
-pub(crate) fn direct_lobe(normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3, roughness: f32) -> f32 {
+pub(crate) fn direct_lobe(
+    normal: Vec3,
+    to_eye: Vec3,
+    to_light: Vec3,
+    half_way: Vec3,
+    alphas: Vec2,
+    direction: Vec3,
+) -> f32 {
     let (lit, facing) = (normal.dot(to_light), normal.dot(to_eye));
     if lit <= 0.0 || facing <= 0.0 {
         return 0.0;
     }
-    let alpha = (roughness * roughness).max(LEAST_ALPHA);
-    ggx_distribution(normal, half_way, alpha) * ggx_visibility(lit, facing, alpha) * lit
+    let rough = alphas.max(Vec2::splat(LEAST_ALPHA));
+    let along = vec2(direction.dot(to_light), direction.dot(to_eye));
+    ggx_distribution(normal, half_way, rough, direction) * ggx_visibility(lit, facing, rough, along) * lit
 }
 
 pub(crate) fn direct_sheen(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3) -> f32 {
@@ -213,7 +242,7 @@ pub(crate) fn direct_base_reflection(
     half_way: Vec3,
     schlick: f32,
 ) -> Vec3 {
-    let lobe = direct_lobe(normal, to_eye, to_light, half_way, look.roughness);
+    let lobe = direct_lobe(normal, to_eye, to_light, half_way, stretched_alphas(look), look.direction);
     let f0 = dielectric_f0(look);
     let fresnel = f0 + (look.specular - f0) * schlick;
     let lit = if normal.dot(to_eye) > 0.0 { normal.dot(to_light).max(0.0) } else { 0.0 };

@@ -14,7 +14,7 @@ use super::deviation::Deviations;
 use super::difference::DifferenceDrawer;
 use super::draws::Draw;
 use super::environment::Environment;
-use super::matcap::{MatcapPicture, Matcaps};
+use super::matcap::{MatcapPicture, Matcaps, sphere_group};
 use super::materials::Materials;
 use super::needs::PictureKind;
 use super::pipelines::DrawPipelines;
@@ -63,7 +63,7 @@ impl Renderer {
             pipelines: DrawPipelines::new(gpu, &materials),
             materials,
             studio: Lazy::default(),
-            matcaps: Matcaps::new(),
+            matcaps: Matcaps::default(),
             coverage: CoveragePipelines::new(),
             difference: DifferenceDrawer::new(gpu),
             unknown: Deviations::unknown(gpu),
@@ -87,7 +87,7 @@ impl Renderer {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn matcap(&self, picture: &Texture) -> Result<MatcapPicture, GpuError> {
-        MatcapPicture::new(&self.gpu, &self.materials, picture)
+        sphere_group(&self.gpu, &self.materials, picture).map(MatcapPicture)
     }
 
     /// What the materials of all scenes share.

@@ -62,11 +62,10 @@ pub const DENSITY_SCALE: Scale = Scale {
 const CURVATURE_COLORS: [[u8; 3]; Scale::STOPS] =
     hex_colors([0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b]);
 
-/// The scale of mean curvatures in 1 / object unit, for a mesh with this bounding radius in object units. `ends` is the curvature
-/// at its ends in 1 / bounding radius. The result has two digits.
-pub fn curvature_scale(ends: f32, radius: f32) -> Scale {
+/// The scale of curvatures that ends at about this one and its negative: the result has two digits.
+pub(super) fn curvature_scale(ends: f64) -> Scale {
     // Not so large or small that a shader's division of two curvatures leaves f32.
-    let most = (f64::from(ends) / f64::from(radius)).clamp(1e-30, 1e30);
+    let most = ends.clamp(1e-30, 1e30);
     let digit = 10.0_f64.powf(most.log10().floor() - 1.0);
     let most = ((most / digit).round() * digit) as f32;
     Scale { least: -most, most, colors: CURVATURE_COLORS }
@@ -114,14 +113,14 @@ mod tests {
 
     #[test]
     fn curvature_has_an_even_scale_around_0_whose_ends_have_two_digits() {
-        let scale = curvature_scale(4.0, 1.7);
+        let scale = curvature_scale(4.0 / 1.7);
         assert_eq!((scale.least, scale.most), (-2.4, 2.4));
         assert_eq!([-9.0, -2.4, 0.0, 1.2, 2.4].map(|number| scale.place(number)), [0.0, 0.0, 0.5, 0.75, 1.0]);
         assert_eq!(scale.color(scale.place(0.0)), [0xf7; 3]);
-        assert_eq!(curvature_scale(4.0, 3e-7).most, 1.3e7);
-        for radius in [0.0, f32::MIN_POSITIVE, f32::MAX] {
-            let Scale { least, most, .. } = curvature_scale(1.0, radius);
-            assert!(most > 0.0 && most.is_finite() && least == -most, "{radius}: {most}");
+        assert_eq!(curvature_scale(4.0 / 3e-7).most, 1.3e7);
+        for ends in [0.0, f64::MIN_POSITIVE, f64::MAX, f64::INFINITY] {
+            let Scale { least, most, .. } = curvature_scale(ends);
+            assert!(most > 0.0 && most.is_finite() && least == -most, "{ends}: {most}");
         }
     }
 
@@ -135,7 +134,7 @@ mod tests {
         assert!(steps(&FACTOR_SCALE).windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{:?}", steps(&FACTOR_SCALE));
         let rising = steps(&DEVIATION_PX_SCALE);
         assert!(rising.windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{rising:?}");
-        let both_ways = steps(&curvature_scale(1.0, 1.0));
+        let both_ways = steps(&curvature_scale(1.0));
         assert!(both_ways[..4].windows(2).all(|pair| pair[0] * 1.15 < pair[1]), "{both_ways:?}");
         assert!(both_ways[3..].windows(2).all(|pair| pair[0] > pair[1] * 1.15), "{both_ways:?}");
         for falling in [&SIZE_SCALE, &EXCESS_SCALE] {

@@ -6,7 +6,6 @@ use bytemuck::{Pod, Zeroable};
 use glam::Vec3;
 use wgpu::util::DeviceExt;
 
-use super::Scale;
 use super::coverage::Coverage;
 use super::deviation::Deviations;
 use super::environment::Environment;
@@ -14,6 +13,7 @@ use super::layout::linear;
 use super::matcap::MatcapPicture;
 use super::materials::{Materials, UploadedMaterial};
 use super::punctual::upload_lights;
+use super::{Scale, Usual};
 use crate::measure::DeviationField;
 use crate::settings::{Settings, SplitSide};
 use geometry::mesh::{Bounds, Mesh, Moment, Topology};
@@ -29,6 +29,8 @@ pub struct Scene {
     pub bounds: Bounds,
     /// See [`ulp`].
     pub(super) ulp: f32,
+    /// At rest.
+    usual: Usual,
     pub(super) materials: Vec<UploadedMaterial>,
     /// The lights of the file, if it has some.
     pub(super) lights: Option<wgpu::Buffer>,
@@ -100,6 +102,7 @@ impl Scene {
 
     fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
         Self {
+            usual: Usual::new(tessellator.mesh(), tessellator.topology(), bounds.radius()),
             tessellator,
             bounds,
             ulp,
@@ -233,6 +236,11 @@ impl Scene {
 
     pub(super) fn known_deviation(&self) -> Option<&Deviations> {
         self.deviation.as_ref().filter(|known| known.of == self.tessellator.generation())
+    }
+
+    /// Numbers that are usual on the mesh, which colour scales are made for.
+    pub fn usual(&self) -> Usual {
+        Usual { radius: self.bounds.radius(), ..self.usual }
     }
 
     /// One unit in the last place of the mesh's largest coordinate, in object units.

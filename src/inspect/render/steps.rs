@@ -28,24 +28,17 @@ pub(super) enum Step {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LayerStep {
     pub pass: LayerPass,
-    /// The triangles; none for a pass that only clears.
-    pub part: Option<LayerPart>,
+    /// The half and its chunk whose triangles are drawn; none for a pass that only clears.
+    pub part: Option<(SplitSide, usize)>,
     /// Whether it is the first step of its pass.
     pub is_first: bool,
-}
-
-/// Triangles that are drawn in layers: those of a half's chunk.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct LayerPart {
-    pub half: SplitSide,
-    pub chunk: usize,
 }
 
 impl Step {
     pub(super) fn half(&self) -> SplitSide {
         match self {
             Self::Surface(half, _) | Self::Normals(half, _) => *half,
-            Self::Layer(LayerStep { part: Some(LayerPart { half, .. }), .. }) => *half,
+            Self::Layer(LayerStep { part: Some((half, _)), .. }) => *half,
             Self::Over | Self::Layer(_) | Self::Keep | Self::Difference => SplitSide::Right,
         }
     }
@@ -53,7 +46,7 @@ impl Step {
     pub(super) fn chunk(&self) -> Option<usize> {
         match self {
             Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
-            Self::Layer(LayerStep { part, .. }) => part.map(|part| part.chunk),
+            Self::Layer(LayerStep { part, .. }) => part.map(|(_, chunk)| chunk),
             Self::Over | Self::Keep | Self::Difference => None,
         }
     }
@@ -77,9 +70,8 @@ fn steps_of(scene: &Scene, settings: &Settings, halves: &[SplitSide]) -> Vec<Ste
     let mut steps: Vec<_> = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk)).collect();
     if settings.shows_materials() {
         let is_seen_through = |half| drawn(half).is_some_and(|own| has_layers(own.tessellator.mesh()));
-        let parts = all.iter().filter(|(half, _)| is_seen_through(*half));
-        let parts = parts.map(|&(half, chunk)| LayerPart { half, chunk });
-        steps.extend(layer_steps(&parts.collect::<Vec<_>>()));
+        let parts: Vec<_> = all.iter().copied().filter(|(half, _)| is_seen_through(*half)).collect();
+        steps.extend(layer_steps(&parts));
     }
     if settings.overlays.normals {
         steps.extend(all.iter().map(|&(half, chunk)| Step::Normals(half, chunk)));
@@ -90,7 +82,7 @@ fn steps_of(scene: &Scene, settings: &Settings, halves: &[SplitSide]) -> Vec<Ste
     steps
 }
 
-fn layer_steps(parts: &[LayerPart]) -> impl Iterator<Item = Step> {
+fn layer_steps(parts: &[(SplitSide, usize)]) -> impl Iterator<Item = Step> {
     let passes = LayerPass::all().filter(|_| !parts.is_empty());
     passes.flat_map(|pass| {
         let first = match pass {

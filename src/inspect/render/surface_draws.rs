@@ -1,7 +1,6 @@
 //! Decides what draws the surface of each material, by what a picture shows.
 
-use super::colors::DrawnColors;
-use super::draws::{Draw, Faces, Shading, SurfaceDraw, Triangles};
+use super::draws::{Draw, Faces, LOOKS, Shading, SurfaceDraw, Triangles};
 use super::layout::overlay_bits;
 use super::needs::{Cut, Needs, PictureKind};
 use crate::settings::{Colors, NormalsAt, Overlays, Settings};
@@ -17,7 +16,7 @@ pub(super) fn surface_draw(
 ) -> Draw {
     let (mut triangles, normals) = (emitted_triangles(settings), settings.used_normals_at(mesh));
     let (shading, faces) = shading(settings, mesh, material, faces, kind);
-    if triangles == Triangles::Bare && matches!(shading, Shading::Cut(_) | Shading::Look(_)) {
+    if triangles == Triangles::Bare && matches!(shading, Shading::Cut(_)) {
         triangles = Triangles::Indexed;
     }
     // Where nothing but the colour is drawn, no texture is read either.
@@ -35,15 +34,17 @@ fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, 
         let needs = Needs::new(mesh, material, settings, kind).own(material, kind);
         return (Shading::Lit(needs), own_faces(settings, material).unwrap_or(faces));
     }
-    (DrawnColors::new(settings.overlays.colors).look().map_or(Shading::Textured, Shading::Look), faces)
+    let colors = settings.overlays.colors;
+    (if LOOKS.contains(&colors) { Shading::Look(colors) } else { Shading::Textured }, faces)
 }
 
-/// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice, so that
-/// single-sided materials that show what is behind them have none, as glTF 2.0 says (specification, section 3.9.5). Two overlays show
-/// faces from behind.
+/// The faces of a material that are drawn whatever hides the backs of others. Backs that show through fronts would count twice,
+/// so that single-sided materials that show what is behind them have none, as glTF 2.0 says (specification, section 3.9.5), nor
+/// have bodies that refract light, whose thickness stands for their other side. Two overlays show faces from behind.
 pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Faces> {
     let Overlays { folds, back_faces, .. } = settings.overlays;
-    let has_fronts_only = material.shows_behind() && !material.double_sided && !folds && !back_faces;
+    let is_single = !material.double_sided || material.look.refracts();
+    let has_fronts_only = material.shows_behind() && is_single && !folds && !back_faces;
     has_fronts_only.then_some(Faces::Fronts)
 }
 
@@ -51,7 +52,7 @@ pub(super) fn own_faces(settings: &Settings, material: &Material) -> Option<Face
 pub(super) fn emitted_triangles(settings: &Settings) -> Triangles {
     // These overlays need data of whole triangles.
     let Overlays { wireframe, folds, colors, .. } = settings.overlays;
-    if wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::Deviation) {
+    if wireframe || folds || matches!(colors, Colors::TriangleSize | Colors::TexelDensity | Colors::Deviation) {
         Triangles::Pulled
     } else if overlay_bits(&settings.overlays) != 0 {
         Triangles::Indexed

@@ -1,6 +1,9 @@
 //! The texture that a picture is drawn into.
 
 use super::layout::{linear, srgb};
+use super::mipmap_pass::Mipmaps;
+use super::textures::fits;
+use geometry::mesh::mipmap::{MipFilter, level_count};
 use gpu::{Gpu, GpuError, Lazy, Recorder, flat_texture, read_texture, whole};
 
 /// The format in which pictures are drawn and resolved: 8-bit RGBA, encoded as sRGB.
@@ -24,6 +27,8 @@ pub struct Target {
     layer_depths: Lazy<[wgpu::TextureView; 2]>,
     /// Pictures of both halves, made when a difference is first drawn: see [`super::difference`].
     kept: Lazy<[wgpu::Texture; 2]>,
+    /// A picture of what is behind bodies that refract light, with mip levels. Made when such a body is first drawn.
+    behind: Lazy<wgpu::Texture>,
     /// Whether pictures have no background: where nothing is drawn they are transparent.
     is_transparent: bool,
     /// Whether pictures leave out what takes a software driver longest: see [`Self::draft`].
@@ -61,19 +66,18 @@ impl Target {
             whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count, ..own }))
         });
         let depth = depth_view(gpu, "target.depth", [width, height]);
-        let (size, layer_depths, kept) = ([width, height], Lazy::default(), Lazy::default());
-        let (is_transparent, is_draft, coarseness) = (false, false, 1);
         Ok(Self {
-            size,
+            size: [width, height],
             resolved,
             resolved_srgb,
             multisampled,
             depth,
-            layer_depths,
-            kept,
-            is_transparent,
-            is_draft,
-            coarseness,
+            layer_depths: Lazy::default(),
+            kept: Lazy::default(),
+            behind: Lazy::default(),
+            is_transparent: false,
+            is_draft: false,
+            coarseness: 1,
         })
     }
 
@@ -131,12 +135,7 @@ impl Target {
         };
         let background = if self.is_transparent { wgpu::Color::TRANSPARENT } else { background };
         let load = if first { wgpu::LoadOp::Clear(background) } else { wgpu::LoadOp::Load };
-        wgpu::RenderPassColorAttachment {
-            view,
-            depth_slice: None,
-            resolve_target,
-            ops: wgpu::Operations { load, store: wgpu::StoreOp::Store },
-        }
+        wgpu::RenderPassColorAttachment { resolve_target, ..color_attachment(view, load) }
     }
 
     /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
@@ -177,13 +176,41 @@ impl Target {
         Ok(())
     }
 
+    /// The picture of what is behind bodies that refract light. Its texture is made at the first call.
+    ///
+    /// # Errors
+    /// Out of memory, or a lost device.
+    pub(super) fn behind(&self, gpu: &Gpu) -> Result<&wgpu::Texture, GpuError> {
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        // Where there is no room for levels, nothing is blurred.
+        let mip_level_count = if fits(gpu, self.size) { level_count(self.size) } else { 1 };
+        let flat = flat_texture("target.behind", self.size, COLOR_FORMAT, usage);
+        let descriptor = wgpu::TextureDescriptor { mip_level_count, view_formats: &[SHOWN_FORMAT], ..flat };
+        self.behind.get_or_make(gpu, || gpu.device.create_texture(&descriptor))
+    }
+
+    /// Makes the picture that was drawn so far, and resolved, that of what is behind bodies.
+    ///
+    /// # Errors
+    /// The same.
+    pub(super) fn keep_behind(&self, recorder: &mut Recorder, gpu: &Gpu, mipmaps: &Mipmaps) -> Result<(), GpuError> {
+        let behind = self.behind(gpu)?;
+        let (from, to) = (self.resolved.as_image_copy(), behind.as_image_copy());
+        recorder.encoder().copy_texture_to_texture(from, to, self.resolved.size());
+        let first =
+            wgpu::TextureViewDescriptor { format: Some(SHOWN_FORMAT), mip_level_count: Some(1), ..Default::default() };
+        mipmaps.fill(gpu, recorder.encoder(), behind, &behind.create_view(&first), MipFilter::Colors, None)
+    }
+
     /// The size of all its textures in bytes.
     pub fn bytes(&self) -> u64 {
         let pixels = u64::from(self.size[0]) * u64::from(self.size[1]);
         let samples = if self.multisampled.is_some() { 4 } else { 1 };
         let layers = if self.layer_depths.is_made() { 2 * samples } else { 0 };
         let kept = if self.kept.is_made() { 2 } else { 0 };
-        pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 } + layers + kept)
+        // Levels are a third of the first.
+        let behind = if self.behind.is_made() { pixels * 16 / 3 } else { 0 };
+        pixels * 4 * (1 + samples + if samples > 1 { samples } else { 0 } + layers + kept) + behind
     }
 
     /// Reads the picture back, with straight alpha as PNG files have it. Waits for the device.
@@ -207,6 +234,15 @@ fn depth_view(gpu: &Gpu, label: &str, size: [u32; 2]) -> wgpu::TextureView {
     let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
     let descriptor = flat_texture(label, size, DEPTH_FORMAT, usage);
     whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples(gpu), ..descriptor }))
+}
+
+/// A colour attachment whose picture is stored.
+pub(super) fn color_attachment(
+    view: &wgpu::TextureView,
+    load: wgpu::LoadOp<wgpu::Color>,
+) -> wgpu::RenderPassColorAttachment<'_> {
+    let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
+    wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }
 
 /// A depth attachment that is first cleared to a depth, or keeps what it has.

@@ -161,12 +161,14 @@ pub(super) fn upload(
         ..Default::default()
     });
     let test = image_use.least_alpha.map(|least| AlphaTest { least, covered: covered(texture, least) });
-    mipmaps.fill(gpu, &on_device, &first, image_use.filter, test)?;
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("mipmap") });
+    mipmaps.fill(gpu, &mut encoder, &on_device, &first, image_use.filter, test)?;
+    gpu.attempt(|| gpu.queue.submit([encoder.finish()]))?;
     Ok(view(&on_device, image_use.format()))
 }
 
 /// Whether the adapter's textures can be so large, in px, and its buffers hold their levels.
-fn fits(gpu: &Gpu, size: [u32; 2]) -> bool {
+pub(super) fn fits(gpu: &Gpu, size: [u32; 2]) -> bool {
     let limits = gpu.device.limits();
     let most = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
     size.iter().all(|side| *side <= limits.max_texture_dimension_2d) && level_bytes(size) <= most

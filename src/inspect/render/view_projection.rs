@@ -7,15 +7,15 @@
 use glam::{DMat3, DMat4, DVec3, DVec4, Mat4, Vec3, Vec4, vec4};
 use thiserror::Error;
 
+use geometry::choice::choices;
 pub use geometry::view::DepthRange;
 
-/// Where +y of a clip space is on the screen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ClipY {
-    /// Direct3D, Metal, WebGPU and OpenGL.
-    Up,
-    /// Vulkan.
-    Down,
+choices! {
+    /// Where +y of a clip space is on the screen.
+    pub enum ClipY {
+        Up => "up", "Up", "Direct3D, Metal, WebGPU, OpenGL.";
+        Down => "down", "Down", "Vulkan.";
+    }
 }
 
 /// The matrix of an engine's frame, from object units to its clip space.

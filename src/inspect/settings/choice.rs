@@ -8,8 +8,10 @@ mod tests {
     use geometry::mesh::UpAxis;
     use load::{LengthUnit, NormalSource};
 
-    use super::super::{Colors, DeviationUnit, Lighting, NormalsAt, Overlay, ToneCurve};
-    use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+    use super::super::{Colors, Lighting, NormalsAt, Overlay, SurfaceUnit, ToneCurve};
+    use geometry::tessellate::{
+        Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface,
+    };
 
     use super::*;
 
@@ -38,7 +40,8 @@ mod tests {
         check::<Clip>();
         check::<Convention>();
         check::<Displacement>();
-        check::<DeviationUnit>();
+        check::<SurfaceUnit>();
+        check::<CurvatureKind>();
         check::<NormalsAt>();
         check::<Lighting>();
         check::<ToneCurve>();

@@ -15,7 +15,7 @@ mod value;
 use glam::{Mat4, Vec2, Vec3};
 
 use geometry::mesh::{Heights, Material, Mesh};
-use geometry::tessellate::{Clip, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
+use geometry::tessellate::{Clip, CurvatureKind, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
 use load::Import;
 
 pub(crate) use choice::choices;
@@ -57,9 +57,20 @@ pub struct Settings {
     /// How far the light is turned about the vertical axis, in degrees.
     pub light_rotation: f32,
     /// The unit of the distances that the deviation overlay colours.
-    pub deviation_in: DeviationUnit,
-    /// The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius.
-    pub curvature_scale: f32,
+    pub deviation_in: SurfaceUnit,
+    /// Which curvature the curvature overlay shows.
+    pub curvature_kind: CurvatureKind,
+    /// The curvature at the ends of that overlay's scale, in 1 / bounding radius; none for what suits the mesh. That of Gaussian
+    /// curvature is its square.
+    pub curvature_scale: Option<f32>,
+    /// How many stripes the zebra overlay has over half a turn of the normal.
+    pub zebra_stripes: f32,
+    /// The direction along the zebra's stripes in the view, in degrees: 0 is to the right, and 90 up.
+    pub zebra_direction: f32,
+    /// How many squares the checker has in one unit of u and v.
+    pub checker_squares: f32,
+    /// The unit along which texel density is counted.
+    pub texel_density_per: SurfaceUnit,
     /// The lit sphere that the matcap overlay shows.
     pub matcap: Matcap,
     /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
@@ -92,8 +103,14 @@ impl Default for Settings {
             exposure: 0.0,
             tone_curve: ToneCurve::default(),
             light_rotation: 0.0,
-            deviation_in: DeviationUnit::Units,
-            curvature_scale: 4.0,
+            deviation_in: SurfaceUnit::Units,
+            curvature_kind: CurvatureKind::default(),
+            curvature_scale: None,
+            zebra_stripes: 24.0,
+            // Askew, since most meshes have edges that lie level or upright: on stripes along an edge one wouldn't see a kink.
+            zebra_direction: 36.87,
+            checker_squares: 8.0,
+            texel_density_per: SurfaceUnit::Px,
             matcap: Matcap::default(),
             split: None,
             split_view: SplitView::default(),
@@ -180,12 +197,12 @@ impl SectionAxis {
 }
 
 choices! {
-    /// The unit of distances on the surface.
+    /// The unit of lengths on the surface.
     #[derive(Default)]
-    pub enum DeviationUnit {
+    pub enum SurfaceUnit {
         #[default]
         Units => "units", "Object units", "Object units, which don't depend on the view.";
-        Px => "px", "Px", "The length of the distance on screen, in px, if it lay across the view.";
+        Px => "px", "Px", "The length on screen, in px, of what lies across the view.";
     }
 }
 

@@ -5,12 +5,12 @@
 
 use super::value::Field;
 use super::{
-    Access, ColorSource, Declaration, Description, DeviationUnit, FileLights, Kind, Lighting, Matcap, NormalMaps,
-    NormalsAt, Overlay, Range, SectionAxis, Settings, SplitView, ToneCurve, Value, descriptions,
+    Access, Colors, Declaration, Description, FileLights, Kind, Lighting, Matcap, NormalMaps, NormalsAt, Overlay,
+    Range, SectionAxis, Settings, SplitView, SurfaceUnit, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
 use geometry::tessellate::{
-    Clip, Convention, Displacement, Edges, Lod, LodReads, Normals, Partitioning, Surface, Tessellation,
+    Clip, Convention, CurvatureKind, Displacement, Edges, Lod, LodReads, Normals, Partitioning, Surface, Tessellation,
 };
 use load::import::{MOST_LEVELS, Subdivide};
 use load::{LengthUnit, NormalSource, UNIT_METRES};
@@ -125,12 +125,29 @@ fn reads(settings: &Settings) -> LodReads {
     settings.tessellation.used_lod().reads()
 }
 
+/// Why an option has no effect, unless it is used.
+fn only_if(is_used: bool, why: &'static str) -> Option<&'static str> {
+    (!is_used).then_some(why)
+}
+
 fn not_displaced(settings: &Settings) -> Option<&'static str> {
-    (!settings.tessellation.displacement.is_on()).then_some("The surface isn't displaced.")
+    only_if(settings.tessellation.displacement.is_on(), "The surface isn't displaced.")
 }
 
 fn not_in_studio(settings: &Settings) -> Option<&'static str> {
-    (!settings.shows_materials()).then_some("Only the mesh's own materials in light from all around have it.")
+    only_if(settings.shows_materials(), "Only the mesh's own materials in light from all around have it.")
+}
+
+fn not_split(settings: &Settings) -> Option<&'static str> {
+    only_if(settings.split.is_some(), "The view isn't split.")
+}
+
+fn without_curvature(settings: &Settings) -> Option<&'static str> {
+    only_if(settings.overlays.colors == Colors::Curvature, "Only the curvature overlay colours curvature.")
+}
+
+fn without_zebra(settings: &Settings) -> Option<&'static str> {
+    only_if(settings.overlays.colors == Colors::Zebra, "Only the zebra overlay has stripes.")
 }
 
 options! {
@@ -149,9 +166,7 @@ options! {
         label: "Phong strength",
         placeholder: "A",
         text: "Strength of Phong tessellation: 0 is flat, and its authors use 0.75 (Boubekeur and Alexa 2008).",
-        no_effect: |settings| {
-            (!settings.tessellation.surface.is_phong()).then_some("Only Phong tessellation has a strength.")
-        },
+        no_effect: |settings| only_if(settings.tessellation.surface.is_phong(), "Only Phong tessellation has a strength."),
     }
 
     NORMALS: field!(tessellation.normals), Kind::Choice(descriptions::<Normals>) => {
@@ -173,9 +188,7 @@ options! {
         label: "Factor",
         placeholder: "F",
         text: "Tessellation factor: the number of segments that each edge is cut into. Under LOD by distance, the largest factor.",
-        no_effect: |settings| {
-            (!reads(settings).factor).then_some("Adaptive LOD computes a factor for every edge.")
-        },
+        no_effect: |settings| only_if(reads(settings).factor, "Adaptive LOD computes a factor for every edge."),
     }
 
     PARTITIONING: field!(tessellation.partitioning), Kind::Choice(descriptions::<Partitioning>) => {
@@ -190,10 +203,7 @@ options! {
         label: "LOD",
         placeholder: "LOD",
         text: "Level of detail: how the factors of edges are computed.",
-        no_effect: |settings| {
-            let is_fixed = settings.tessellation.partitioning.has_one_factor();
-            is_fixed.then_some(LOD_IS_FIXED)
-        },
+        no_effect: |settings| settings.tessellation.partitioning.has_one_factor().then_some(LOD_IS_FIXED),
     }
 
     PIXELS: field!(tessellation.pixels), Kind::Number(Range::new(1.0, 256.0, "px").decimals(1).logarithmic()) => {
@@ -202,7 +212,7 @@ options! {
         placeholder: "P",
         text: "Length of a segment on screen under LOD by edge length and the white paper's LOD.",
         no_effect: |settings| {
-            (!reads(settings).pixels).then_some("Only LOD by edge length and the white paper's LOD have a segment length.")
+            only_if(reads(settings).pixels, "Only LOD by edge length and the white paper's LOD have a segment length.")
         },
     }
 
@@ -213,8 +223,8 @@ options! {
         text: "Largest distance on screen between the triangles and the surface under LOD by error. The overlay of excess \
                triangles and the gate above-tolerance compare with it under any LOD.",
         no_effect: |settings| {
-            let is_used = reads(settings).tolerance || settings.overlays.colors.source() == ColorSource::MinimumTriangles;
-            (!is_used).then_some("Only LOD by error and the overlay of excess triangles have a tolerance.")
+            let is_used = reads(settings).tolerance || settings.overlays.colors == Colors::Excess;
+            only_if(is_used, "Only LOD by error and the overlay of excess triangles have a tolerance.")
         },
     }
 
@@ -225,9 +235,7 @@ options! {
         text: "Distances to the eye under LOD by distance, in bounding radii of the mesh: the factor is --factor up to NEAR, 1 \
                from FAR on, and linear in between. FAR is larger than NEAR.",
         saved_as: &["near", "far"],
-        no_effect: |settings| {
-            (!reads(settings).distances).then_some("Only LOD by distance has distances.")
-        },
+        no_effect: |settings| only_if(reads(settings).distances, "Only LOD by distance has distances."),
     }
 
     CLIP: field!(tessellation.clip), Kind::Choice(descriptions::<Clip>) => {
@@ -312,8 +320,8 @@ options! {
         placeholder: "LIGHT",
         text: "The light that the mesh's own materials are seen in.",
         no_effect: |settings| {
-            let is_idle = settings.overlays.colors.source() != ColorSource::Materials;
-            is_idle.then_some("The overlay that colours the surface has a light of its own.")
+            let is_used = settings.overlays.colors == Colors::Material;
+            only_if(is_used, "The overlay that colours the surface has a light of its own.")
         },
     }
 
@@ -367,24 +375,66 @@ options! {
         no_effect: not_in_studio,
     }
 
-    DEVIATION_IN: field!(deviation_in), Kind::Choice(descriptions::<DeviationUnit>) => {
+    DEVIATION_IN: field!(deviation_in), Kind::Choice(descriptions::<SurfaceUnit>) => {
         name: "deviation-in",
         label: "Distances in",
         placeholder: "UNIT",
         text: "The unit of the distances that the deviation overlay colours.",
-        no_effect: |settings| {
-            (settings.overlays.colors.source() != ColorSource::ReferenceSurface).then_some("Only the deviation overlay colours distances.")
-        },
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::Deviation, "Only the deviation overlay colours distances."),
+    }
+
+    CURVATURE_KIND: field!(curvature_kind), Kind::Choice(descriptions::<CurvatureKind>) => {
+        name: "curvature-kind",
+        label: "Kind of curvature",
+        placeholder: "KIND",
+        text: "Which curvature the curvature overlay shows.",
+        no_effect: without_curvature,
     }
 
     CURVATURE_SCALE: field!(curvature_scale), Kind::Number(Range::new(0.1, 1000.0, "/r").logarithmic()) => {
         name: "curvature-scale",
         label: "Curvature up to",
         placeholder: "C",
-        text: "The mean curvature at the ends of the curvature overlay's scale, in 1 / bounding radius of the mesh: a sphere has 1.",
-        no_effect: |settings| {
-            (settings.overlays.colors.source() != ColorSource::Curvature).then_some("Only the curvature overlay colours curvature.")
-        },
+        text: "The curvature at the ends of the curvature overlay's scale, in 1 / bounding radius of the mesh: a sphere has 1. The \
+               scale of Gaussian curvature ends at the square of that.",
+        unset: Description::new(
+            "mesh",
+            "As suits the mesh",
+            "One and a half times the curvature that nine in ten of the curved sides of triangles don't exceed.",
+        ),
+        no_effect: without_curvature,
+    }
+
+    ZEBRA_STRIPES: field!(zebra_stripes), Kind::Number(Range::new(2.0, 200.0, "").decimals(0).logarithmic()) => {
+        name: "zebra-stripes",
+        label: "Stripes",
+        placeholder: "N",
+        text: "How many stripes the zebra overlay has over half a turn of the normal: more of them show smaller kinks.",
+        no_effect: without_zebra,
+    }
+
+    ZEBRA_DIRECTION: field!(zebra_direction), Kind::Number(Range::new(0.0, 180.0, "°").decimals(1)) => {
+        name: "zebra-direction",
+        label: "Stripes run",
+        placeholder: "DEGREES",
+        text: "The direction of the zebra overlay's stripes in the view, counterclockwise: at 0 they run from left to right.",
+        no_effect: without_zebra,
+    }
+
+    CHECKER_SQUARES: field!(checker_squares), Kind::Number(Range::new(1.0, 256.0, "").decimals(0).logarithmic()) => {
+        name: "checker-squares",
+        label: "Squares across",
+        placeholder: "N",
+        text: "How many squares the checker has side by side in one unit of texture coordinates, which is the width of the image.",
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::UvChecker, "Only the UV checker has squares."),
+    }
+
+    TEXEL_DENSITY_PER: field!(texel_density_per), Kind::Choice(descriptions::<SurfaceUnit>) => {
+        name: "texel-density-per",
+        label: "Texels per",
+        placeholder: "UNIT",
+        text: "What the texel density overlay counts texels along.",
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::TexelDensity, "Only texel density counts texels."),
     }
 
     MATCAP: field!(matcap), Kind::Choice(descriptions::<Matcap>) => {
@@ -392,9 +442,7 @@ options! {
         label: "Matcap",
         placeholder: "NAME",
         text: "The lit sphere whose colours the matcap overlay shows.",
-        no_effect: |settings| {
-            (settings.overlays.colors.source() != ColorSource::LitSphere).then_some("Only the matcap overlay shows a lit sphere.")
-        },
+        no_effect: |settings| only_if(settings.overlays.colors == Colors::Matcap, "Only the matcap overlay shows a lit sphere."),
     }
 
     SPLIT: field!(split), Kind::Number(Range::new(0.0, 1.0, "")) => {
@@ -410,7 +458,7 @@ options! {
         label: "Shown as",
         placeholder: "NAME",
         text: "How both halves of a split picture are shown.",
-        no_effect: |settings| settings.split.is_none().then_some("The view isn't split."),
+        no_effect: not_split,
     }
 
     SPLIT_LEFT: LEFT, Kind::Options(|| &TESSELLATION) => {
@@ -420,7 +468,7 @@ options! {
         text: "The tessellation left of the split: a surface, and whatever else differs from the right half, such as \
                pn,lod=uniform,factor=8. The names are those of these options, and the scale of the deviation overlay is the same.",
         unset: Description::new("none", "Untessellated", "The mesh itself, with no tessellation."),
-        no_effect: |settings| settings.split.is_none().then_some("The view isn't split."),
+        no_effect: not_split,
     }
 
     SECTION: field!(section), Kind::Choice(descriptions::<SectionAxis>) => {
@@ -437,7 +485,7 @@ options! {
         label: "Section at",
         placeholder: "FRACTION",
         text: "Where the section is: 0 is the least coordinate of the mesh along its axis, and 1 the largest.",
-        no_effect: |settings| settings.section.is_none().then_some("There is no section."),
+        no_effect: |settings| only_if(settings.section.is_some(), "There is no section."),
     }
 
     BACKGROUND: field!(background), Kind::Color => {

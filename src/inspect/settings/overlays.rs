@@ -15,27 +15,34 @@ choices! {
              sculpting programs do. The light stays with the view.";
         Zebra => "zebra", "Zebra",
             "Black and white stripes around the mesh, as the shading normals reflect them. Stripes jump where the \
-             tangent breaks, and have a kink where the curvature does.";
+             tangent breaks, and have a kink where the curvature does. With surface normals they show the patches, otherwise the \
+             normals that are shaded.";
         ShadingNormals => "shading-normals", "Shading normals",
             "Colours the surface by its unit shading normal in object space, as normal maps do: x red, y green, z \
-             blue, each from -1 (0) to 1 (255).";
+             blue, each from -1 (0) to 1 (255). Seen from behind, it has the same colours.";
         SurfaceNormals => "surface-normals", "Surface normals",
             "Colours the surface by the unit normal of each curved patch itself, in the colours of the shading \
              normals. They differ from the shading normals where shading pretends, and jump where patches meet at an \
              angle. Displacement isn't in them.";
         Curvature => "curvature", "Curvature",
-            "Colours the surface by the mean curvature of each curved patch itself, in 1 / object unit: red where it \
-             bulges, blue where it is hollow, and light grey where it is flat or a saddle. A sphere of radius r has \
-             1 / r. Displacement isn't in it.";
+            "Colours the surface by a curvature of each curved patch itself, the mean one unless another is chosen, in 1 / object \
+             unit: red above 0, where it bulges, blue below 0, where it is hollow, and light grey at 0. A sphere of radius r \
+             has 1 / r. Displacement isn't in it.";
         UvChecker => "uv-checker", "UV checker",
-            "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v and blue lines around \
-             each unit. Red grows with u and green with v, so that mirrored and turned charts are seen.";
+            "A checker over texture coordinates, with 8 by 8 squares in one unit of u and v unless another number is chosen, and \
+             blue lines around each unit. Red grows with u and green with v. In each square are an F, which shows mirrored and \
+             turned charts, and the numbers of its column, from the left, and of its row, from the top. Triangles without texture \
+             coordinates are plain grey, and so are squares smaller than a px.";
         TexelDensity => "texel-density", "Texel density",
             "Colours the surface by how many texels of the base colour's image lie side by side in a px of the \
-             picture: orange where the image is magnified, purple where it has more detail than is seen. A material \
-             without an image counts as if it had one of 1024 x 1024 px.";
+             picture: orange where the image is magnified and looks blurred, purple where it has more detail than is seen. Or \
+             along an object unit: orange where the mesh has fewer than the power of two that is nearest to what half of its \
+             triangles have at most, purple where it has more. A material without an image counts as if it had one of \
+             1024 x 1024 px. Triangles without texture coordinates are plain grey.";
         Barycentric => "barycentric", "Barycentric",
-            "Colours the surface by domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2.";
+            "Colours the surface by domain coordinates: u red on corner 0, v green on corner 1, w blue on corner 2. A corner, \
+             where its weight is 1 and the others are 0, has one pure colour; along an edge the colour of the opposite corner is \
+             missing; in the middle all are equal.";
         Adjacency => "adjacency", "Adjacency edges", "Edges of the mesh's own triangles, coloured by the kind of edge.";
         Cracks => "cracks", "Cracks",
             "Edges along which neighbouring triangles put a point at different positions; faint behind the surface.";
@@ -63,19 +70,22 @@ choices! {
              (red), y (green) and z (blue) from the origin.";
         Deviation => "deviation", "Deviation",
             "Colours the surface by its distance to the reference surface: the exact surface of a shape made in \
-             code, a mesh that was chosen, or else the surface that the tessellation converges to.";
+             code, a mesh that was chosen, or else the surface that the tessellation converges to. The scale ends at the largest \
+             distance, rounded up, and begins at a hundredth of that; smaller distances have the first colour. What isn't \
+             measured is grey.";
         Silhouette => "silhouette", "Silhouette",
             "Shows the outline of the tessellated triangles over those of the source mesh and of the curved surface, \
              and how many px it is from them at most. Where only one line is seen, the outlines agree. A ring is \
-             around the place where two are farthest apart.";
+             around the place where two are farthest apart. Lines are drawn to within 0.1 px, and distances are right to about \
+             half a px. How far the triangles' outline is from the source's is what tessellation has gained.";
     }
 }
 
 /// Sorts overlays into those that colour the surface, one at a time, and those that are switched on by themselves.
 macro_rules! overlays {
-    (colors: $($color:ident)+; switches: $($switch:ident as $field:ident)+) => {
+    (colors: $($color:ident of $source:ident)+; switches: $($switch:ident as $field:ident)+) => {
         /// What the surface's colours mean: one thing at a time. But for the first, see [`Overlay`].
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
         pub enum Colors {
             /// The mesh's own.
             #[default]
@@ -90,6 +100,15 @@ macro_rules! overlays {
                 match self {
                     Self::Material => Description::new("material", "Material", "The mesh's own colours."),
                     $(Self::$color => Overlay::$color.description(),)+
+                }
+            }
+        }
+
+        impl Colors {
+            pub fn source(self) -> ColorSource {
+                match self {
+                    Self::Material => ColorSource::Materials,
+                    $(Self::$color => ColorSource::$source,)+
                 }
             }
         }
@@ -114,8 +133,10 @@ macro_rules! overlays {
 }
 
 overlays! {
-    colors: Clay Matcap Zebra ShadingNormals SurfaceNormals Curvature UvChecker TexelDensity Barycentric Factors TriangleSize
-        LowFactors Excess Deviation Silhouette;
+    colors: Clay of Nothing Matcap of LitSphere Zebra of Nothing ShadingNormals of Nothing SurfaceNormals of Nothing
+        Curvature of Nothing UvChecker of TextureCoordinates TexelDensity of TextureCoordinates Barycentric of Nothing
+        Factors of Nothing TriangleSize of Nothing LowFactors of Nothing Excess of MinimumTriangles
+        Deviation of ReferenceSurface Silhouette of Outlines;
     switches: Wireframe as wireframe Patches as patches Adjacency as adjacency Cracks as cracks Folds as folds
         BackFaces as back_faces TJunctions as t_junctions Normals as normals Grid as grid
 }
@@ -126,8 +147,6 @@ pub enum ColorSource {
     Nothing,
     Materials,
     TextureCoordinates,
-    /// The curvature of the patches, on a scale that can be set.
-    Curvature,
     /// A picture of a lit sphere.
     LitSphere,
     /// The fewest triangles that each patch needs.
@@ -136,28 +155,6 @@ pub enum ColorSource {
     ReferenceSurface,
     /// The outlines of the source mesh and of the curved surface.
     Outlines,
-}
-
-impl Colors {
-    pub fn source(self) -> ColorSource {
-        match self {
-            Self::Material => ColorSource::Materials,
-            Self::UvChecker | Self::TexelDensity => ColorSource::TextureCoordinates,
-            Self::Curvature => ColorSource::Curvature,
-            Self::Matcap => ColorSource::LitSphere,
-            Self::Excess => ColorSource::MinimumTriangles,
-            Self::Deviation => ColorSource::ReferenceSurface,
-            Self::Silhouette => ColorSource::Outlines,
-            Self::Clay
-            | Self::Zebra
-            | Self::ShadingNormals
-            | Self::SurfaceNormals
-            | Self::Barycentric
-            | Self::Factors
-            | Self::TriangleSize
-            | Self::LowFactors => ColorSource::Nothing,
-        }
-    }
 }
 
 /// The control of an overlay: a switch, or the surface's colours and the value that the overlay gives them.

@@ -2,12 +2,14 @@
 
 use std::fmt;
 
+use serde::{Serialize, Serializer};
+
 use super::{
-    Choice, Description, DeviationUnit, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays,
-    SectionAxis, Settings, SplitView, ToneCurve,
+    Choice, Description, FileLights, Lighting, Matcap, NormalMaps, NormalsAt, Overlay, Overlays, SectionAxis, Settings,
+    SplitView, SurfaceUnit, ToneCurve,
 };
 use geometry::mesh::UpAxis;
-use geometry::tessellate::{Clip, Convention, Displacement, Edges, Lod, Normals, Partitioning, Surface};
+use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 use load::import::Subdivide;
 use load::{FileUnit, LengthUnit, NormalSource};
 
@@ -77,8 +79,9 @@ pub struct Range {
     pub is_logarithmic: bool,
 }
 
-/// A value of any option.
-#[derive(Clone, Debug, PartialEq)]
+/// A value of any option. As JSON it is null, a word, words, a number, numbers, or true or false; values of options are a word.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Value {
     /// The option has no value.
     Unset,
@@ -89,7 +92,11 @@ pub enum Value {
     Switch(bool),
     Color([u8; 3]),
     /// Options by their names.
-    Options(Vec<(&'static str, Value)>),
+    Options(#[serde(serialize_with = "in_a_word")] Vec<(&'static str, Value)>),
+}
+
+fn in_a_word<S: Serializer>(values: &[(&'static str, Value)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&Value::Options(values.to_vec()))
 }
 
 impl Declaration {
@@ -122,6 +129,15 @@ impl Declaration {
             Some(members) => members.iter().map(|&name| name.to_owned()).collect(),
             None => vec![self.name.replace('-', "_")],
         }
+    }
+
+    /// The same members, each with its part of the value.
+    pub fn written(&self, settings: &Settings) -> Vec<(String, Value)> {
+        let values = match self.get(settings) {
+            Value::Pair(pair) => pair.map(Value::Number).to_vec(),
+            value => vec![value],
+        };
+        self.members().into_iter().zip(values).collect()
     }
 
     /// The default value of commands.
@@ -332,8 +348,8 @@ macro_rules! named_fields {
 }
 
 named_fields! {
-    Clip, Convention, DeviationUnit, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals, NormalsAt,
-    Partitioning, SectionAxis, SplitView, Subdivide, Surface, ToneCurve, UpAxis,
+    Clip, Convention, CurvatureKind, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals,
+    NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {
@@ -363,35 +379,22 @@ impl<T: Field> Field for Option<T> {
     }
 }
 
-impl Field for f32 {
-    fn value(&self) -> Value {
-        Value::Number(*self)
-    }
+/// Fields that are a value's contents.
+macro_rules! plain_fields {
+    ($($type:ty => $kind:ident),+ $(,)?) => {
+        $(impl Field for $type {
+            fn value(&self) -> Value {
+                Value::$kind(*self)
+            }
 
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Number(number) = value { Some(number) } else { None }
-    }
+            fn from_value(value: Value) -> Option<Self> {
+                if let Value::$kind(own) = value { Some(own) } else { None }
+            }
+        })+
+    };
 }
 
-impl Field for bool {
-    fn value(&self) -> Value {
-        Value::Switch(*self)
-    }
-
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Switch(is_on) = value { Some(is_on) } else { None }
-    }
-}
-
-impl Field for [u8; 3] {
-    fn value(&self) -> Value {
-        Value::Color(*self)
-    }
-
-    fn from_value(value: Value) -> Option<Self> {
-        if let Value::Color(color) = value { Some(color) } else { None }
-    }
-}
+plain_fields! { f32 => Number, bool => Switch, [u8; 3] => Color }
 
 /// The names of the overlays that are on. Two that colour the surface are refused.
 impl Field for Overlays {

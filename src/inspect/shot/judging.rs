@@ -66,23 +66,21 @@ impl Shot {
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
         let emitted = Some(scene.tessellator.totals());
-        self.judged = judge(
-            gates,
-            &Facts {
-                topology: &self.posed.topology,
-                warnings: Some(&self.subject.loaded.warnings),
-                emitted,
-                measured: self.results(SplitSide::Right).and_then(|results| results.survey.as_ref()),
-                mesh: Some((&self.subject.loaded.mesh, &self.subject.loaded.topology)),
-                junctions: junctions.as_deref(),
-                leaks: leaks.as_ref(),
-                view: Some(self.view_of_picture()),
-                above: above.as_ref(),
-                crossed: crossed.as_ref().map(Option::as_deref),
-                deviation,
-                pop,
-            },
-        );
+        let facts = Facts {
+            topology: &self.posed.topology,
+            warnings: Some(&self.subject.loaded.warnings),
+            emitted,
+            measured: self.results(SplitSide::Right).and_then(|results| results.survey.as_ref()),
+            mesh: Some((&self.subject.loaded.mesh, &self.subject.loaded.topology)),
+            junctions: junctions.as_deref(),
+            leaks: leaks.as_ref(),
+            view: Some(self.view_of_picture()),
+            above: above.as_ref(),
+            crossed: crossed.as_ref().map(Option::as_deref),
+            deviation,
+            pop,
+        };
+        self.judged = judge(gates, &facts);
         Ok(self.judged.clone())
     }
 

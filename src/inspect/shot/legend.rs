@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::plot::{self, ChartError, DENSITY};
 use crate::render::layout::{WASTE_COLOR, srgb};
-use crate::render::{COLUMNS, Distances, Legend, Scale, Shown, legend_of, tick_text};
+use crate::render::{Distances, Legend, Scale, Shown, Usual, legend_of, tick_text};
 use crate::settings::Settings;
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
@@ -31,18 +31,17 @@ const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
 const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
 const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 
-/// Draws the legend into the lower right corner, if the picture's colours have one. `radius` is the mesh's bounding radius in
-/// object units.
+/// Draws the legend into the lower right corner, if the picture's colours have one, of a mesh on which these numbers are `usual`.
 ///
 /// # Errors
 /// The font can't be used.
 pub(crate) fn draw_legend(
     picture: &mut RgbaImage,
     settings: &Settings,
-    radius: f32,
+    usual: &Usual,
     distances: &Distances,
 ) -> Result<(), ChartError> {
-    let Some(legend) = legend_of(settings, radius, distances) else { return Ok(()) };
+    let Some(legend) = legend_of(settings, usual, distances) else { return Ok(()) };
     let point = point_in(picture.dimensions(), inner_size(&legend), None);
     let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
     lay_in_corner(picture, &plate, Side::Right, point);
@@ -60,13 +59,11 @@ pub fn legend_picture(legend: &Legend, room: [u32; 2], point: f64) -> Result<Rgb
 
 /// Width and height inside the plate's margins, in points.
 fn inner_size(legend: &Legend) -> [f64; 2] {
-    let rows = |count: usize| [BAR[0], 18.0 + ROW * count as f64];
     match &legend.shown {
         Shown::Title => TITLE,
         Shown::Waste => [112.0, 14.0],
         Shown::Scale { waste, .. } => [before_scale(*waste) + BAR[0], 52.0],
-        Shown::Colors(colors) => rows(colors.len().div_ceil(COLUMNS)),
-        Shown::Rows(texts) => rows(texts.len()),
+        Shown::Colors { colors, columns } => [BAR[0], 18.0 + ROW * colors.len().div_ceil(*columns) as f64],
         Shown::Barycentric => BARYCENTRIC,
     }
 }
@@ -82,21 +79,11 @@ fn paint(pen: &Pen, legend: &Legend) -> Drawn {
         Shown::Title => pen.text(title, [0.0, 7.0], LEFT),
         Shown::Waste => named(pen, [0.0, 7.0], WASTE_COLOR, title),
         Shown::Scale { scale: shown, ticks, waste } => scale(pen, title, shown, ticks, before_scale(*waste)),
-        Shown::Colors(colors) => named_colors(pen, title, colors),
-        Shown::Rows(rows) => named_rows(pen, title, rows.iter().map(|(color, text)| (*color, text.as_str()))),
+        Shown::Colors { colors, columns } => {
+            named_colors(pen, title, colors.iter().map(|(color, text)| (*color, text.as_str())), *columns)
+        }
         Shown::Barycentric => barycentric(pen, title),
     }
-}
-
-/// Colours under a title, each in a row with what it stands for.
-fn named_rows<'a>(pen: &Pen, title: &str, mut rows: impl Iterator<Item = ([u8; 3], &'a str)>) -> Drawn {
-    pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-    let mut middle = 18.0 + 0.5 * ROW;
-    rows.try_for_each(|(color, text)| {
-        named(pen, [0.0, middle], color, text)?;
-        middle += ROW;
-        Ok(())
-    })
 }
 
 /// A colour and what it stands for.
@@ -112,7 +99,7 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
     }
     let inner = [BAR[0], 18.0 + ROW * rows.len() as f64];
     let point = point_in(picture.dimensions(), inner, None);
-    let plate = plate(inner, point, |pen| named_rows(pen, title, rows.iter().copied()))?;
+    let plate = plate(inner, point, |pen| named_colors(pen, title, rows.iter().copied(), 1))?;
     lay_in_corner(picture, &plate, Side::Left, point);
     Ok(())
 }
@@ -212,12 +199,12 @@ fn named(pen: &Pen, [left, middle]: [f64; 2], color: [u8; 3], name: &str) -> Dra
     pen.text(name, [left + BAR[1] + 8.0, middle], LEFT)
 }
 
-/// Colours with their names, under their title.
-fn named_colors(pen: &Pen, title: &str, colors: &[([u8; 3], &str)]) -> Drawn {
+/// Colours with their names or what they stand for, under a title, so many in a row.
+fn named_colors<'a>(pen: &Pen, title: &str, colors: impl Iterator<Item = ([u8; 3], &'a str)>, columns: usize) -> Drawn {
     pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-    for (index, &(color, name)) in colors.iter().enumerate() {
-        let [column, row] = [index % COLUMNS, index / COLUMNS].map(|place| place as f64);
-        named(pen, [column * BAR[0] / COLUMNS as f64, 18.0 + ROW * (row + 0.5)], color, name)?;
+    for (index, (color, name)) in colors.enumerate() {
+        let [column, row] = [index % columns, index / columns].map(|place| place as f64);
+        named(pen, [column * BAR[0] / columns as f64, 18.0 + ROW * (row + 0.5)], color, name)?;
     }
     Ok(())
 }

@@ -49,18 +49,19 @@ use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, Silhouette
 use crate::gates::Judgement;
 use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges, patch_width};
 use crate::render::{
-    Camera, DEVIATION_PX_SCALE, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines,
-    deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
+    Camera, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines, deviation_scale, lay_over,
+    lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
-use crate::settings::{ARENA_BYTES, ColorSource, DeviationUnit, Settings, SplitSide, SplitView};
+use crate::settings::{ARENA_BYTES, ColorSource, Settings, SplitSide, SplitView};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView};
 use geometry::view::ScreenView;
-use gpu::{Given, GpuError, Recorder, SurfaceShader, Timing};
+use gpu::{Given, GpuError, SurfaceShader, Timing, submit_untimed};
 use load::panorama::Panorama;
 
 /// What is drawn.
+#[derive(Default)]
 pub struct Subject {
     /// The mesh at rest.
     pub loaded: Loaded,
@@ -138,20 +139,7 @@ pub struct Shot {
 impl Subject {
     /// The mesh at rest with these settings, and nothing else.
     pub fn new(loaded: Loaded, settings: Settings) -> Self {
-        Self {
-            loaded,
-            left: None,
-            moment: None,
-            given: None,
-            surface_shader: None,
-            matcap: None,
-            environment: None,
-            settings,
-            reference_surface: None,
-            selected: None,
-            more_lines: Default::default(),
-            arena_bytes: ARENA_BYTES,
-        }
+        Self { loaded, settings, arena_bytes: ARENA_BYTES, ..Self::default() }
     }
 
     /// Gives a scene of the mesh its factors, its control points, its matcap and its pose.
@@ -191,22 +179,19 @@ impl Shot {
             left.tessellator.give(subject.given.clone().filter(|_| takes_given))?;
             left.tessellator.set_surface_shader(None)?;
         }
-        let (posed, scale) = (subject.loaded.posed(subject.moment), deviation_scale(0.0, scene.ulp()));
-        let (lod_view, results) = (view.lod_view(&scene), Default::default());
-        let (silhouette, judged, error_place) = (None, Vec::new(), None);
         let mut shot = Self {
+            posed: subject.loaded.posed(subject.moment),
+            lod_view: view.lod_view(&scene),
+            scale: deviation_scale(0.0, scene.ulp()),
+            results: Default::default(),
+            silhouette: None,
+            judged: Vec::new(),
+            error_place: None,
             subject,
-            posed,
             engine,
             scene,
             target,
             view,
-            lod_view,
-            results,
-            scale,
-            silhouette,
-            judged,
-            error_place,
         };
         shot.engine.prepare(&shot.scene, &shot.subject.settings)?;
         shot.count()?;
@@ -293,7 +278,7 @@ impl Shot {
         }
         if self.view.legend {
             self.draw_split(&mut picture)?;
-            draw_legend(&mut picture, &self.subject.settings, self.scene.bounds.radius(), &self.distances())?;
+            draw_legend(&mut picture, &self.subject.settings, &self.scene.usual(), &self.distances())?;
         }
         Ok(picture)
     }
@@ -324,10 +309,9 @@ impl Shot {
         let steps = Renderer::step_count(scene, settings);
         for step in 0..steps {
             progress.check()?;
-            let mut timing = Timing::Off;
-            let mut recorder = Recorder::new(&engine.gpu, &mut timing);
-            engine.renderer.draw_steps(&mut recorder, scene, target, &view.camera, settings, step..step + 1)?;
-            recorder.submit();
+            submit_untimed(&engine.gpu, |recorder| {
+                engine.renderer.draw_steps(recorder, scene, target, &view.camera, settings, step..step + 1)
+            })?;
             engine.gpu.wait();
             progress.set((step + 1) as f32 / steps as f32);
         }
@@ -336,15 +320,10 @@ impl Shot {
 
     /// What the legend says about distances.
     fn distances(&self) -> Distances {
-        let unit = self.subject.settings.deviation_in;
-        let scale = match unit {
-            DeviationUnit::Units => self.scale,
-            DeviationUnit::Px => DEVIATION_PX_SCALE,
-        };
         let mut fields = self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
         let is_partial = fields.any(|field| field.left_out > 0);
         let outlines = self.silhouette.as_ref().map(|silhouette| silhouette.distances);
-        Distances { unit, scale: Some(scale), is_partial, measured: None, outlines }
+        Distances { scale: Some(self.scale), is_partial, measured: None, outlines }
     }
 
     /// What a half is tessellated with, if there is one.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::camera_stats::ViewStats;
 use super::factors_report::FactorsFile;
@@ -15,9 +15,9 @@ use crate::engine::{Engine, Loaded, Runs};
 use crate::gates::{GateKind, Judgement};
 use crate::measure::{Measured, SeamTurns, Seams};
 use crate::render::Scene;
-use crate::settings::{Choice, Declaration, Settings, SplitSide, options};
+use crate::settings::{Settings, SplitSide, Value, options};
 use geometry::mesh::{EdgeCounts, Moment, Rig, Topology};
-use geometry::tessellate::Inputs;
+use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::{ScreenView, ulp};
 use gpu::{GpuError, PassTime};
 
@@ -96,62 +96,41 @@ pub struct Stats {
     ms: BTreeMap<&'static str, f64>,
 }
 
-/// What was drawn, in the options' names.
-#[derive(Debug, Serialize)]
-struct SettingsStats {
-    surface: &'static str,
-    /// Of Phong tessellation alone.
-    alpha: Option<f32>,
-    normals: &'static str,
-    edges: &'static str,
-    partitioning: &'static str,
-    lod: &'static str,
-    /// The factor of uniform LOD, and the largest factor of LOD by distance.
-    factor: f32,
-    /// Px per segment; none where the LOD has no segment length.
-    pixels: Option<f32>,
-    /// Px; of LOD by error, and of what compares with it under any LOD.
-    tolerance: Option<f32>,
-    /// Bounding radii; of LOD by distance alone.
-    near: Option<f32>,
-    far: Option<f32>,
-    clip: &'static str,
-    cull_back_faces: bool,
-    convention: &'static str,
-    displacement: &'static str,
-    /// In bounding radii; none without displacement.
-    height_scale: Option<f32>,
-    /// From 0 to 1; none without displacement.
-    midlevel: Option<f32>,
+/// What was drawn, in the options' names: each with its value, or null if it has no effect.
+#[derive(Debug)]
+struct SettingsStats(Vec<(String, Value)>);
+
+impl Serialize for SettingsStats {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
 }
 
 impl SettingsStats {
     /// `has_shader`: a surface shader takes the place of the surface. One of the gates that `judged` may compare with a tolerance
     /// that LOD doesn't use.
     fn new(settings: &Settings, has_shader: bool, judged: &[Judgement]) -> Self {
-        let own = &settings.tessellation;
-        let has_effect = |option: &Declaration| (option.no_effect)(settings).is_none();
-        let is_displaced = own.displacement.is_on();
+        let own = settings.tessellation;
+        let used = settings.with(Tessellation { lod: own.used_lod(), ..own });
         let is_compared = judged.iter().any(|gate| gate.kind == GateKind::AboveTolerance);
-        Self {
-            surface: if has_shader { "surface-shader" } else { own.surface.name() },
-            alpha: own.surface.is_phong().then_some(own.alpha),
-            normals: own.normals.name(),
-            edges: own.edges.name(),
-            partitioning: own.partitioning.name(),
-            lod: own.used_lod().name(),
-            factor: own.factor,
-            pixels: has_effect(&options::PIXELS).then_some(own.pixels),
-            tolerance: (has_effect(&options::TOLERANCE) || is_compared).then_some(own.tolerance),
-            near: has_effect(&options::DISTANCES).then_some(own.near),
-            far: has_effect(&options::DISTANCES).then_some(own.far),
-            clip: own.clip.name(),
-            cull_back_faces: own.cull_back_faces,
-            convention: own.convention.name(),
-            displacement: own.displacement.name(),
-            height_scale: is_displaced.then_some(own.height_scale),
-            midlevel: is_displaced.then_some(own.midlevel),
+        // A factor that isn't used is known all the same.
+        let always = [options::LOD.name, options::FACTOR.name];
+        let mut all = Vec::new();
+        for option in options::TESSELLATION {
+            let is_used = (option.no_effect)(settings).is_none()
+                || always.contains(&option.name)
+                || is_compared && option.name == options::TOLERANCE.name;
+            let shown = |value| if is_used { value } else { Value::Unset };
+            all.extend(option.written(&used).into_iter().map(|(name, value)| (name, shown(value))));
+            if option.name == options::SURFACE.name && has_shader {
+                all[0].1 = Value::Name("surface-shader");
+            }
+            // It isn't saved with the others.
+            if option.name == options::DISPLACEMENT.name {
+                all.push((option.name.to_owned(), option.get(settings)));
+            }
         }
+        Self(all)
     }
 }
 

@@ -31,13 +31,8 @@ impl Rect {
     fn is_crossed(&self, a: [f64; 2], b: [f64; 2]) -> bool {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         for k in 0..2 {
+            // Of a line along the other axis both are infinite, outside of the rectangle with the same sign.
             let along = b[k] - a[k];
-            if along == 0.0 {
-                if a[k] <= self.min[k] || a[k] >= self.max[k] {
-                    return false;
-                }
-                continue;
-            }
             let [p, q] = [(self.min[k] - a[k]) / along, (self.max[k] - a[k]) / along];
             (enter, leave) = (enter.max(p.min(q)), leave.min(p.max(q)));
         }

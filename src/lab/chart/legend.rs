@@ -4,7 +4,8 @@ use plotters::prelude::*;
 
 use super::method_style::{Fill, MethodStyle, Shape, dash};
 use super::pen::{Drawn, FRONT, LEFT, Pen};
-use super::{LodKind, Method, Subject};
+use super::{LodKind, Method, Subject, distinct};
+use geometry::tessellate::{Normals, Partitioning};
 use inspect::plot::INK;
 use inspect::settings::Choice;
 
@@ -29,25 +30,21 @@ const IN_A_LINE: usize = 3;
 pub fn method_styles(subject: &Subject) -> Vec<(Method, MethodStyle)> {
     let methods = subject.methods();
     let variants = variants(&methods);
-    let variant = |method: &Method| variants.iter().position(|other| same(other, method)).unwrap_or(0);
+    let variant = |method: &Method| variants.iter().position(|other| pair(other) == pair(method)).unwrap_or(0);
     methods.iter().map(|method| (*method, MethodStyle::new(*method, variant(method)))).collect()
 }
 
 /// One method for each pair of partitioning and normals; empty if every LOD has only one such pair, so that the pairs needn't
 /// be told apart.
 fn variants(methods: &[Method]) -> Vec<Method> {
-    let mut all: Vec<Method> = Vec::new();
-    for method in methods {
-        if !all.iter().any(|other| same(other, method)) {
-            all.push(*method);
-        }
-    }
+    let first = |own| methods.iter().copied().find(|method| pair(method) == own);
+    let all: Vec<Method> = distinct(methods.iter().map(pair)).into_iter().filter_map(first).collect();
     let one_each = |lod: LodKind| all.iter().filter(|method| method.lod == lod).count() <= 1;
     if LodKind::ALL.into_iter().all(one_each) { Vec::new() } else { all }
 }
 
-fn same(a: &Method, b: &Method) -> bool {
-    a.partitioning == b.partitioning && a.normals == b.normals
+fn pair(method: &Method) -> (Partitioning, Normals) {
+    (method.partitioning, method.normals)
 }
 
 /// The lines of the legend: those of surfaces, of LODs, and of partitionings and normals if there are several.

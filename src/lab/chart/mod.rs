@@ -3,7 +3,6 @@
 
 mod axis;
 mod bench;
-mod cost;
 mod labels;
 mod legend;
 mod method_style;
@@ -17,13 +16,12 @@ mod words;
 
 pub use axis::{Axis, Tick};
 pub use bench::{Bench, Effort, whole};
-pub use cost::Cost;
 pub use legend::method_styles;
 pub use method_style::{Fill, MethodStyle, Shape, dash};
 pub use pen::RADIUS;
 pub use picture::{bitmap, svg};
+pub use race::{Cost, front, has_converged};
 pub(crate) use race::{Race, Win};
-pub use race::{front, has_converged};
 pub use save::{SaveError, save};
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
@@ -152,13 +150,8 @@ pub struct Subject {
 }
 
 impl Subject {
-    /// The largest error of a row that was found: a part of the reference surface's diagonal, or px without a reference surface.
-    pub fn error(&self, row: &Row) -> Option<f64> {
-        self.error_of(&row.probe)
-    }
-
-    /// The largest error of any settings: see [`Self::error`].
-    pub fn error_of(&self, probe: &Probe) -> Option<f64> {
+    /// The largest error that was found: a part of the reference surface's diagonal, or px without a reference surface.
+    pub fn error(&self, probe: &Probe) -> Option<f64> {
         let error = match self.reference_shape {
             Some(_) => probe.errors.map(|errors| errors.largest.at_least),
             None => probe.max_error_px,

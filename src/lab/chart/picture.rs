@@ -131,9 +131,9 @@ impl Panel<'_> {
         [left, top]: [f64; 2],
         [margin, across]: [f64; 2],
     ) -> Result<Diagram<'d, DB>, DrawingAreaErrorKind<DB::ErrorType>> {
-        let known = || self.subject.rows.iter().filter_map(|row| Some((row, self.subject.error(row)?)));
+        let known = || self.subject.rows.iter().filter_map(|row| Some((row, self.subject.error(&row.probe)?)));
         let unit = self.subject.unit();
-        let x = Axis::around(known().map(|(row, _)| self.cost.of(row)), 0.0);
+        let x = Axis::around(known().map(|(row, _)| self.cost.of(&row.probe)), 0.0);
         let y = Axis::around(known().map(|(_, error)| error * unit), self.subject.floor() * unit);
         let area = pen.0.clone().shrink(px([left, top]), px([margin + across, PANEL_HEIGHT + FOOT]));
         let mut chart = ChartBuilder::on(&area)
@@ -161,10 +161,11 @@ impl Panel<'_> {
 
     fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, corner: [f64; 2], across: [f64; 2]) -> Drawn<DB> {
         let chart = self.axes(pen, corner, across)?;
-        let point =
-            |row: &Row, error: f64| place_of(chart.backend_coord(&(self.cost.of(row), error * self.subject.unit())));
+        let point = |row: &Row, error: f64| {
+            place_of(chart.backend_coord(&(self.cost.of(&row.probe), error * self.subject.unit())))
+        };
         let races = self.subject.races();
-        let fronts: Vec<_> = races.iter().map(|race| race.front(|row| self.cost.of(row))).collect();
+        let fronts: Vec<_> = races.iter().map(|race| race.front(|row| self.cost.of(&row.probe))).collect();
         for front in &fronts {
             let points: Vec<_> = front.iter().map(|(row, error)| point(row, *error)).collect();
             pen.line(&points, FRONT, 9.0, None)?;
@@ -174,7 +175,7 @@ impl Panel<'_> {
         let methods = method_styles(self.subject);
         let rows = |method: Method| {
             let own = self.subject.rows.iter().filter(move |row| row.setting.method == method);
-            own.filter_map(|row| Some((row, self.subject.error(row)?)))
+            own.filter_map(|row| Some((row, self.subject.error(&row.probe)?)))
         };
         let mut all: Vec<(&Row, [f64; 2])> = Vec::new();
         let mut lines = Vec::new();

@@ -1,7 +1,31 @@
-//! Compares rows: which ones no other row beats, and which method reaches an error fastest.
+//! Compares rows by their cost and error: which ones no other row beats, and which method reaches an error fastest.
 
-use super::{Cost, Method, Row, Subject, distinct};
+use super::{Method, Probe, Row, Subject, distinct};
 use geometry::tessellate::Surface;
+
+/// A cost of a setting: time in ms, or triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Cost {
+    #[default]
+    Ms,
+    Triangles,
+}
+
+impl Cost {
+    pub fn of(self, probe: &Probe) -> f64 {
+        match self {
+            Self::Ms => probe.time.total(),
+            Self::Triangles => probe.triangles as f64,
+        }
+    }
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ms => "Tessellation and drawing, ms",
+            Self::Triangles => "Triangles",
+        }
+    }
+}
 
 /// The rows of a mesh that can be compared, with their errors. With a reference surface these are all rows. Without one they
 /// are the rows of one surface, since each surface is compared with its own limit.
@@ -67,7 +91,7 @@ impl Subject {
     /// The rows whose errors are known, grouped so that those of a group can be compared.
     pub fn races(&self) -> Vec<Race<'_>> {
         let mut races: Vec<Race> = Vec::new();
-        for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(row)?))) {
+        for (row, error) in self.rows.iter().filter_map(|row| Some((row, self.error(&row.probe)?))) {
             let surface = self.reference_shape.is_none().then_some(row.setting.method.surface);
             match races.iter_mut().find(|race| race.surface == surface) {
                 Some(race) => race.entries.push((row, error)),
@@ -113,7 +137,7 @@ impl<'a> Race<'a> {
     /// The cheapest row that `of` accepts, with an error of at most `error`.
     pub fn cheapest(&self, error: f64, cost: Cost, of: impl Fn(&Row) -> bool) -> Option<&'a Row> {
         let reached = self.entries.iter().filter(|(row, own)| *own <= error && of(row)).map(|(row, _)| *row);
-        reached.min_by(|a, b| cost.of(a).total_cmp(&cost.of(b)))
+        reached.min_by(|a, b| cost.of(&a.probe).total_cmp(&cost.of(&b.probe)))
     }
 
     /// The fastest row with an error of at most `error`; `None` if there is none.

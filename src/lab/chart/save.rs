@@ -1,15 +1,15 @@
 //! Saves a chart as a picture or a table.
 
-use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
-use image::ImageFormat;
 use thiserror::Error;
 
 use super::{Subject, bitmap, columns, svg};
 use geometry::names::shown_path;
+use inspect::export::ending;
 use inspect::plot::ChartError;
-use load::files::file_reason;
+use inspect::shot::files::{file_error, write_bytes, write_text};
+use inspect::shot::{ShotError, write_picture};
 
 #[derive(Debug, Error)]
 pub enum SaveError {
@@ -17,10 +17,8 @@ pub enum SaveError {
     Ending(PathBuf),
     #[error(transparent)]
     Chart(#[from] ChartError),
-    #[error("the chart could not be encoded: {0}")]
-    Encode(#[from] image::ImageError),
-    #[error("{} could not be written: {reason}", shown_path(.path))]
-    Write { path: PathBuf, reason: String },
+    #[error(transparent)]
+    Write(#[from] ShotError),
 }
 
 /// Writes an SVG or PNG picture or a CSV table, depending on the path's ending.
@@ -28,19 +26,13 @@ pub enum SaveError {
 /// # Errors
 /// The ending is another one, or the file can't be written.
 pub fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
-    let failed = |reason: String| SaveError::Write { path: path.to_owned(), reason };
     let subjects = std::slice::from_ref(subject);
-    let bytes = match inspect::export::ending(path).as_str() {
-        "svg" => svg(subjects)?.into_bytes(),
-        "png" => {
-            let mut png = Cursor::new(Vec::new());
-            bitmap(subjects)?.write_to(&mut png, ImageFormat::Png)?;
-            png.into_inner()
-        }
-        "csv" => table(subject).map_err(|error| failed(error.to_string()))?,
+    Ok(match ending(path).as_str() {
+        "svg" => write_text(path, &svg(subjects)?)?,
+        "png" => write_picture(path, &bitmap(subjects)?.into())?,
+        "csv" => write_bytes(path, &table(subject).map_err(|error| file_error(path, "written", &error))?)?,
         _ => return Err(SaveError::Ending(path.to_owned())),
-    };
-    load::files::write_whole(path, &bytes).map_err(|error| failed(file_reason(&error)))
+    })
 }
 
 fn table(subject: &Subject) -> std::io::Result<Vec<u8>> {

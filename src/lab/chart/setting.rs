@@ -23,24 +23,23 @@ impl LodKind {
     /// The kind of an LOD with a partitioning; `None` for one that isn't tried.
     fn new(lod: Lod, partitioning: Partitioning) -> Option<Self> {
         let has_rows = partitioning.has_rows() && lod.is_by_error();
-        Self::ALL.into_iter().find(|kind| kind.lod() == lod && (*kind == Self::ErrorRows) == has_rows)
+        Self::ALL.into_iter().find(|kind| kind.declared().0 == lod && (*kind == Self::ErrorRows) == has_rows)
     }
 
-    fn lod(self) -> Lod {
+    /// Its LOD, the partitioning that it is commonly used with, and the number that says how fine it is. LOD by error uses
+    /// numbers of segments that nest, which are whole.
+    fn declared(self) -> (Lod, Partitioning, fn(&mut Tessellation) -> &mut f32) {
         match self {
-            Self::Uniform => Lod::Uniform,
-            Self::Paper => Lod::Paper,
-            Self::Error | Self::ErrorRows => Lod::Error,
+            Self::Uniform => (Lod::Uniform, Partitioning::FractionalOdd, |own| &mut own.factor),
+            Self::Paper => (Lod::Paper, Partitioning::FractionalOdd, |own| &mut own.pixels),
+            Self::Error => (Lod::Error, Partitioning::Integer, |own| &mut own.tolerance),
+            Self::ErrorRows => (Lod::Error, Partitioning::Rows, |own| &mut own.tolerance),
         }
     }
 
-    /// The partitioning that it is commonly used with. LOD by error uses numbers of segments that nest, which are whole.
-    fn partitioning(self) -> Partitioning {
-        match self {
-            Self::Uniform | Self::Paper => Partitioning::FractionalOdd,
-            Self::Error => Partitioning::Integer,
-            Self::ErrorRows => Partitioning::Rows,
-        }
+    /// Whether its number is one of px, which is finer the less it is.
+    fn is_in_px(self) -> bool {
+        self != Self::Uniform
     }
 }
 
@@ -69,42 +68,31 @@ pub struct Setting {
 impl Setting {
     /// The setting that some settings amount to; `None` under an LOD that isn't tried.
     pub fn new(settings: &Settings) -> Option<Self> {
-        let Tessellation { surface, normals, partitioning, factor, pixels, tolerance, .. } = settings.tessellation;
-        let lod = LodKind::new(settings.tessellation.used_lod(), partitioning)?;
-        let value = match lod {
-            LodKind::Uniform => factor,
-            LodKind::Paper => pixels,
-            LodKind::Error | LodKind::ErrorRows => tolerance,
-        };
-        Some(Self { method: Method { surface, normals, partitioning, lod }, value })
+        let mut own = settings.tessellation;
+        let Tessellation { surface, normals, partitioning, .. } = own;
+        let lod = LodKind::new(own.used_lod(), partitioning)?;
+        let (.., number) = lod.declared();
+        Some(Self { method: Method { surface, normals, partitioning, lod }, value: *number(&mut own) })
     }
 
     /// Some settings with this one applied.
     pub fn applied(&self, settings: &Settings) -> Settings {
         let Method { surface, normals, partitioning, lod } = self.method;
-        let plain = Tessellation { surface, normals, partitioning, lod: lod.lod(), ..settings.tessellation };
-        settings.with(match lod {
-            LodKind::Uniform => Tessellation { factor: self.value, ..plain },
-            LodKind::Paper => Tessellation { pixels: self.value, ..plain },
-            LodKind::Error | LodKind::ErrorRows => Tessellation { tolerance: self.value, ..plain },
-        })
+        let (lod, _, number) = lod.declared();
+        let mut own = Tessellation { surface, normals, partitioning, lod, ..settings.tessellation };
+        *number(&mut own) = self.value;
+        settings.with(own)
     }
 
     /// Whether this is a finer setting of the same method.
     pub fn is_finer(&self, than: &Self) -> bool {
-        let finer = match self.method.lod {
-            LodKind::Uniform => self.value > than.value,
-            LodKind::Paper | LodKind::Error | LodKind::ErrorRows => self.value < than.value,
-        };
-        finer && self.method == than.method
+        let [more, less] = if self.method.lod.is_in_px() { [than, self] } else { [self, than] };
+        more.value > less.value && self.method == than.method
     }
 
     /// The number that says how fine it is, as short text.
     pub fn label(&self) -> String {
-        match self.method.lod {
-            LodKind::Uniform => self.value.to_string(),
-            LodKind::Paper | LodKind::Error | LodKind::ErrorRows => format!("{} px", self.value),
-        }
+        if self.method.lod.is_in_px() { format!("{} px", self.value) } else { self.value.to_string() }
     }
 }
 
@@ -178,7 +166,7 @@ impl Plan {
         let mut all = Vec::new();
         for (&surface, &normals) in self.surfaces.iter().flat_map(|a| self.normals.iter().map(move |b| (a, b))) {
             for &lod in &self.lods {
-                let common = [lod.partitioning()];
+                let common = [lod.declared().1];
                 let has_common = self.partitionings.is_empty() || lod == LodKind::ErrorRows;
                 let listed = if has_common { &common[..] } else { &self.partitionings };
                 let possible = |partitioning: &&Partitioning| lod == LodKind::Uniform || !partitioning.has_one_factor();

@@ -3,6 +3,7 @@
 use std::ops::Range;
 use std::path::Path;
 
+use strsim::levenshtein;
 use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
@@ -177,8 +178,8 @@ impl Reader<'_> {
     }
 
     fn unknown(&self, at: Range<usize>, name: &str, known: &[&str]) -> ConfigError {
-        let nearest = known.iter().min_by_key(|other| distance(name, other));
-        let meant = nearest.filter(|other| distance(name, other) <= 1 + name.chars().count() / 3);
+        let nearest = known.iter().min_by_key(|other| levenshtein(name, other));
+        let meant = nearest.filter(|other| levenshtein(name, other) <= 1 + name.chars().count() / 3);
         let meant = meant.map(|other| format!("; did you mean {other}?")).unwrap_or_default();
         self.error(at, &format!("there is no key {}{meant}", shown(name)))
     }
@@ -301,21 +302,6 @@ impl Reader<'_> {
             }
         }
     }
-}
-
-/// The number of letters to insert, delete or replace to make one word of another (Levenshtein 1966).
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, letter) in a.chars().enumerate() {
-        let mut beside = std::mem::replace(&mut row[0], i + 1);
-        for (j, other) in b.iter().enumerate() {
-            let replaced = beside + usize::from(letter != *other);
-            beside = row[j + 1];
-            row[j + 1] = replaced.min(beside + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
 }
 
 #[cfg(test)]

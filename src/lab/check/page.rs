@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::report::{Asset, GateResult, Report, Status, View, gate_title};
-use geometry::numbers::grouped;
+use geometry::numbers::{counted, grouped};
 use inspect::html::{END, begin, escaped};
 
 /// What this page has besides what all pages have.
@@ -74,15 +74,15 @@ fn section(asset: &Asset) -> String {
     text.extend(asset.error.iter().map(|error| format!("<p>{}</p>\n", escaped(error))));
     asset.views.iter().for_each(|view| text += &of_view(asset, view));
     if !asset.warnings.is_empty() {
-        let _ = writeln!(text, "<details><summary>{} of loading</summary>\n<ul>", warnings(asset.warnings.len()));
+        let _ = writeln!(
+            text,
+            "<details><summary>{} of loading</summary>\n<ul>",
+            counted(asset.warnings.len() as u64, "warning")
+        );
         text.extend(asset.warnings.iter().map(|warning| format!("<li>{}</li>\n", escaped(warning))));
         text += "</ul></details>\n";
     }
     text + "</section>\n"
-}
-
-fn warnings(count: usize) -> String {
-    if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") }
 }
 
 fn of_view(asset: &Asset, view: &View) -> String {

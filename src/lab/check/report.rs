@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-use geometry::numbers::grouped;
+use geometry::numbers::{counted, grouped};
 use inspect::gates::{GateKind, Judgement, Place};
 use inspect::settings::Choice;
 use inspect::shot::Numbers;
@@ -59,8 +59,10 @@ pub struct GateResult {
     pub passed: bool,
     /// What was found, and where if it failed, in a sentence without its end.
     pub text: String,
+    /// The worst place of a gate that failed: the mesh's triangles that it lies on; `at`, in object units, null for a place of
+    /// a picture; and `px`, from the picture's top left. Null if there is none.
     #[serde(rename = "where")]
-    pub place: Option<GatePlace>,
+    pub place: Value,
     /// A picture of the place, a PNG file in base64.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<String>,
@@ -72,17 +74,6 @@ pub struct GateResult {
 /// What is judged beside the gates, and what passing it means.
 pub const GOLDEN: [&str; 2] = ["golden", "The view is the same as its golden picture."];
 pub(super) const OPENS: [&str; 2] = ["opens", "The asset can be opened and measured."];
-
-/// The worst place of a gate that failed.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct GatePlace {
-    /// The mesh's triangles that it lies on.
-    pub triangles: Vec<u32>,
-    /// In object units; none for a place of a picture.
-    pub at: Option<[f32; 3]>,
-    /// In px from the picture's top left.
-    pub px: Option<[f32; 2]>,
-}
 
 /// The result of an asset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -107,10 +98,9 @@ impl Status {
 impl GateResult {
     /// What a judgement says, with a picture of its place, and how long it took in s.
     pub fn new(judgement: &Judgement, evidence: Option<String>, seconds: f64) -> Self {
-        let place = |place: &Place| GatePlace {
-            triangles: place.triangles.clone(),
-            at: place.spot.at().map(|at| at.to_array()),
-            px: place.spot.px().map(|px| px.to_array()),
+        let place = |Place { triangles, spot, .. }: &Place| {
+            let (at, px) = (spot.at().map(|at| at.to_array()), spot.px().map(|px| px.to_array()));
+            json!({ "triangles": triangles, "at": at, "px": px })
         };
         Self {
             name: judgement.gate.to_owned(),
@@ -118,7 +108,7 @@ impl GateResult {
             found: json!(judgement.found),
             passed: judgement.passed,
             text: if judgement.passed { judgement.text.clone() } else { judgement.sentence() },
-            place: judgement.place.as_ref().map(place),
+            place: judgement.place.as_ref().map_or(Value::Null, place),
             evidence,
             seconds,
         }
@@ -159,8 +149,7 @@ impl Report {
     /// How many assets passed, failed and couldn't be checked, on one line.
     pub fn summary(&self) -> String {
         let number = |count: usize| grouped(count as u64);
-        let all =
-            if self.assets.len() == 1 { "1 asset".to_owned() } else { format!("{} assets", number(self.assets.len())) };
+        let all = counted(self.assets.len() as u64, "asset");
         let [passed, failed, broken] =
             [Status::Passed, Status::Failed, Status::Broken].map(|status| self.count(status));
         let mut text =
@@ -230,7 +219,7 @@ pub(super) fn sample() -> Report {
         ..GateResult::default()
     };
     let failed = GateResult {
-        place: Some(GatePlace { triangles: vec![3, 7], at: Some([0.5, 0.0, 1.0]), px: None }),
+        place: json!({ "triangles": [3, 7], "at": [0.5, 0.0, 1.0], "px": null }),
         evidence: Some("ZXZpZGVuY2U=".into()),
         ..gate("cracks", Some(12), "12 edges are cracked, where 0 are allowed")
     };

@@ -77,7 +77,7 @@ impl<'a> Overlaid<'a> {
         let nearest = |index: usize| locator.as_ref().and_then(|locator| locator.place(positions[index]));
         // Without a locator, triangles that aren't ours are too thin to be anywhere.
         let nowhere = if locator.is_some() { NOWHERE } else { Place { distance: 0.0, ..NOWHERE } };
-        let place = |index: usize| twins.place_of(index).or_else(|| nearest(index)).unwrap_or(nowhere);
+        let place = |index: usize| twins.places[index].or_else(|| nearest(index)).unwrap_or(nowhere);
         let places = made_of_all(positions.len(), place);
         Self { theirs, topology, locator, positions, twins, places, fit }
     }
@@ -180,12 +180,12 @@ impl<'a> Assignment<'a> {
     pub(super) fn new(overlaid: &'a Overlaid<'a>) -> Self {
         let (triangles, twins) = (&overlaid.theirs.triangles, &overlaid.twins);
         let winding = if twins.are_all() { 1.0 } else { overlaid.winding() };
-        let patches = made_of_all(triangles.len(), |index| match twins.corners(index as u32) {
+        let patches = made_of_all(triangles.len(), |index| match twins.corners[index] {
             Some([vertex, ..]) => twins.place(vertex).patch,
-            None if twins.is_thin(index as u32) => 0,
+            None if twins.is_thin[index] => 0,
             None => overlaid.patch_of(triangles[index], winding),
         });
-        let seen = patches.iter().copied().zip(0..).filter(|(_, triangle)| !twins.is_thin(*triangle));
+        let seen = patches.iter().copied().zip(0..).filter(|(_, triangle)| !twins.is_thin[*triangle as usize]);
         let (starts, order) = in_groups(overlaid.topology.patches.len(), seen);
         Self { overlaid, order, starts }
     }
@@ -202,9 +202,9 @@ impl<'a> Assignment<'a> {
         // Twins first: what they say of a vertex holds for other triangles, too.
         let twins = &self.overlaid.twins;
         let (of_ours, others): (Vec<u32>, Vec<u32>) =
-            own.iter().copied().partition(|triangle| twins.corners(*triangle).is_some());
+            own.iter().copied().partition(|triangle| twins.corners[*triangle as usize].is_some());
         for triangle in of_ours.into_iter().chain(others) {
-            let twins = twins.corners(triangle);
+            let twins = twins.corners[triangle as usize];
             let vertices = self.overlaid.theirs.triangles[triangle as usize];
             let corners = [0, 1, 2].map(|k| {
                 let vertex = vertices[k];

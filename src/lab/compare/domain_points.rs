@@ -1,8 +1,8 @@
 //! Points of a patch's domain, and which of them is nearest to a place.
 
 use geometry::tessellate::{
-    Convention, FIXED_ONE, PatchFactors, corner_weights, domain_plan, domain_point, domain_triangle, patch_is_culled,
-    point_count, triangle_count,
+    Convention, FIXED_ONE, PatchFactors, corner_weights, domain_plan, domain_point, domain_triangle, point_count,
+    triangle_count,
 };
 
 /// Points of one patch, as the weights of its corners 0 and 1.
@@ -41,9 +41,6 @@ impl DomainPoints {
 
 /// The tessellator's points of a patch with these factors, as the weights of the patch's corners 0 and 1.
 pub(super) fn pattern_points(factors: PatchFactors, convention: Convention) -> Vec<[f64; 2]> {
-    if patch_is_culled(factors) {
-        return Vec::new();
-    }
     let plan = domain_plan(factors);
     let point =
         |i| corner_weights(convention, domain_point(&plan, i)).map(|weight| f64::from(weight) / f64::from(FIXED_ONE));
@@ -52,9 +49,6 @@ pub(super) fn pattern_points(factors: PatchFactors, convention: Convention) -> V
 
 /// The tessellator's triangles of a patch with these factors: indices of its points.
 pub(super) fn pattern_triangles(factors: PatchFactors) -> Vec<[u32; 3]> {
-    if patch_is_culled(factors) {
-        return Vec::new();
-    }
     let plan = domain_plan(factors);
     (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect()
 }

@@ -8,7 +8,7 @@ use super::explanations::{Explanation, InsideRule, Rule};
 use super::matching::Farthest;
 use super::net_mistakes::NetMistake;
 use super::spaces::{Alignment, Space, SpaceKind};
-use geometry::numbers::{exact, grouped, short};
+use geometry::numbers::{counted, exact, grouped, short};
 use geometry::tessellate::{Convention, Displacement, Partitioning, Tessellation};
 use inspect::settings::Choice;
 
@@ -73,9 +73,9 @@ pub enum Finding {
         listed(triangles, *patches)
     )]
     AdditionalPatches { patches: u64, triangles: Vec<u32> },
-    #[error("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))]
+    #[error("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), counted(*patches, "patch"))]
     MissingTriangles { count: u64, patches: u64 },
-    #[error("{} there more than once, in {}.", plural(*count, "triangle is", "triangles are"), patches_text(*patches))]
+    #[error("{} there more than once, in {}.", plural(*count, "triangle is", "triangles are"), counted(*patches, "patch"))]
     Doubled { count: u64, patches: u64 },
     #[error("{}", flipped_text(*count, *of))]
     Flipped { count: u64, of: u64 },
@@ -184,10 +184,6 @@ impl Finding {
 /// A number and its noun.
 pub fn plural(count: u64, one: &str, more: &str) -> String {
     format!("{} {}", grouped(count), if count == 1 { one } else { more })
-}
-
-fn patches_text(patches: u64) -> String {
-    plural(patches, "patch", "patches")
 }
 
 pub fn point(place: DVec3) -> String {
@@ -387,10 +383,10 @@ fn unknown_text(found: &UnknownFactors) -> String {
     let UnknownFactors { patches, of, sides, inside, suits, ours, is_of_view } = found;
     let [patches, of] = [*patches, *of].map(grouped);
     let where_ = match (*sides, *inside) {
-        (0, inside) => format!(", inside {} and never on an edge", patches_text(inside)),
-        (sides, 0) => format!(", with other cuts on {}", plural(sides, "side", "sides")),
+        (0, inside) => format!(", inside {} and never on an edge", counted(inside, "patch")),
+        (sides, 0) => format!(", with other cuts on {}", counted(sides, "side")),
         (sides, inside) => {
-            let [sides, inside] = [plural(sides, "side", "sides"), plural(inside, "patch differs", "patches differ")];
+            let [sides, inside] = [counted(sides, "side"), plural(inside, "patch differs", "patches differ")];
             format!(", with other cuts on {sides}; {inside} inside alone")
         }
     };
@@ -406,7 +402,7 @@ fn unknown_text(found: &UnknownFactors) -> String {
 }
 
 fn triangles_text(count: u64, patches: u64, order: Option<CornerOrder>) -> String {
-    let (join, patches) = (plural(count, "triangle joins", "triangles join"), patches_text(patches));
+    let (join, patches) = (plural(count, "triangle joins", "triangles join"), counted(patches, "patch"));
     let start = format!("The points are the same, but {join} other points than ours, in {patches}");
     let turned = match order.map(CornerOrder::convention) {
         None => "diagonals are turned".to_owned(),

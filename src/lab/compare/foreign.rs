@@ -2,7 +2,8 @@
 
 use glam::Vec3;
 
-use geometry::mesh::interner::Interner;
+use super::our_mesh::is_thin;
+use geometry::mesh::weld::weld;
 use geometry::mesh::{Bounds, Mesh};
 
 /// The triangles of another program, without regard to the order and the sharing of their vertices: vertices at equal positions
@@ -23,23 +24,22 @@ impl ForeignMesh {
     /// Collects triangles with these corners, which are indices into `positions`. Indices must be below their number.
     pub fn new(positions: &[Vec3], triangles: impl IntoIterator<Item = [u32; 3]>) -> Self {
         let mut made = Self::default();
-        let mut interner = Interner::default();
+        let (points, point_of) = weld(positions.len(), |vertex| positions[vertex]);
         // A vertex that no triangle uses says nothing about a tessellation.
-        let mut numbers = vec![u32::MAX; positions.len()];
+        let mut numbers = vec![None; points.len()];
         for corners in triangles {
-            if !corners.iter().all(|&corner| positions[corner as usize].is_finite()) {
+            let own = corners.map(|corner| point_of[corner as usize] as usize);
+            if !own.iter().all(|point| points[*point].is_finite()) {
                 made.not_finite += 1;
                 continue;
             }
-            let own = corners.map(|corner| {
-                let number = &mut numbers[corner as usize];
-                if *number == u32::MAX {
-                    *number = made.number(&mut interner, positions[corner as usize]);
-                }
-                *number
+            let own = own.map(|point| {
+                *numbers[point].get_or_insert_with(|| {
+                    made.positions.push(points[point]);
+                    made.positions.len() as u32 - 1
+                })
             });
-            let [a, b, c] = own;
-            if a == b || b == c || c == a {
+            if is_thin(own) {
                 made.degenerate += 1;
             } else {
                 made.triangles.push(own);
@@ -52,17 +52,6 @@ impl ForeignMesh {
     pub fn from_mesh(mesh: &Mesh) -> Self {
         let positions: Vec<Vec3> = mesh.corners.iter().map(|corner| corner.position).collect();
         Self::new(&positions, mesh.triangles.iter().copied())
-    }
-
-    /// The number of a position, which is added if it is new.
-    fn number(&mut self, interner: &mut Interner, position: Vec3) -> u32 {
-        // -0 and 0 are the same place.
-        let key = |position: Vec3| (position + Vec3::ZERO).to_array().map(f32::to_bits);
-        let (number, is_new) = interner.number(key(position), |id| key(self.positions[id as usize]));
-        if is_new {
-            self.positions.push(position);
-        }
-        number
     }
 
     pub fn bounds(&self) -> Bounds {

@@ -9,7 +9,7 @@ use geometry::groups::group_starts;
 use geometry::mesh::{Mesh, Topology};
 use geometry::near::{TriangleTree, closest_on_triangle};
 use geometry::tessellate::{
-    ControlNet, FIXED_ONE, Inputs, LimitSurface, Partitioning, Tessellated, Tessellation, Vertex, tessellate,
+    ControlNet, Inputs, LimitSurface, Partitioning, Tessellated, Tessellation, Vertex, tessellate,
 };
 
 /// Patches that are cut into triangles, with a hierarchy of boxes to find the nearest one.
@@ -38,7 +38,7 @@ impl OurSurface {
     pub(super) fn positions(&self, mesh: &Mesh, topology: &Topology, vertices: &[Vertex]) -> Vec<Vec3> {
         let limit = LimitSurface::new(mesh, topology, &self.inputs);
         let position = |vertex: &Vertex| {
-            let [u, v] = vertex.domain().map(|weight| f64::from(weight) / f64::from(FIXED_ONE));
+            let [u, v] = vertex.exact_domain();
             let net = with_mistake(limit.net(vertex.patch()), self.mistake);
             limit.position(vertex.patch(), &net, u, v).as_vec3()
         };
@@ -125,9 +125,7 @@ impl<'a> Locator<'a> {
         let sag = |triangle: &[u32; 3]| {
             let corners = triangle.map(|index| &self.cut.vertices[index as usize]);
             let middle = corners.map(|vertex| Vec3::from(vertex.position).as_dvec3()).into_iter().sum::<DVec3>() / 3.0;
-            let [u, v] = [0, 1].map(|k| {
-                corners.iter().map(|vertex| f64::from(vertex.domain()[k])).sum::<f64>() / (3.0 * f64::from(FIXED_ONE))
-            });
+            let [u, v] = [0, 1].map(|k| corners.iter().map(|vertex| vertex.exact_domain()[k]).sum::<f64>() / 3.0);
             let patch = corners[0].patch();
             limit.position(patch, &self.net(limit, patch), u, v).distance(middle)
         };
@@ -198,9 +196,7 @@ impl<'a> Locator<'a> {
     fn refined(&self, triangle: u32, weights: [f64; 3], distance: f64, position: DVec3) -> Place {
         let corners = self.cut.triangles[triangle as usize].map(|index| &self.cut.vertices[index as usize]);
         let patch = corners[0].patch();
-        let start = [0, 1].map(|k| {
-            (0..3).map(|i| weights[i] * f64::from(corners[i].domain()[k]) / f64::from(FIXED_ONE)).sum::<f64>()
-        });
+        let start = [0, 1].map(|k| (0..3).map(|i| weights[i] * corners[i].exact_domain()[k]).sum::<f64>());
         match &self.limit {
             None => Place { patch, weights: start, distance },
             Some(limit) => {
@@ -215,7 +211,7 @@ impl<'a> Locator<'a> {
 mod tests {
     use super::*;
     use geometry::mesh::Shape;
-    use geometry::tessellate::{LodView, Surface};
+    use geometry::tessellate::{FIXED_ONE, LodView, Surface};
 
     /// Checks that a locator finds emitted vertices at their own places.
     fn check(locator: &Locator, vertices: &[Vertex]) {

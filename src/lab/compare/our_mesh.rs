@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 
 use geometry::mesh::weld::weld_alike;
-use geometry::tessellate::{FIXED_ONE, PatchFactors, Tessellated, Vertex, point_count, triangle_count, unpack_normal};
+use geometry::tessellate::{PatchFactors, Tessellated, Vertex, point_count, triangle_count, unpack_normal};
 
 /// Our tessellation, patch by patch.
 pub(super) struct OurMesh<'a> {
@@ -101,10 +101,7 @@ impl<'a> OurMesh<'a> {
         let triangles = own.map(|triangle| triangle.map(|vertex| firsts[(vertex - base) as usize]));
         OurPatch {
             normals: vertices.iter().map(|vertex| unpack_normal(vertex.normal).as_dvec3()).collect(),
-            weights: vertices
-                .iter()
-                .map(|vertex| vertex.domain().map(|weight| f64::from(weight) / f64::from(FIXED_ONE)))
-                .collect(),
+            weights: vertices.iter().map(Vertex::exact_domain).collect(),
             triangles: triangles.filter(|triangle| !is_thin(*triangle)).collect(),
             positions,
             firsts,

@@ -9,17 +9,17 @@ use super::foreign::ForeignMesh;
 use super::locator::Place;
 use super::our_mesh::{OurMesh, is_thin, sorted};
 use geometry::mesh::weld::weld_alike;
-use geometry::tessellate::{FIXED_ONE, Vertex};
+use geometry::tessellate::Vertex;
 
 /// What their triangles are of ours.
 pub(super) struct Twins<'a> {
     own: &'a [Vertex],
     /// For each of their triangles our vertices at its corners; `None` if it isn't ours.
-    corners: Vec<Option<[u32; 3]>>,
+    pub corners: Vec<Option<[u32; 3]>>,
     /// For each of their vertices the place of a vertex of ours that it can't be told apart from, if there is one.
-    places: Vec<Option<Place>>,
-    /// For each of their triangles whether two of its corners can't be told apart.
-    is_thin: Vec<bool>,
+    pub places: Vec<Option<Place>>,
+    /// For each of their triangles whether two of its corners can't be told apart, so that nothing can be said of it.
+    pub is_thin: Vec<bool>,
 }
 
 /// A triangle by its points.
@@ -112,28 +112,12 @@ impl<'a> Twins<'a> {
     /// The place of a vertex of ours.
     pub(super) fn place(&self, own: u32) -> Place {
         let own = &self.own[own as usize];
-        let weights = own.domain().map(|weight| f64::from(weight) / f64::from(FIXED_ONE));
-        Place { patch: own.patch(), weights, distance: 0.0 }
-    }
-
-    /// The place of one of their vertices, if it is a vertex of ours.
-    pub(super) fn place_of(&self, vertex: usize) -> Option<Place> {
-        self.places[vertex]
+        Place { patch: own.patch(), weights: own.exact_domain(), distance: 0.0 }
     }
 
     /// Whether all of their triangles are ours, but for those of which nothing can be said.
     pub(super) fn are_all(&self) -> bool {
         self.corners.iter().zip(&self.is_thin).all(|(corners, is_thin)| corners.is_some() || *is_thin)
-    }
-
-    /// Our vertices at the corners of one of their triangles; `None` if it isn't ours.
-    pub(super) fn corners(&self, triangle: u32) -> Option<[u32; 3]> {
-        self.corners[triangle as usize]
-    }
-
-    /// Whether two corners of one of their triangles can't be told apart, so that nothing can be said of it.
-    pub(super) fn is_thin(&self, triangle: u32) -> bool {
-        self.is_thin[triangle as usize]
     }
 }
 

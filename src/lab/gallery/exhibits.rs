@@ -1,6 +1,6 @@
 //! The gallery's exhibits: which techniques it shows, and on which meshes.
 
-use geometry::mesh::{HeightMap, Heights, Mesh, Shape};
+use geometry::mesh::Shape;
 use geometry::tessellate::{Displacement, Normals, Partitioning, Surface, Tessellation};
 use inspect::settings::{Choice, Description, Overlays, Settings};
 
@@ -135,14 +135,4 @@ fn heights() -> Exhibit {
         overlays: Overlays { cracks: true, ..Overlays::default() },
         tiles: Displacement::ALL.iter().map(|&displacement| of(displacement)).collect(),
     }
-}
-
-/// A height image of waves for shapes made in code. It can be repeated without a seam.
-pub(super) fn waves(mesh: &Mesh) -> Heights {
-    const SIZE: u32 = 128;
-    let height = |i: u32| {
-        let [x, y] = [i % SIZE, i / SIZE].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / SIZE as f32);
-        0.5 + 0.25 * (3.0 * x).sin() * (2.0 * y).cos() + 0.2 * (x + 2.0 * y).cos()
-    };
-    Heights::everywhere(mesh, HeightMap::new([SIZE, SIZE], (0..SIZE * SIZE).map(height).collect()))
 }

@@ -16,6 +16,7 @@ pub use exhibits::{Exhibit, exhibits};
 pub use page::{PAGE, page};
 pub(crate) use tile::TileResults;
 
+use geometry::mesh::Heights;
 use geometry::progress::Progress;
 use geometry::tessellate::{Surface, Tessellation, displacement_reach};
 use gpu::{GpuError, Timing};
@@ -25,7 +26,7 @@ use inspect::plot::{ChartError, contact_sheet};
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Settings};
 use load::{LoadError, Source};
-use tile::{TileContext, draw_tile};
+use tile::draw_tile;
 
 /// Why there is no gallery.
 #[derive(Debug, Error)]
@@ -100,9 +101,8 @@ impl<'a> Gallery<'a> {
                 current = Some((tile.crease_band, loaded, scene));
             }
             let Some((_, loaded, scene)) = &mut current else { continue };
-            let settings = self.settings(tile);
-            let context = TileContext { engine, target: &target, camera: &camera, overlays: exhibit.overlays };
-            let (picture, results) = draw_tile(&context, settings, loaded, scene)?;
+            let drawn_as = (self.settings(tile), exhibit.overlays);
+            let (picture, results) = draw_tile(engine, &target, &camera, drawn_as, loaded, scene)?;
             parts.push((tile.name.clone(), picture));
             all.push(results);
         }
@@ -181,7 +181,7 @@ impl<'a> Gallery<'a> {
         let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement.is_on());
         if displaced && loaded.mesh.heights.is_none() {
             let mut mesh = (*loaded.mesh).clone();
-            mesh.heights = Some(Arc::new(exhibits::waves(&mesh)));
+            mesh.heights = Some(Arc::new(Heights::waves(&mesh, 128, [3.0, 2.0])));
             loaded.mesh = Arc::new(mesh);
         }
         Ok(loaded)

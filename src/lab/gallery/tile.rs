@@ -22,14 +22,6 @@ const NARROW_COLOR: [u8; 3] = [120, 160, 205];
 /// small.
 const HALF_WIDTHS: [f32; 2] = [1.25, 0.75];
 
-/// What all tiles of an exhibit are drawn with.
-pub(super) struct TileContext<'a> {
-    pub engine: &'a Engine,
-    pub target: &'a Target,
-    pub camera: &'a Camera,
-    pub overlays: Overlays,
-}
-
 /// The measurements of one tile.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TileResults {
@@ -60,14 +52,15 @@ pub(super) fn affordable(inputs: &Inputs, scene: &Scene) -> Inputs {
     Inputs { tessellation: Tessellation { factor, ..own }, ..*inputs }
 }
 
-/// Times, measures and draws a tile. Returns its picture and its results.
+/// Times and measures a tile, and draws it with overlays. Returns its picture and its results.
 pub(super) fn draw_tile(
-    context: &TileContext,
-    settings: Settings,
+    engine: &Engine,
+    target: &Target,
+    camera: &Camera,
+    (settings, overlays): (Settings, Overlays),
     loaded: &Loaded,
     scene: &mut Scene,
 ) -> Result<(RgbImage, TileResults), GpuError> {
-    let &TileContext { engine, target, camera, overlays } = context;
     let view = camera.lod_view(target.viewport(), &scene.bounds);
     let inputs = affordable(&settings.inputs(view), scene);
     let settings = settings.with(Tessellation { factor: inputs.tessellation.factor, ..settings.tessellation });

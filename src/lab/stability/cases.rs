@@ -77,7 +77,7 @@ pub(crate) const DEFAULT_VIEW: CaseView =
     CaseView { azimuth: 30.0, elevation: 20.0, distance: 0.0, target: [0.0; 3], factor: 5.0 };
 
 /// Every case, in the order of the documentation.
-pub const CASES: [Case; 34] = [
+pub const CASES: [Case; 35] = [
     Case::new(
         "split-normals",
         || Shape::CubeSplit.build(),
@@ -318,6 +318,13 @@ pub const CASES: [Case; 34] = [
         "shared-apex",
         || Shape::Cone.build(),
         "A cone: twelve normals meet at its apex, and a crease runs around its cap.",
+    ),
+    Case::new(
+        "parts",
+        meshes::parts,
+        "A torus whose parts have surfaces and details of their own, so that any two surfaces meet somewhere. An edge \
+         that is computed once has one surface, of those beside it the one that comes first in the list, and the finest \
+         detail. As published each patch follows its own part.",
     ),
 ];
 

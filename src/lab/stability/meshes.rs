@@ -7,8 +7,9 @@ pub(super) use techniques::{dart, displaced, height_seams, inflection, moving};
 use glam::{Vec2, Vec3, vec3};
 
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use geometry::mesh::{Corner, Material, Mesh, Shape};
+use geometry::mesh::{Corner, Material, Mesh, PartRange, PartStyle, Shape};
 use geometry::progress::Progress;
+use geometry::tessellate::Surface;
 
 /// Makes a mesh of separate triangles as a loader does: normals are repaired, and equal corners merged.
 fn mesh(triangles: impl IntoIterator<Item = [InputCorner; 3]>) -> Mesh {
@@ -54,6 +55,18 @@ pub(super) fn fins() -> Mesh {
         [[at(0.0, -1.0), at(0.0, 1.0), at(1.0, 0.7)], [at(0.0, -1.0), at(1.0, 0.7), at(1.0, -0.7)]]
     };
     mesh((0..5).flat_map(fin))
+}
+
+/// A torus in nine parts: one for each surface, whose details differ, and one that takes what is set. Triangles of a part are far from
+/// each other, so that each part meets each other one.
+pub(super) fn parts() -> Mesh {
+    let shape = Shape::Torus.build();
+    let count = Surface::ALL.len() as u32 + 1;
+    let part = |triangle: u32| (triangle / 2 + triangle / 16 + triangle / 128 * 3) % count;
+    let ranges = (0..shape.triangles.len() as u32).map(|own| PartRange { triangles: own..own + 1, part: part(own) });
+    let styles = Surface::ALL.into_iter().zip([0.25, 1.0, 2.0].into_iter().cycle());
+    let styles = styles.map(|(surface, detail)| PartStyle { surface: Some(surface), detail });
+    Mesh { part_ranges: ranges.collect(), part_styles: styles.collect(), ..shape }
 }
 
 /// An icosphere in which every third triangle is wound the other way.

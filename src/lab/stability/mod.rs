@@ -146,51 +146,37 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// The text that follows a number of it.
-    pub const fn unit(self) -> &'static str {
+    /// The text that follows a number of it; the gate that judges it, if there is one; and the largest number that still counts
+    /// as holding.
+    const fn declared(self) -> (&'static str, Option<GateKind>, f64) {
         match self {
-            Self::Points => "edge points that differ",
-            Self::Factors => "edges whose factors differ",
-            Self::Normals => "edge normals that differ",
-            Self::NotFinite => "vertices not finite",
-            Self::Leaks => "px leaking",
-            Self::Folds => "folded triangles",
-            Self::Missing => "px clipped away",
-            Self::Segment => "times the segment asked for",
-            Self::TJunctions => "T-junctions missed",
-            Self::OpenEdges => "open edges left",
-            Self::Jump => "of the diagonal (the largest jump in a fractional step)",
-            Self::Pop => "of the diagonal (the largest pop)",
-        }
-    }
-
-    /// The gate that judges it, if there is one.
-    pub(crate) const fn gate(self) -> Option<GateKind> {
-        match self {
-            Self::Points => Some(GateKind::Cracks),
-            Self::Factors => Some(GateKind::Factors),
-            Self::Leaks => Some(GateKind::Leaks),
-            Self::Folds => Some(GateKind::Folds),
-            Self::Normals
-            | Self::NotFinite
-            | Self::Missing
-            | Self::Segment
-            | Self::TJunctions
-            | Self::OpenEdges
-            | Self::Jump
-            | Self::Pop => None,
-        }
-    }
-
-    /// The largest number that still counts as holding.
-    pub const fn limit(self) -> f64 {
-        match self {
+            Self::Points => ("edge points that differ", Some(GateKind::Cracks), 0.0),
+            Self::Factors => ("edges whose factors differ", Some(GateKind::Factors), 0.0),
+            Self::Normals => ("edge normals that differ", None, 0.0),
+            Self::NotFinite => ("vertices not finite", None, 0.0),
+            Self::Leaks => ("px leaking", Some(GateKind::Leaks), 0.0),
+            Self::Folds => ("folded triangles", Some(GateKind::Folds), 0.0),
+            Self::Missing => ("px clipped away", None, 0.0),
             // Segments are equally long along the curve, but perspective makes the near ones longer on screen.
-            Self::Segment => 4.0,
+            Self::Segment => ("times the segment asked for", None, 4.0),
+            Self::TJunctions => ("T-junctions missed", None, 0.0),
+            Self::OpenEdges => ("open edges left", None, 0.0),
             // Several times what was measured under fractional partitioning, and far below the others.
-            Self::Jump | Self::Pop => 0.004,
-            _ => 0.0,
+            Self::Jump => ("of the diagonal (the largest jump in a fractional step)", None, 0.004),
+            Self::Pop => ("of the diagonal (the largest pop)", None, 0.004),
         }
+    }
+
+    pub const fn unit(self) -> &'static str {
+        self.declared().0
+    }
+
+    pub(crate) const fn gate(self) -> Option<GateKind> {
+        self.declared().1
+    }
+
+    pub const fn limit(self) -> f64 {
+        self.declared().2
     }
 }
 

@@ -116,12 +116,7 @@ impl<'a> Materials<'a> {
         own: MapUvs,
         faces: &mut FaceBuilder,
     ) -> Result<Resolved, ReadError> {
-        let mut sets = [false; 2];
-        for map in material.look.maps.iter().flatten() {
-            if let MapUv::Set(set, _) = map.uv {
-                sets[set] = true;
-            }
-        }
+        let sets = material.look.uv_sets();
         let resolved = Resolved { index: faces.material(material)?, own, sets };
         self.resolved.insert(key, resolved);
         Ok(resolved)

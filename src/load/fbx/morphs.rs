@@ -1,10 +1,12 @@
 //! Reads blend shapes. Each shape is a morph target; a channel may have several, each at a weight of its own (in-betweens).
 
-use ufbx::{BlendChannel, BlendShape, Mesh};
+use ufbx::{BlendChannel, BlendShape, Mesh, Scene};
 
 use super::convert::vec3;
+use super::looks::name;
 use crate::memory_budget::Budget;
 use crate::read_error::ReadError;
+use crate::selection::{MorphWeights, Selection};
 use geometry::casts::to_f32;
 use geometry::groups::in_groups;
 use geometry::mesh::rig::Delta;
@@ -14,10 +16,24 @@ pub(super) fn channels(mesh: &Mesh) -> impl Iterator<Item = &BlendChannel> {
     mesh.blend_deformers.into_iter().flat_map(|deformer| &deformer.channels)
 }
 
+/// Returns the weights of all channels at rest, as the file has them.
+pub(super) fn file_weights(scene: &Scene) -> MorphWeights {
+    scene.blend_channels.into_iter().map(|channel| (channel_name(channel), to_f32(channel.weight))).collect()
+}
+
+/// Returns a channel's name; one without is called by its number.
+fn channel_name(channel: &BlendChannel) -> String {
+    let name = name(&channel.element);
+    if name.is_empty() { format!("channel {}", channel.element.typed_id) } else { name }
+}
+
 /// Returns the weights of a mesh's targets at rest.
-pub(super) fn rest_weights(mesh: &Mesh) -> Vec<f32> {
+pub(super) fn rest_weights(mesh: &Mesh, selected: &Selection) -> Vec<f32> {
     let mut weights = Vec::new();
-    channels(mesh).for_each(|channel| shape_weights(channel, channel.weight, &mut weights));
+    for channel in channels(mesh) {
+        let weight = selected.morph(&channel_name(channel)).map_or(channel.weight, f64::from);
+        shape_weights(channel, weight, &mut weights);
+    }
     weights
 }
 

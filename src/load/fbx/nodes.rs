@@ -1,5 +1,7 @@
 //! Places the nodes of a scene: their global transforms, and which ones the file shows.
 
+use std::collections::HashSet;
+
 use glam::DMat4;
 use ufbx::{Element, Mesh, Node, Scene};
 
@@ -7,6 +9,7 @@ use super::convert::placement;
 use super::morphs;
 use crate::attachment::{LocalTransform, SceneNodes};
 use crate::memory_budget::Budget;
+use crate::model_file::ModelFile;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
 use geometry::mesh::rig::{Clip, Placement};
@@ -26,6 +29,8 @@ pub(super) struct Placed {
     pub hidden: usize,
     /// Which nodes have a mesh, shown or not, on them or below them.
     pub carries_mesh: Vec<bool>,
+    /// The nodes that are levels of detail other than the first.
+    pub is_level: HashSet<usize>,
 }
 
 impl Placed {
@@ -33,7 +38,7 @@ impl Placed {
     ///
     /// # Errors
     /// [`ReadError::TooMany`] if so many nodes have large meshes that reading them would take very long.
-    pub(super) fn new(scene: &Scene, show_hidden: bool, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
+    pub(super) fn new(scene: &Scene, file: &ModelFile, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
         check_instances(scene, budget)?;
         let nodes = &scene.nodes;
         let parents: Vec<Option<usize>> =
@@ -42,7 +47,7 @@ impl Placed {
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
         let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
-        let is_hidden = hidden(scene, show_hidden, &order, &parents, notes);
+        let is_hidden = hidden(scene, file.selected.import.show_hidden, &order, &parents);
         let with_mesh = || (0..nodes.len()).filter(|&node| nodes[node].mesh.is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
@@ -50,16 +55,17 @@ impl Placed {
             notes.push(format!("meshes that the file hides, left out (--show-hidden shows them): {hidden}."));
         }
         let carries = carries_shown(scene, &shown, &order, &parents);
-        let mut carries_mesh: Vec<bool> = nodes.into_iter().map(|node| node.mesh.is_some()).collect();
-        SceneNodes::include_parents(&mut carries_mesh, &order, &parents);
+        let carries_mesh = SceneNodes::carrying(with_mesh(), &order, &parents);
         let morphed = shown.iter().filter_map(|&node| {
-            let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?);
+            let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?, &file.selected);
             (!rest.is_empty()).then_some((node, rest))
         });
         let morphed = morphed.collect();
         let local = rest.into_iter().map(LocalTransform::Placement).collect();
+        let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
+        let is_level = groups.flat_map(|group| group.children.into_iter().skip(1)).map(|level| index(level)).collect();
         let scene = SceneNodes { parents, order, local, carries, morphed, grown: Vec::new() };
-        Ok(Self { global: scene.global(), scene, shown, hidden, carries_mesh })
+        Ok(Self { global: scene.global(), scene, shown, hidden, carries_mesh, is_level })
     }
 
     /// Lets nodes [grow](SceneNodes::grow).
@@ -107,15 +113,9 @@ pub(super) fn is_on(element: &Element, name: &str) -> bool {
     is_set(element, name).unwrap_or(true)
 }
 
-/// Returns which nodes the file hides: those that are switched off, or whose display layer is, those below them that inherit it, and
-/// what is shown only from far away (levels of detail other than the first). Only the latter are if hidden nodes are shown.
-fn hidden(
-    scene: &Scene,
-    show_hidden: bool,
-    order: &[usize],
-    parents: &[Option<usize>],
-    notes: &mut Notes,
-) -> Vec<bool> {
+/// Returns which nodes the file hides: those that are switched off, or whose display layer is, and those below them that inherit
+/// it. None are if hidden nodes are shown.
+fn hidden(scene: &Scene, show_hidden: bool, order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
     let mut is_off: Vec<bool> = scene.nodes.into_iter().map(|node| !is_on(&node.element, "Visibility")).collect();
     let layers = scene.display_layers.into_iter().filter(|layer| !is_on(&layer.element, "Show"));
     layers.flat_map(|layer| &layer.nodes).for_each(|node| is_off[index(node)] = true);
@@ -123,31 +123,17 @@ fn hidden(
         is_off.fill(false);
     }
     let mut hidden = vec![false; order.len()];
-    let mut is_far = vec![false; order.len()];
-    let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
-    groups.flat_map(|group| group.children.into_iter().skip(1)).for_each(|child| is_far[index(child)] = true);
-    if is_far.contains(&true) {
-        notes.push("of levels of detail only the first is shown.".to_owned());
-    }
     for &node in order {
         let (own, above) = (&scene.nodes[node].element, parents[node]);
         let inherits = || is_on(own, "Visibility Inheritance");
-        is_far[node] |= above.is_some_and(|above| is_far[above]);
-        hidden[node] = is_off[node] || is_far[node] || above.is_some_and(|above| hidden[above] && inherits());
+        hidden[node] = is_off[node] || above.is_some_and(|above| hidden[above] && inherits());
     }
     hidden
 }
 
 /// Returns which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
 fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
-    let mut carries = vec![false; order.len()];
-    for &node in shown {
-        carries[node] = true;
-        let skins = scene.nodes[node].mesh.iter().flat_map(|mesh| &mesh.skin_deformers);
-        for bone in skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref()) {
-            carries[index(bone)] = true;
-        }
-    }
-    SceneNodes::include_parents(&mut carries, order, parents);
-    carries
+    let skins = shown.iter().filter_map(|&node| scene.nodes[node].mesh.as_ref()).flat_map(|mesh| &mesh.skin_deformers);
+    let bones = skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref());
+    SceneNodes::carrying(shown.iter().copied().chain(bones.map(|bone| index(bone))), order, parents)
 }

@@ -14,9 +14,10 @@ use crate::import::{Subdivide, Subdivision};
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::model_file::ModelFile;
 use crate::notes::{Notes, counted, counts};
-use crate::parts::DEFAULT_PART;
+use crate::parts::node_path;
 use crate::read_error::{FilePosition, ReadError};
-use crate::rig_builder::{NodeBinder, RigBuilder, UndeformedVertex, VertexFrame};
+use crate::rig_builder::{NodeBinder, PER_DELTA, RigBuilder, UndeformedVertex, VertexFrame};
+use crate::selection::Selection;
 use crate::uri::Files;
 use geometry::casts::{to_f32, to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
@@ -30,8 +31,6 @@ const POLYGONS: usize = 4096;
 
 /// Memory for a corner while the mesh is built, in bytes.
 const PER_CORNER: u64 = 32;
-/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
-const PER_DELTA: u64 = 250;
 
 /// Collects polygons.
 pub(super) struct Surfaces<'s, 'a> {
@@ -103,20 +102,23 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     }
 
     /// Adds the polygons of a node's mesh.
-    pub(super) fn add(&mut self, index: usize, progress: &Progress) -> Result<(), ReadError> {
+    pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<(), ReadError> {
         let node = &self.scene.nodes[index];
         let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
         let skin = Skin::new(node, mesh, global);
-        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), &self.faces.import, self.budget)?;
+        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
         let is_without_normals = vertices.is_without_normals();
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
         });
-        let name = &*node.element.name;
-        self.faces.enter_part(if name.is_empty() { DEFAULT_PART } else { name.as_bytes() })?;
+        let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
+        let named = |node: usize| (&*self.scene.nodes[node].element.name, self.placed.is_level.contains(&node));
+        // The scene's root isn't one of the file's nodes.
+        let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
+        self.faces.enter_part(path.as_bytes(), level)?;
         let mut reader = MeshReader {
             node,
             mesh,

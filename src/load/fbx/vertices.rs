@@ -8,9 +8,9 @@ use super::morphs::{Morphs, rest_weights};
 use super::skin::Skin;
 use super::{looks, smoothing};
 use crate::binding_space::turned;
-use crate::import::Import;
 use crate::memory_budget::Budget;
 use crate::read_error::{FilePosition, ReadError};
+use crate::selection::Selection;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::rig::Delta;
 
@@ -51,18 +51,18 @@ impl<'a> Vertices<'a> {
         mesh: &'a Mesh,
         at: DMat4,
         skin: Option<&'a Skin<'a>>,
-        import: &Import,
+        selected: &Selection,
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let makes_normals = import.makes_normals();
+        let makes_normals = selected.import.makes_normals();
         let is_told = mesh.vertex_normal.exists || makes_normals;
         let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
             mesh,
             skin,
             morphs: Morphs::new(mesh, budget)?,
-            rest: rest_weights(mesh),
+            rest: rest_weights(mesh, selected),
             rigid: at * to_node,
             to_node,
             made,

@@ -5,7 +5,7 @@ use std::cell::{OnceCell, RefCell};
 use std::collections::HashMap;
 use std::ops::Range;
 
-use ::gltf::accessor::sparse::{IndexType, Sparse};
+use ::gltf::accessor::sparse::Sparse;
 use ::gltf::accessor::{Accessor, DataType, Dimensions};
 use ::gltf::{Document, buffer};
 
@@ -384,12 +384,7 @@ impl<'a> Accessors<'a> {
         decode: impl Fn(&[u8]) -> T,
     ) -> Result<(), DataError> {
         let (indices, new) = (sparse.indices(), sparse.values());
-        let index_size = match indices.index_type() {
-            IndexType::U8 => 1,
-            IndexType::U16 => 2,
-            IndexType::U32 => 4,
-        };
-        let places = self.elements(&indices.view(), indices.offset(), index_size, sparse.count())?;
+        let places = self.elements(&indices.view(), indices.offset(), indices.index_type().size(), sparse.count())?;
         let new = self.elements(&new.view(), new.offset(), size, sparse.count())?;
         let count = values.len();
         for (place, bytes) in places.iter().map(unsigned_integer).zip(new.iter()) {

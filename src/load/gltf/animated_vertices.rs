@@ -3,15 +3,13 @@
 use ::gltf::{Primitive, Semantic};
 use glam::DMat4;
 
-use super::rig_builder::{MAX_BOUND, NodeBinder, UndeformedVertex, VertexFrame};
+use super::rig_builder::{MAX_BOUND, NodeBinder, PER_DELTA, UndeformedVertex, VertexFrame};
 use super::vertices::Vertices;
 use crate::memory_budget::Budget;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::rig::Delta;
 
-/// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
-const PER_DELTA: u64 = 250;
-/// The same for the displacement of a tangent.
+/// Memory for a displacement of a tangent, and for finding equal ones, in bytes.
 const PER_TANGENT: u64 = 120;
 
 pub(super) struct AnimatedVertices<'a, 'b, 'c> {

@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use glam::DMat4;
 use serde_json::{Map, Value};
 
-use super::carried::{Carriable, Carried, Carrier, Kind};
+use super::carried::{Carriable, Carried, Carrier};
 use super::lenient::{Members, take_list};
 use super::notes::Notes;
 use geometry::mesh::{FileCamera, Projection};
@@ -33,14 +33,12 @@ pub(super) fn take(root: &mut Map<String, Value>, notes: &RefCell<Notes>) -> Car
 
 impl Carriable for CameraSource {
     type Placed = FileCamera;
-    const KIND: Kind = Kind {
-        list: "cameras",
-        extension: None,
-        member: "camera",
-        most: MOST_CAMERAS,
-        more: ["cameras, of which the first", "are listed"],
-        unplaced: "a camera without a finite place and direction",
-    };
+    const LIST: &'static str = "cameras";
+    const EXTENSION: Option<&'static str> = None;
+    const MEMBER: &'static str = "camera";
+    const MOST: usize = MOST_CAMERAS;
+    const MORE: [&'static str; 2] = ["cameras, of which the first", "are listed"];
+    const UNPLACED: &'static str = "a camera without a finite place and direction";
 
     fn read(members: &Members) -> Option<Self> {
         let name = members.text("name").map(str::to_owned);

@@ -27,11 +27,21 @@ pub(super) struct Carrier {
     pub index: usize,
 }
 
-/// A light or a camera.
+/// A light or a camera: where a document has them, and what is said of them.
 pub(super) trait Carriable: Sized {
     /// What it is where its node puts it.
     type Placed;
-    const KIND: Kind;
+    /// The document's list of them, as a JSON pointer without its first slash.
+    const LIST: &'static str;
+    /// The extension of nodes, if it isn't the nodes themselves, that has the index of one.
+    const EXTENSION: Option<&'static str>;
+    /// The member that is the index.
+    const MEMBER: &'static str;
+    /// How many are shown, and what is said before and after that number if there are more.
+    const MOST: usize;
+    const MORE: [&'static str; 2];
+    /// What is said of a node that has one which can't be placed.
+    const UNPLACED: &'static str;
 
     fn read(members: &Members) -> Option<Self>;
 
@@ -39,36 +49,20 @@ pub(super) trait Carriable: Sized {
     fn at(&self, carrier: &Carrier, global: &DMat4) -> Option<Self::Placed>;
 }
 
-/// Where a document has lights or cameras, and what is said of them.
-pub(super) struct Kind {
-    /// The document's list of them, as a JSON pointer without its first slash.
-    pub list: &'static str,
-    /// The extension of nodes, if it isn't the nodes themselves, that has the index of one.
-    pub extension: Option<&'static str>,
-    /// The member that is the index.
-    pub member: &'static str,
-    /// How many are shown, and what is said before and after that number if there are more.
-    pub most: usize,
-    pub more: [&'static str; 2],
-    /// What is said of a node that has one which can't be placed.
-    pub unplaced: &'static str,
-}
-
 impl<T: Carriable> Carried<T> {
     /// Reads a list, and takes out of nodes which of its elements they have.
     pub(super) fn take(root: &mut Map<String, Value>, list: &[Value], notes: &RefCell<Notes>) -> Self {
-        let kind = T::KIND;
-        let element = |(i, value)| T::read(&Members::new(value, format!("/{}/{i}", kind.list), notes)?);
+        let element = |(i, value)| T::read(&Members::new(value, format!("/{}/{i}", T::LIST), notes)?);
         let list: Vec<_> = list.iter().enumerate().map(element).collect();
         let mut nodes = Vec::new();
         for (node, object) in objects(root, "nodes") {
-            let (own, pointer) = match kind.extension {
+            let (own, pointer) = match T::EXTENSION {
                 Some(name) => (take_extension(object, name), format!("/nodes/{node}/extensions/{name}")),
-                None => (object.remove(kind.member).map(|own| json!({ kind.member: own })), format!("/nodes/{node}")),
+                None => (object.remove(T::MEMBER).map(|own| json!({ (T::MEMBER): own })), format!("/nodes/{node}")),
             };
             let Some(own) = own else { continue };
             let members = Members::new(&own, pointer, notes);
-            let index = members.and_then(|members| members.index(kind.member, kind.list, list.len()));
+            let index = members.and_then(|members| members.index(T::MEMBER, T::LIST, list.len()));
             let name = || object.get("name").and_then(Value::as_str).map(str::to_owned);
             nodes.extend(index.map(|index| Carrier { node, name: name(), index }));
         }
@@ -82,22 +76,21 @@ impl<T: Carriable> Carried<T> {
 
     /// Those of the nodes that the scene shows, where they are at rest, each with its node.
     pub(super) fn shown(&self, placed: &Placed, notes: &mut Notes) -> Vec<(usize, T::Placed)> {
-        let kind = T::KIND;
         if self.nodes.is_empty() {
             return Vec::new();
         }
         let is_shown = placed.is_shown();
         let shown = self.nodes.iter().filter(|own| is_shown.get(own.node) == Some(&true));
         let all: Vec<_> = shown.filter_map(|own| Some((own, self.list[own.index].as_ref()?))).collect();
-        if all.len() > kind.most {
-            let [before, after] = kind.more;
-            notes.push(format!("The scene has {} {before} {} {after}.", all.len(), kind.most));
+        if all.len() > T::MOST {
+            let [before, after] = T::MORE;
+            notes.push(format!("The scene has {} {before} {} {after}.", all.len(), T::MOST));
         }
         let mut found = Vec::new();
-        for (own, thing) in all.into_iter().take(kind.most) {
+        for (own, thing) in all.into_iter().take(T::MOST) {
             match placed.global.get(own.node).and_then(|global| thing.at(own, global)) {
                 Some(thing) => found.push((own.node, thing)),
-                None => notes.push(format!("/nodes/{} has {}; it is left out.", own.node, kind.unplaced)),
+                None => notes.push(format!("/nodes/{} has {}; it is left out.", own.node, T::UNPLACED)),
             }
         }
         found

@@ -17,9 +17,11 @@ use super::node_parts::{self, NodeParts};
 use super::notes::Notes;
 use super::reach::Reach;
 use super::repair::Settled;
-use super::scenes::Scenes;
 use super::schema_check::Faults;
-use super::{GltfError, extension_table, extensions, glb, json, repair, schema, schema_check, variants};
+use super::{
+    GltfError, extension_table, extensions, glb, json, morph_targets, repair, scenes, schema, schema_check, variants,
+};
+use crate::loaded_mesh::Contents;
 use crate::memory_budget::Budget;
 use crate::selection::Selection;
 use geometry::mesh::{Borrowed, Light};
@@ -36,9 +38,8 @@ pub(super) struct Parsed {
     pub lists: MaterialLists,
     pub lights: Carried<Light>,
     pub cameras: Carried<CameraSource>,
-    /// The names of the document's material variants.
-    pub variants: Vec<String>,
-    pub scenes: Scenes,
+    /// What the document offers, still without its parts.
+    pub contents: Contents,
     pub parts: NodeParts,
     /// What the scene uses.
     pub reach: Reach,
@@ -67,7 +68,9 @@ pub(super) fn parse(
     // They are read separately, so that an error in one doesn't keep the model from loading.
     let animations = take_list(root, "animations", "there are no animations", &notes);
     let variants = variants::choose(root, selected.variant, notes.get_mut());
-    let scenes = Scenes::choose(root, selected.scene, notes.get_mut());
+    let (scenes, scene) = scenes::choose(root, selected.scene, notes.get_mut());
+    let morph_targets = morph_targets::choose(root, &selected);
+    let contents = Contents { variants, scenes, scene, morph_targets, parts: Vec::new() };
     let lists = MaterialLists::take(root, &notes);
     let lights = lights::take(root, &notes);
     let cameras = cameras::take(root, &notes);
@@ -87,8 +90,9 @@ pub(super) fn parse(
     if !requires_draco {
         extensions.leave_out_packed(&root);
     }
+    let levels = node_parts::place_levels(&mut root, &extensions.levels);
     let mut reach = Reach::new(&root, &faults, hiding);
-    let parts = node_parts::take(&mut root, &extensions.instances, &reach, &selected, budget)?;
+    let parts = node_parts::take(&mut root, &extensions.instances, &reach, &levels, &selected, budget)?;
     if parts.is_cut {
         reach = Reach::new(&root, &faults, reach.hiding);
     }
@@ -106,8 +110,7 @@ pub(super) fn parse(
         lists,
         lights,
         cameras,
-        variants,
-        scenes,
+        contents,
         parts,
         reach,
         faults,

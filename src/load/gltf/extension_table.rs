@@ -7,7 +7,7 @@ use serde_json::{Map, Value};
 
 use super::GltfError;
 use super::notes::Notes;
-use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
+use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, LOD, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
 use crate::uri::shown;
 
 /// How an extension changes a model.
@@ -31,62 +31,30 @@ const NAMED: usize = 5;
 
 const EXPORT: &str = "export the model without it";
 
-/// The extensions whose effect is known, besides those whose [names](concerns_looks) tell it.
-const KNOWN: [(&str, Effect); 51] = [
+/// The extensions that have an effect and aren't read.
+const KNOWN: [(&str, Effect); 9] = [
     ("AGI_articulations", shape("places parts by articulations", EXPORT)),
-    ("AGI_stk_metadata", Effect::None),
-    ("CESIUM_primitive_outline", Effect::None),
-    ("EXT_instance_features", Effect::None),
-    ("EXT_mesh_features", Effect::None),
-    (INSTANCING, Effect::None),
-    ("EXT_mesh_manifold", Effect::None),
-    ("EXT_mesh_primitive_edge_visibility", Effect::None),
-    (MESHOPT, Effect::None),
     ("EXT_primitive_voxels", shape("makes voxels of its primitives", "export the voxels as triangles")),
-    ("EXT_structural_metadata", Effect::None),
-    ("FB_geometry_metadata", Effect::None),
-    // It says which triangles are one polygon.
-    ("FB_ngon_encoding", Effect::None),
-    ("GODOT_single_root", Effect::None),
-    ("GRIFFEL_bim_data", Effect::None),
-    ("KHR_animation_pointer", Effect::None),
-    ("KHR_audio_emitter", Effect::None),
-    ("KHR_collision_shapes", Effect::None),
-    (DRACO, Effect::None),
     ("KHR_gaussian_splatting", shape("makes splats of points", "convert the splats to triangles")),
-    ("KHR_implicit_shapes", Effect::None),
-    ("KHR_interactivity", Effect::None),
-    ("KHR_mesh_quantization", Effect::None),
-    (KHR_MESHOPT, Effect::None),
-    ("KHR_node_hoverability", Effect::None),
-    ("KHR_node_selectability", Effect::None),
-    (VISIBILITY, Effect::None),
-    ("KHR_physics_rigid_bodies", Effect::None),
     ("KHR_technique_webgl", SHADERS),
     ("KHR_techniques_webgl", SHADERS),
-    ("KHR_xmp", Effect::None),
-    ("KHR_xmp_json_ld", Effect::None),
-    ("MAXAR_image_ortho", Effect::None),
     ("MAXAR_mesh_variants", shape("has several variants of its meshes, of which the first is shown", EXPORT)),
-    ("MOZ_hubs_components", Effect::None),
     ("MPEG_accessor_timed", shape("changes vertices over time", EXPORT)),
-    ("MPEG_audio_spatial", Effect::None),
-    ("MPEG_media", Effect::None),
     ("MPEG_mesh_linking", shape("moves meshes with others", EXPORT)),
     ("MPEG_scene_dynamic", shape("changes the scene over time", EXPORT)),
-    // The node that has it is the finest level.
-    ("MSFT_lod", Effect::None),
-    ("MSFT_packing_normalRoughnessMetallic", Effect::None),
-    ("MSFT_packing_occlusionRoughnessMetallic", Effect::None),
-    ("OMI_physics_body", Effect::None),
-    ("OMI_physics_shape", Effect::None),
-    ("VRM", Effect::None),
-    ("VRMC_node_constraint", Effect::None),
-    ("VRMC_springBone", Effect::None),
-    ("VRMC_springBone_extended_collider", Effect::None),
-    ("VRMC_vrm", Effect::None),
-    ("VRMC_vrm_animation", Effect::None),
 ];
+
+/// The extensions that are read, and those that have no effect, besides those whose [names](concerns_looks) tell it. FB_ngon_encoding
+/// says which triangles are one polygon.
+const READ: [&str; 6] = [INSTANCING, MESHOPT, DRACO, KHR_MESHOPT, LOD, VISIBILITY];
+const WITHOUT_EFFECT: &str = "\
+    AGI_stk_metadata CESIUM_primitive_outline EXT_instance_features EXT_mesh_features EXT_mesh_manifold \
+    EXT_mesh_primitive_edge_visibility EXT_structural_metadata FB_geometry_metadata FB_ngon_encoding GODOT_single_root \
+    GRIFFEL_bim_data KHR_animation_pointer KHR_audio_emitter KHR_collision_shapes KHR_implicit_shapes KHR_interactivity \
+    KHR_mesh_quantization KHR_node_hoverability KHR_node_selectability KHR_physics_rigid_bodies KHR_xmp KHR_xmp_json_ld \
+    MAXAR_image_ortho MOZ_hubs_components MPEG_audio_spatial MPEG_media MSFT_packing_normalRoughnessMetallic \
+    MSFT_packing_occlusionRoughnessMetallic OMI_physics_body OMI_physics_shape VRM VRMC_node_constraint VRMC_springBone \
+    VRMC_springBone_extended_collider VRMC_vrm VRMC_vrm_animation";
 
 const SHADERS: Effect = Effect::Looks("draws with shaders of its own");
 
@@ -103,7 +71,7 @@ fn concerns_looks(name: &str) -> bool {
 
 /// Returns an extension's effect; none if it isn't known.
 fn effect(name: &str) -> Option<Effect> {
-    if concerns_looks(name) {
+    if concerns_looks(name) || READ.contains(&name) || WITHOUT_EFFECT.split(' ').any(|known| known == name) {
         return Some(Effect::None);
     }
     KNOWN.iter().find(|(known, _)| *known == name).map(|(_, effect)| *effect)
@@ -180,6 +148,9 @@ mod tests {
     fn names_are_sorted_and_stand_once() {
         assert!(KNOWN.windows(2).all(|pair| pair[0].0 < pair[1].0));
         assert!(KNOWN.iter().all(|(name, _)| !concerns_looks(name)));
+        let harmless: Vec<_> = WITHOUT_EFFECT.split(' ').collect();
+        assert!(harmless.windows(2).all(|pair| pair[0] < pair[1]), "{harmless:?}");
+        assert!(harmless.iter().all(|name| !concerns_looks(name) && !KNOWN.iter().any(|(known, _)| known == name)));
     }
 
     #[test]

@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 
 use super::json::list;
 use super::reach::has_data;
-use super::schema::{DRACO, INSTANCING, KHR_MESHOPT, MESHOPT, VISIBILITY, is_attribute};
+use super::schema::{DRACO, INSTANCING, KHR_MESHOPT, LOD, MESHOPT, VISIBILITY, is_attribute};
 
 /// The data of a document's extensions.
 #[derive(Debug, Default)]
@@ -22,6 +22,8 @@ pub(crate) struct Extensions {
     pub packed: Vec<Vec<Option<DracoExtension>>>,
     /// By node, the instances of its mesh.
     pub instances: HashMap<usize, InstancingExtension>,
+    /// The nodes that have further levels of detail, with the nodes that are these.
+    pub levels: Vec<(usize, Vec<usize>)>,
 }
 
 /// `EXT_mesh_gpu_instancing` of a node: the accessors of its instances' transforms.
@@ -95,11 +97,13 @@ impl Extensions {
             mesh.get("primitives").and_then(Value::as_array).into_iter().flatten().map(packed).collect()
         };
         let instances = |(i, node): (usize, &Value)| Some((i, read(extension(node, INSTANCING)?.get("attributes")?)?));
+        let levels = |(i, node): (usize, &Value)| Some((i, read(extension(node, LOD)?.get("ids")?)?));
         Self {
             compressed: list(root, "bufferViews").iter().map(compressed).collect(),
             fallback: list(root, "buffers").iter().map(|buffer| fallback(buffer).unwrap_or(false)).collect(),
             packed: list(root, "meshes").iter().map(primitives).collect(),
             instances: list(root, "nodes").iter().enumerate().filter_map(instances).collect(),
+            levels: list(root, "nodes").iter().enumerate().filter_map(levels).collect(),
         }
     }
 

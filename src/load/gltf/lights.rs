@@ -8,7 +8,7 @@ use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
 use glam::{DMat4, Vec3};
 use serde_json::{Map, Value};
 
-use super::carried::{Carriable, Carried, Carrier, Kind, take_extension};
+use super::carried::{Carriable, Carried, Carrier, take_extension};
 use super::lenient::Members;
 use super::notes::Notes;
 use geometry::mesh::{Light, LightKind, MOST_LIGHTS};
@@ -25,7 +25,7 @@ pub(super) fn take(root: &mut Map<String, Value>, notes: &RefCell<Notes>) -> Car
     let lights = match take_extension(root, EXTENSION).map(|mut own| own.get_mut("lights").map(Value::take)) {
         Some(Some(Value::Array(lights))) => lights,
         Some(_) => {
-            notes.borrow_mut().push(format!("/{} isn't a list; there are no lights.", Light::KIND.list));
+            notes.borrow_mut().push(format!("/{} isn't a list; there are no lights.", Light::LIST));
             Vec::new()
         }
         None => Vec::new(),
@@ -35,14 +35,12 @@ pub(super) fn take(root: &mut Map<String, Value>, notes: &RefCell<Notes>) -> Car
 
 impl Carriable for Light {
     type Placed = Self;
-    const KIND: Kind = Kind {
-        list: "extensions/KHR_lights_punctual/lights",
-        extension: Some(EXTENSION),
-        member: "light",
-        most: MOST_LIGHTS,
-        more: ["lights, of which only the first", "shine"],
-        unplaced: "a light at no finite place",
-    };
+    const LIST: &'static str = "extensions/KHR_lights_punctual/lights";
+    const EXTENSION: Option<&'static str> = Some(EXTENSION);
+    const MEMBER: &'static str = "light";
+    const MOST: usize = MOST_LIGHTS;
+    const MORE: [&'static str; 2] = ["lights, of which only the first", "shine"];
+    const UNPLACED: &'static str = "a light at no finite place";
 
     fn read(members: &Members) -> Option<Self> {
         let color = Vec3::from(members.numbers("color", [1.0; 3], [0.0, 1.0]));

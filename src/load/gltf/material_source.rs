@@ -1,10 +1,11 @@
 //! Reads what a document says about a material, without its images.
 //!
-//! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_clearcoat, KHR_materials_emissive_strength,
-//! KHR_materials_ior, KHR_materials_sheen, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
-//! KHR_materials_pbrSpecularGlossiness; the draft KHR_materials_displacement, <https://github.com/KhronosGroup/glTF/issues/948>.
+//! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_emissive_strength, KHR_materials_unlit and
+//! KHR_materials_pbrSpecularGlossiness, and those of [`EXTENSIONS`]; the draft KHR_materials_displacement,
+//! <https://github.com/KhronosGroup/glTF/issues/948>.
 
 use super::lenient::Members;
+use super::material_members::{self, ANY, EXTENSIONS, MAPS, METALLIC_ROUGHNESS, Member, POSITIVE, UNIT};
 use super::schema::TRANSFORM;
 use super::uv_transform::UvTransform;
 use geometry::mesh::{Alpha, HeightAmount, Look, Slot};
@@ -44,23 +45,17 @@ pub(super) struct Uvs {
     pub transform: Option<UvTransform>,
 }
 
-const TRANSMISSION: &str = "KHR_materials_transmission";
-const DISPLACEMENT: &str = "KHR_materials_displacement";
-
 /// Extensions that aren't drawn, and the number of each that is 0 where it changes nothing.
-const STRENGTHS: [(&str, &str); 5] = [
-    ("KHR_materials_anisotropy", "anisotropyStrength"),
+const STRENGTHS: [(&str, &str); 3] = [
     ("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor"),
     ("KHR_materials_dispersion", "dispersion"),
     ("KHR_materials_iridescence", "iridescenceFactor"),
-    ("KHR_materials_volume", "thicknessFactor"),
 ];
 
-/// From 0 to 1.
-const UNIT: [f32; 2] = [0.0, 1.0];
-/// From 0 to what any number of a material may be at most: products of two are finite.
-const POSITIVE: [f32; 2] = [0.0, 1e18];
-const ANY: [f32; 2] = [-1e18, 1e18];
+const UNLIT: &str = "KHR_materials_unlit";
+const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
+const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+const DISPLACEMENT: &str = "KHR_materials_displacement";
 
 impl MaterialSource {
     /// Reads a material, or returns that of primitives without one. `textures` is how many the document has.
@@ -73,21 +68,11 @@ impl MaterialSource {
         source.double_sided = members.flag("doubleSided");
         if let Some(rough) = members.inside("pbrMetallicRoughness") {
             source.base_color = rough.numbers("baseColorFactor", [1.0; 4], UNIT);
-            source.look.metallic = rough.number("metallicFactor", 1.0, UNIT);
-            source.look.roughness = rough.number("roughnessFactor", 1.0, UNIT);
             source.base_map = MapSource::new(&rough, "baseColorTexture", textures);
-            source.map(Slot::MetallicRoughness, MapSource::new(&rough, "metallicRoughnessTexture", textures));
-        }
-        if let Some(normal) = members.inside("normalTexture") {
-            source.look.normal_scale = normal.number("scale", 1.0, ANY);
-            source.map(Slot::Normal, MapSource::inside(&normal, textures));
-        }
-        if let Some(occlusion) = members.inside("occlusionTexture") {
-            source.look.occlusion_strength = occlusion.number("strength", 1.0, UNIT);
-            source.map(Slot::Occlusion, MapSource::inside(&occlusion, textures));
+            source.read(&rough, METALLIC_ROUGHNESS, |_| true, textures);
         }
         source.look.emissive = members.numbers("emissiveFactor", [0.0; 3], UNIT);
-        source.map(Slot::Emissive, MapSource::new(members, "emissiveTexture", textures));
+        source.read(members, MAPS, |_| true, textures);
         let cutoff = members.number("alphaCutoff", 0.5, POSITIVE);
         source.look.alpha = match members.word("alphaMode", &["OPAQUE", "MASK", "BLEND"]) {
             "MASK" => Alpha::Mask(cutoff),
@@ -104,40 +89,51 @@ impl MaterialSource {
         self.maps[slot as usize] = map;
     }
 
-    /// Applies extensions.
-    fn extend(&mut self, extensions: &Members, textures: usize) {
-        let look = &mut self.look;
-        if let Some(emissive) = extensions.inside("KHR_materials_emissive_strength") {
-            let strength = emissive.number("emissiveStrength", 1.0, POSITIVE);
-            look.emissive = look.emissive.map(|factor| factor * strength);
-        }
-        if let Some(ior) = extensions.inside("KHR_materials_ior") {
-            look.ior = index_of_refraction(&ior);
-        }
-        if let Some(specular) = extensions.inside("KHR_materials_specular") {
-            look.specular = specular.number("specularFactor", 1.0, UNIT);
-            look.specular_color = specular.numbers("specularColorFactor", [1.0; 3], POSITIVE);
-            self.map(Slot::Specular, MapSource::new(&specular, "specularTexture", textures));
-            self.map(Slot::SpecularColor, MapSource::new(&specular, "specularColorTexture", textures));
-        }
-        if let Some(coat) = extensions.inside("KHR_materials_clearcoat") {
-            self.coat(&coat, textures);
-        }
-        self.look.unlit = extensions.has("KHR_materials_unlit");
-        if let Some(transmission) = extensions.inside(TRANSMISSION) {
-            self.look.transmission = transmission.number("transmissionFactor", 0.0, UNIT);
-            self.map(Slot::Transmission, MapSource::new(&transmission, "transmissionTexture", textures));
-        }
-        if let Some(sheen) = extensions.inside("KHR_materials_sheen") {
-            self.look.sheen_color = sheen.numbers("sheenColorFactor", [0.0; 3], UNIT);
-            self.look.sheen_roughness = sheen.number("sheenRoughnessFactor", 0.0, UNIT);
-            // Images of a sheen that isn't there needn't be read.
-            if self.look.has_sheen() {
-                self.map(Slot::SheenColor, MapSource::new(&sheen, "sheenColorTexture", textures));
-                self.map(Slot::SheenRoughness, MapSource::new(&sheen, "sheenRoughnessTexture", textures));
+    /// Reads members of an object: maps only where they matter to the look that was read so far.
+    fn read(
+        &mut self,
+        object: &Members,
+        members: &material_members::Members,
+        matters: fn(&Look) -> bool,
+        textures: usize,
+    ) {
+        for (name, member) in members {
+            match member {
+                Member::Number(number, range) => {
+                    let own = number(&mut self.look);
+                    *own = object.number(name, *own, *range);
+                }
+                Member::Color(color, range) => {
+                    let own = color(&mut self.look);
+                    *own = object.numbers(name, *own, *range);
+                }
+                Member::Map(_) | Member::ScaledMap(..) if !matters(&self.look) => {}
+                Member::Map(slot) => self.map(*slot, MapSource::new(object, name, textures)),
+                Member::ScaledMap(slot, factor, number, range) => {
+                    if let Some(info) = object.inside(name) {
+                        let own = number(&mut self.look);
+                        *own = info.number(factor, *own, *range);
+                        self.map(*slot, MapSource::inside(&info, textures));
+                    }
+                }
             }
         }
-        if let Some(glossy) = extensions.inside("KHR_materials_pbrSpecularGlossiness") {
+    }
+
+    /// Applies extensions.
+    fn extend(&mut self, extensions: &Members, textures: usize) {
+        if let Some(emissive) = extensions.inside(EMISSIVE_STRENGTH) {
+            let strength = emissive.number("emissiveStrength", 1.0, POSITIVE);
+            self.look.emissive = self.look.emissive.map(|factor| factor * strength);
+        }
+        self.look.unlit = extensions.has(UNLIT);
+        for (name, matters, members) in EXTENSIONS {
+            if let Some(object) = extensions.inside(name) {
+                self.read(&object, members, matters, textures);
+                self.correct(&object);
+            }
+        }
+        if let Some(glossy) = extensions.inside(GLOSSINESS) {
             self.glossy(&glossy, textures);
         }
         if let Some(displacement) = extensions.inside(DISPLACEMENT) {
@@ -146,17 +142,17 @@ impl MaterialSource {
         self.note_undrawn(extensions);
     }
 
-    fn coat(&mut self, coat: &Members, textures: usize) {
-        self.look.clearcoat = coat.number("clearcoatFactor", 0.0, UNIT);
-        self.look.clearcoat_roughness = coat.number("clearcoatRoughnessFactor", 0.0, UNIT);
-        // Images of a coat that isn't there needn't be read.
-        if self.look.clearcoat > 0.0 {
-            self.map(Slot::Clearcoat, MapSource::new(coat, "clearcoatTexture", textures));
-            self.map(Slot::ClearcoatRoughness, MapSource::new(coat, "clearcoatRoughnessTexture", textures));
-            if let Some(normal) = coat.inside("clearcoatNormalTexture") {
-                self.look.clearcoat_normal_scale = normal.number("scale", 1.0, ANY);
-                self.map(Slot::ClearcoatNormal, MapSource::inside(&normal, textures));
-            }
+    /// Replaces numbers that mean nothing of the extension that was read last.
+    fn correct(&mut self, extension: &Members) {
+        // 0 stands for an infinite index.
+        let Look { ior, attenuation_distance, .. } = &mut self.look;
+        if *ior > 0.0 && *ior < 1.0 {
+            extension.say(&format!("has the index of refraction {ior}, below that of a vacuum; 1 is used"));
+            *ior = 1.0;
+        }
+        if *attenuation_distance == 0.0 {
+            extension.say("has the attenuation distance 0, after which there is no light left; nothing is absorbed");
+            *attenuation_distance = f32::INFINITY;
         }
     }
 
@@ -176,28 +172,27 @@ impl MaterialSource {
         look.specular_color = glossy.numbers("specularFactor", [1.0; 3], UNIT);
     }
 
-    /// Notes extensions that aren't drawn, where they would change something.
+    /// Notes extensions that aren't drawn, where they would change something, and other parts of the material that aren't.
     fn note_undrawn(&mut self, extensions: &Members) {
-        for name in extensions.names() {
-            match name {
-                "KHR_materials_clearcoat" | "KHR_materials_specular" | "KHR_materials_pbrSpecularGlossiness" => {}
-                "KHR_materials_emissive_strength" | "KHR_materials_ior" => {}
-                "KHR_materials_sheen" | "KHR_materials_unlit" | DISPLACEMENT => {}
-                TRANSMISSION => {
-                    // Metal lets no light through.
-                    let is_metal = self.look.metallic >= 1.0 && self.maps[Slot::MetallicRoughness as usize].is_none();
-                    if self.look.transmits() && self.look.roughness > 0.0 && !is_metal {
-                        self.undrawn.push(format!("blur of what is behind rough surfaces ({TRANSMISSION})"));
-                    }
-                }
-                _ => {
-                    let strength = STRENGTHS.iter().find(|(extension, _)| *extension == name);
-                    let strength = strength.and_then(|(_, number)| Some((number, extensions.inside(name)?)));
-                    if strength.is_none_or(|(number, members)| members.number(number, 0.0, POSITIVE) > 0.0) {
-                        self.undrawn.push(crate::uri::shown(name));
-                    }
-                }
+        let is_drawn = |name| {
+            [UNLIT, EMISSIVE_STRENGTH, GLOSSINESS, DISPLACEMENT].contains(&name)
+                || EXTENSIONS.iter().any(|(own, ..)| *own == name)
+        };
+        for name in extensions.names().filter(|name| !is_drawn(name)) {
+            let strength = STRENGTHS.iter().find(|(extension, _)| *extension == name);
+            let strength = strength.and_then(|(_, number)| Some((number, extensions.inside(name)?)));
+            if strength.is_none_or(|(number, members)| members.number(number, 0.0, POSITIVE) > 0.0) {
+                self.undrawn.push(crate::uri::shown(name));
             }
+        }
+        // Metal lets no light through.
+        let is_metal = self.look.metallic >= 1.0 && self.maps[Slot::MetallicRoughness as usize].is_none();
+        if self.look.transmits() && !self.look.refracts() && self.look.roughness > 0.0 && !is_metal {
+            self.undrawn.push("blur of what is behind rough thin surfaces (KHR_materials_transmission)".to_owned());
+        }
+        let most_maps = Look::MOST_IMAGES - usize::from(self.look.refracts());
+        if self.maps.iter().flatten().count() > most_maps {
+            self.undrawn.push(format!("a map beyond the first {most_maps}"));
         }
     }
 
@@ -210,7 +205,8 @@ impl MaterialSource {
     /// Returns whether corners need more than position, normal and texture coordinates.
     pub(super) fn needs_details(&self) -> bool {
         let others = self.maps.iter().flatten().any(|map| map.uvs != self.own_uvs());
-        others || Look::TANGENT_SLOTS.iter().any(|slot| self.maps[*slot as usize].is_some())
+        let is_mapped = Look::TANGENT_SLOTS.iter().any(|slot| self.maps[*slot as usize].is_some());
+        others || is_mapped || self.look.has_anisotropy()
     }
 }
 
@@ -223,16 +219,6 @@ fn height(displacement: &Members, textures: usize) -> Option<(MapSource, Option<
     let map = MapSource::new(displacement, texture, textures)?;
     let (factor, offset) = (displacement.number(factor, 1.0, ANY), displacement.number(offset, 0.0, ANY));
     Some((map, HeightAmount::from_factor(factor, offset)))
-}
-
-/// Returns an index of refraction: from 1 on, or 0, which stands for an infinite one.
-fn index_of_refraction(members: &Members) -> f32 {
-    let ior = members.number("ior", 1.5, POSITIVE);
-    if ior > 0.0 && ior < 1.0 {
-        members.say(&format!("has the index of refraction {ior}, below that of a vacuum; 1 is used"));
-        return 1.0;
-    }
-    ior
 }
 
 impl MapSource {

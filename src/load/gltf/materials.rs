@@ -33,6 +33,8 @@ const NAMED: usize = 3;
 #[derive(Clone, Copy, Default)]
 pub(super) struct Resolved {
     pub index: usize,
+    /// The scale of the node that it was made for; NaN once a warning said that other nodes have another.
+    scale: f32,
     pub uvs: Uvs,
     pub needs: DetailNeeds,
 }
@@ -196,17 +198,26 @@ impl<'a> Materials<'a> {
         self.images.insert(image, ReadImage { texture, scaled });
     }
 
-    /// Finds a material of what is shown, or adds it to the builder. A texture that is missing or broken causes a warning.
-    pub(super) fn resolve(&mut self, material: &::gltf::Material, builder: &mut MeshBuilder) -> Resolved {
+    /// Finds a material of what is shown, or adds it to the builder. `scale` is that of the node which shows it. A texture that
+    /// is missing or broken causes a warning.
+    pub(super) fn resolve(&mut self, material: &::gltf::Material, scale: f32, builder: &mut MeshBuilder) -> Resolved {
         let key = material.index();
-        if let Some(&resolved) = self.resolved.get(&key) {
-            return resolved;
+        if let Some(resolved) = self.resolved.get_mut(&key) {
+            if (scale / resolved.scale - 1.0).abs() > 0.01 && self.sources[&key].look.refracts() {
+                resolved.scale = f32::NAN;
+                let name = name(&self.sources[&key], key);
+                let said = "is that in the first node which shows it, and other nodes have another scale";
+                self.notes.get_mut().push(format!("the thickness of material \"{name}\" {said}."));
+            }
+            return *resolved;
         }
         let Some(source) = self.sources.get(&key).cloned() else { return Resolved::default() };
         let name = name(&source, key);
         let filter = MipFilter::from_base_color(source.look.alpha);
         let base = source.base_map.and_then(|map| self.texture(map.texture, filter, "texture", &name));
         let mut look = source.look.clone();
+        // A thickness is in the mesh's space, the distance of its attenuation in the scene's (KHR_materials_volume).
+        look.thickness *= scale;
         for slot in Slot::ALL {
             let map = source.maps[slot as usize];
             look.maps[slot as usize] = map.and_then(|map| self.map(map, slot, source.own_uvs(), &name));
@@ -217,11 +228,12 @@ impl<'a> Materials<'a> {
         let height = self.height(&source, &name);
         let (texture, sampling) =
             base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
-        let (uvs, needs) = (source.own_uvs(), DetailNeeds::new(&look));
+        let (uvs, tangents) = (source.own_uvs(), look.tangent_uv().is_some());
+        let needs = DetailNeeds { sets: look.uv_sets(), tangents };
         let MaterialSource { base_color, double_sided, .. } = source;
         let triangles = 0..0;
         let made = Material { name, base_color, texture, sampling, double_sided, look, height, triangles };
-        let resolved = Resolved { index: builder.material(made), uvs, needs };
+        let resolved = Resolved { index: builder.material(made), scale, uvs, needs };
         self.resolved.insert(key, resolved);
         resolved
     }
@@ -333,18 +345,6 @@ impl<'a> Materials<'a> {
             });
         }
         notes
-    }
-}
-
-impl DetailNeeds {
-    fn new(look: &Look) -> Self {
-        let mut needs = Self { tangents: look.tangent_map().is_some(), ..Self::default() };
-        for map in look.maps.iter().flatten() {
-            if let MapUv::Set(set, _) = map.uv {
-                needs.sets[set] = true;
-            }
-        }
-        needs
     }
 }
 

@@ -20,13 +20,13 @@ use crate::import::Import;
 use geometry::casts::to_u32;
 use geometry::cores::in_ranges;
 use geometry::mesh::detail_table::DetailTable;
-use geometry::mesh::{CornerDetail, MemoryRefused, Repairs};
+use geometry::mesh::{MemoryRefused, Repairs};
 
 use super::vertex_repairs::VertexRepairs;
 pub(super) use super::vertices::NodePose;
 use super::vertices::{Findings, Vertex, Vertices};
 use super::{Accessors, GltfError};
-use geometry::mesh::mesh_builder::{CornerRepairs, InputCorner, MeshBuilder, StoredCorner};
+use geometry::mesh::mesh_builder::{CornerRepairs, MeshBuilder, StoredCorner};
 
 /// Reads primitives, and counts what was repaired or left out.
 #[derive(Debug, Default)]
@@ -280,26 +280,18 @@ impl PlacedTriangles {
     }
 }
 
-/// A vertex that was read, with its mark.
-struct ReadVertex {
-    corner: InputCorner,
-    detail: CornerDetail,
-    binding: u32,
-    mark: u8,
-}
-
 /// Reads vertices one after another, and binds them to what moves them. Returns them with what was repaired.
 fn read_vertices(
     vertices: &Vertices,
     range: Range<usize>,
     mut moving: Option<&mut AnimatedVertices>,
-) -> (Vec<ReadVertex>, VertexRepairs) {
+) -> (Vec<Vertex>, VertexRepairs) {
     let mut findings = Findings::default();
     let read = range.map(|i| {
         let vertex = vertices.read(i, &mut findings);
         let joints = findings.joints.as_deref();
         let binding = moving.as_mut().map_or(0, |moving| moving.bind(i, vertices, joints, &vertex.corner));
-        ReadVertex { mark: KeptVertices::mark(&vertex), corner: vertex.corner, detail: vertex.detail, binding }
+        Vertex { binding, ..vertex }
     });
     (read.collect(), findings.repairs)
 }
@@ -348,15 +340,14 @@ impl KeptVertices {
     /// Stores the corners of the next vertices.
     fn store(
         &mut self,
-        read: &[(Vec<ReadVertex>, VertexRepairs)],
+        read: &[(Vec<Vertex>, VertexRepairs)],
         used: &[AtomicU64],
         mut details: Option<&mut DetailTable>,
         builder: &mut MeshBuilder,
         budget: &Budget,
     ) -> Result<(), MemoryRefused> {
-        let is_stored = |&(i, own): &(usize, &ReadVertex)| {
-            used[i / 64].load(Relaxed) & 1 << (i % 64) != 0 && own.mark & Self::UNPLACED == 0
-        };
+        let is_stored =
+            |&(i, own): &(usize, &Vertex)| used[i / 64].load(Relaxed) & 1 << (i % 64) != 0 && is_near(&own.corner);
         let numbered = (self.ids.len()..).zip(read.iter().flat_map(|(read, _)| read));
         let mut corners = Vec::with_capacity(read.iter().map(|(read, _)| read.len()).sum());
         for (_, own) in numbered.clone().filter(is_stored) {
@@ -377,7 +368,7 @@ impl KeptVertices {
         let mut stored = stored.into_iter();
         for own in numbered {
             let corner = if is_stored(&own) { stored.next().unwrap_or_default() } else { StoredCorner::default() };
-            self.marks.push(own.1.mark | corner.repairs.0);
+            self.marks.push(Self::mark(own.1) | corner.repairs.0);
             self.ids.push(corner.id);
         }
         Ok(())

@@ -40,19 +40,16 @@ pub(super) fn move_meshes(clips: &[Clip], document: &Document, placed: &Placed) 
 /// Returns which nodes carry something that is shown, on them or below them: a mesh, a joint of a mesh's skin, or what they carry
 /// besides.
 fn carries_shown(document: &Document, placed: &Placed, also: impl Iterator<Item = usize>) -> Vec<bool> {
-    let mut carries = vec![false; placed.global.len()];
     let mut seen_skins = vec![false; document.skins().len()];
-    for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)) {
-        if node.mesh().is_none() {
-            continue;
-        }
-        carries[node.index()] = true;
+    let mut carrying: Vec<usize> = Vec::new();
+    for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)).filter(|own| own.mesh().is_some())
+    {
+        carrying.push(node.index());
         if let Some(skin) = node.skin().filter(|skin| !std::mem::replace(&mut seen_skins[skin.index()], true)) {
-            skin.joints().for_each(|joint| carries[joint.index()] = true);
+            carrying.extend(skin.joints().map(|joint| joint.index()));
         }
     }
     let is_shown = placed.is_shown();
-    also.filter(|node| is_shown.get(*node) == Some(&true)).for_each(|node| carries[node] = true);
-    SceneNodes::include_parents(&mut carries, &placed.order, &placed.parents);
-    carries
+    carrying.extend(also.filter(|node| is_shown.get(*node) == Some(&true)));
+    SceneNodes::carrying(carrying, &placed.order, &placed.parents)
 }

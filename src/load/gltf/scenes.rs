@@ -2,38 +2,31 @@
 
 use serde_json::{Map, Value};
 
+use super::json::list;
 use super::notes::Notes;
 use super::schema_check::shown;
 
-/// The names of a document's scenes, and which of them is shown.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Scenes {
-    /// One that is missing is made of the scene's number.
-    pub names: Vec<String>,
-    /// None if the document has no scenes; then all nodes are shown.
-    pub shown: Option<usize>,
-}
-
-impl Scenes {
-    /// Chooses the scene that is wanted, if the document has it; otherwise the document's default scene, or its first one. The
-    /// document names that scene afterwards.
-    pub(super) fn choose(root: &mut Map<String, Value>, wanted: Option<&str>, notes: &mut Notes) -> Self {
-        let scenes = root.get("scenes").and_then(Value::as_array).map_or(&[][..], Vec::as_slice);
-        let names = names(scenes, "scene");
-        let own = root.remove("scene").filter(|own| !own.is_null());
-        let default = own.as_ref().and_then(Value::as_u64).and_then(|own| usize::try_from(own).ok());
-        let default = default.filter(|own| *own < names.len());
-        if let (Some(own), None) = (own, default) {
-            let what = if names.is_empty() { "all nodes are" } else { "the first scene is" };
-            notes.push(format!("/scene is {}, but /scenes has {}; {what} shown.", shown(&own), names.len()));
-        }
-        let wanted = wanted.and_then(|wanted| number(&names, wanted));
-        let shown = wanted.or(default).or((!names.is_empty()).then_some(0));
-        if let Some(shown) = shown {
-            root.insert("scene".to_owned(), shown.into());
-        }
-        Self { names, shown }
+/// Returns the names of a document's scenes, and which of them is shown: the one that is wanted, if the document has it;
+/// otherwise its default scene, or its first one. The document names that scene afterwards. Without scenes all nodes are shown.
+pub(super) fn choose(
+    root: &mut Map<String, Value>,
+    wanted: Option<&str>,
+    notes: &mut Notes,
+) -> (Vec<String>, Option<usize>) {
+    let names = names(list(root, "scenes"), "scene");
+    let own = root.remove("scene").filter(|own| !own.is_null());
+    let default = own.as_ref().and_then(Value::as_u64).and_then(|own| usize::try_from(own).ok());
+    let default = default.filter(|own| *own < names.len());
+    if let (Some(own), None) = (own, default) {
+        let what = if names.is_empty() { "all nodes are" } else { "the first scene is" };
+        notes.push(format!("/scene is {}, but /scenes has {}; {what} shown.", shown(&own), names.len()));
     }
+    let wanted = wanted.and_then(|wanted| number(&names, wanted));
+    let shown = wanted.or(default).or((!names.is_empty()).then_some(0));
+    if let Some(shown) = shown {
+        root.insert("scene".to_owned(), shown.into());
+    }
+    (names, shown)
 }
 
 /// Returns the names of some objects, of which one that is missing is made of what they are and the number.

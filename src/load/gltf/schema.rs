@@ -65,6 +65,8 @@ pub(super) const BASISU: &str = "KHR_texture_basisu";
 pub(super) const WEBP: &str = "EXT_texture_webp";
 /// The extension that shows a node's mesh several times.
 pub(super) const INSTANCING: &str = "EXT_mesh_gpu_instancing";
+/// The extension that names the further levels of detail of a node.
+pub(super) const LOD: &str = "MSFT_lod";
 /// The extension that hides nodes.
 pub(super) const VISIBILITY: &str = "KHR_node_visibility";
 /// The extension that transforms texture coordinates.

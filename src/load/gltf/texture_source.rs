@@ -10,6 +10,7 @@ use serde_json::Value;
 use super::Accessors;
 use super::accessor::DataError;
 use super::lenient::Members;
+use super::material_members::{MAGNIFY, MINIFY, WRAPS};
 use super::notes::Notes;
 use super::schema::{BASISU, WEBP};
 use crate::uri::{self, Files};
@@ -52,19 +53,8 @@ pub(super) fn texture(
     Some(TextureSource { images, sampling: sampling.unwrap_or_default() })
 }
 
-/// Reads a sampler. The codes are OpenGL's.
+/// Reads a sampler.
 fn sampling(members: &Members) -> Sampling {
-    const WRAPS: [(u64, Wrap); 3] = [(10497, Wrap::Repeat), (33071, Wrap::Clamp), (33648, Wrap::Mirror)];
-    const MAGNIFY: [(u64, bool); 2] = [(9728, false), (9729, true)];
-    // Whether texels are blended, and whether mip levels are.
-    const MINIFY: [(u64, (bool, Option<bool>)); 6] = [
-        (9728, (false, None)),
-        (9729, (true, None)),
-        (9984, (false, Some(false))),
-        (9985, (true, Some(false))),
-        (9986, (false, Some(true))),
-        (9987, (true, Some(true))),
-    ];
     let default = Sampling::default();
     let (minify_linear, mip_linear) = members.code("minFilter", &MINIFY, (default.minify_linear, default.mip_linear));
     Sampling {

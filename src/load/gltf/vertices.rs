@@ -68,6 +68,8 @@ pub(super) struct Vertex {
     pub mirrored: bool,
     /// Whether its normal has a direction, but wasn't of unit length in the file.
     pub rescaled: bool,
+    /// The number of what moves it; 0 until it is bound.
+    pub binding: u32,
 }
 
 /// The joints of a skin that move each vertex, and their weights, in sets of four.
@@ -277,7 +279,7 @@ impl<'a> Vertices<'a> {
         let rescaled = matches!(own, Some(GivenNormal::Rescaled(_))) && normal != Some(Vec3::ZERO);
         let mirrored = linear.determinant() < 0.0;
         let detail = self.detail(i, &linear, &mut findings.repairs);
-        Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled }
+        Vertex { corner: InputCorner { position, normal, uv }, detail, mirrored, rescaled, binding: 0 }
     }
 
     /// Whether a morph target has a weight at rest.

@@ -5,7 +5,6 @@
 
 mod bits;
 mod etc1s;
-mod huffman;
 mod prefix_code;
 mod uastc;
 
@@ -45,14 +44,14 @@ impl Shared<'_> {
     pub(super) fn etc1s(&self, data: &[u8], index: usize, size: [u32; 2]) -> Result<Vec<u8>, String> {
         let wrong = || "its ETC1S data is broken".to_owned();
         let books = Codebooks::read(self.global, self.images).ok_or_else(wrong)?;
-        let slices = etc1s::slices(self.global, index).ok_or_else(wrong)?;
+        let [color, alpha] = etc1s::slices(self.global, index).ok_or_else(wrong)?;
         let mut image = Image::new(size);
         let blocks = image.blocks();
-        let color = part(data, slices.color.map(u64::from), "its ETC1S colours")?;
+        let color = part(data, color.map(u64::from), "its ETC1S colours")?;
         let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[..3].copy_from_slice(&texels[texel]));
         books.decode(color, blocks, put).ok_or_else(wrong)?;
         if self.has_alpha {
-            let alpha = part(data, slices.alpha.map(u64::from), "its ETC1S alpha")?;
+            let alpha = part(data, alpha.map(u64::from), "its ETC1S alpha")?;
             let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[3] = texels[texel][1]);
             books.decode(alpha, blocks, put).ok_or_else(wrong)?;
         }

@@ -168,11 +168,6 @@ impl<'a> Materials<'a> {
         Ok(index)
     }
 
-    /// Whether a material has texture coordinates of the file in other places.
-    pub(super) fn moves(&self, material: usize) -> bool {
-        !self.places.is_empty() && self.places.contains_key(&material)
-    }
-
     /// Returns where on the image of a material a corner with these texture coordinates is. The file's v points upwards, the
     /// mesh's downwards.
     pub(super) fn placed(&self, material: usize, uv: Vec2) -> Vec2 {

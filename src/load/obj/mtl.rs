@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::text_lines::{Lines, first_word, number, numbers_or_nan, words};
+use crate::text_lines::{Lines, first_word, numbers_or_nan, parsed, words};
 use geometry::mesh::HeightAmount;
 use geometry::mesh::mipmap::MipFilter;
 
@@ -222,7 +222,7 @@ fn replace(kept: &mut [f32; 2], given: [f32; 2], count: usize) {
 }
 
 fn is_number(text: &[u8], word: usize) -> bool {
-    words(text).nth(word).is_some_and(|word| number(word).is_ok())
+    words(text).nth(word).is_some_and(|word| parsed::<f32>(word).is_some())
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::*;
 use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
-use crate::selection::Selection;
+use crate::selection::{Selection, ShownParts};
 use geometry::progress::Progress;
 
 fn read(text: &str) -> LoadedMesh {
@@ -84,12 +84,13 @@ fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
     let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no car\nf 1 2 3\ng wheel left\nf 1 2 3\nf 3 2 1\no car\ng\nf 2 3 1\n\
                  o empty\no bike\ng bike\nf 1 2 3\n";
     let hiding = |hidden: &[&str]| {
-        let hidden: Vec<String> = hidden.iter().map(|name| (*name).to_owned()).collect();
-        let selected = Selection { hidden: &hidden, ..Selection::default() };
+        let hidden = hidden.iter().map(|name| (*name).to_owned()).collect();
+        let shown = ShownParts { hidden, ..ShownParts::default() };
+        let selected = Selection { parts: Some(&shown), ..Selection::default() };
         super::read(faces.as_bytes().to_vec(), &ModelFile { selected, ..ModelFile::from_test("", &Progress::new()) })
     };
     let parts = |loaded: &LoadedMesh| -> Vec<(String, u32, bool)> {
-        loaded.parts.iter().map(|part| (part.name.clone(), part.triangles, part.is_hidden)).collect()
+        loaded.contents.parts.iter().map(|part| (part.name.clone(), part.triangles, part.is_hidden)).collect()
     };
     let named = |hidden: bool| {
         [("default", 1, false), ("car", 2, false), ("car/wheel left", 2, hidden), ("bike", 1, false)]
@@ -104,6 +105,30 @@ fn objects_and_groups_are_parts_and_hidden_ones_are_left_out() {
         matches!(&none, ReadError::Empty { holds } if holds.contains("and its parts are hidden; choose one of ")),
         "{none:?}"
     );
+}
+
+#[test]
+fn materials_are_parts_too_if_there_are_several() {
+    let faces =
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\no car\nusemtl red\nf 1 2 3\nusemtl blue\nf 1 2 3\nf 3 2 1\no bike\nf 2 3 1\n";
+    let read = |hidden: &[&str], only: &[&str]| {
+        let [hidden, only] =
+            [hidden, only].map(|names| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>());
+        let shown = ShownParts { hidden, only, ..ShownParts::default() };
+        let selected = Selection { parts: Some(&shown), ..Selection::default() };
+        super::read(faces.as_bytes().to_vec(), &ModelFile { selected, ..ModelFile::from_test("", &Progress::new()) })
+    };
+    let whole = read(&[], &[]).expect("triangles");
+    let parts: Vec<_> = whole.contents.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+    assert_eq!(parts, [("car", 3), ("bike", 1), ("material:red", 1), ("material:blue", 3)]);
+    assert_eq!(whole.part_of(0), Some(0), "a triangle belongs to the part that isn't a material");
+    let blue = read(&[], &["material:blue"]).expect("triangles");
+    assert_eq!((blue.triangles.len(), blue.materials.len()), (3, 1));
+    assert_eq!((0..3).map(|triangle| blue.part_of(triangle)).collect::<Vec<_>>(), [Some(0), Some(0), Some(1)]);
+    let both = read(&["material:red"], &["car"]).expect("triangles");
+    assert_eq!(both.triangles.len(), 2, "of the car, what isn't red");
+    let none = read(&["material:red", "material:blue"], &[]).map(|_| ()).expect_err("all are hidden");
+    assert!(none.to_string().contains("its parts are hidden"), "{none}");
 }
 
 #[test]
@@ -261,8 +286,8 @@ fn triangles_that_are_taken_together_are_those_that_are_taken_one_by_one() {
         together += &format!("f {}\n", corners.join(" "));
         one_by_one += &format!("f {}\n", corners.join(" \\\n"));
     }
-    let hidden = ["b".to_owned()];
-    for selection in [Selection::default(), Selection { hidden: &hidden, ..Selection::default() }] {
+    let shown = ShownParts { hidden: vec!["b".to_owned()], ..ShownParts::default() };
+    for selection in [Selection::default(), Selection { parts: Some(&shown), ..Selection::default() }] {
         let read = |text: &String| {
             let bytes = text.as_bytes().to_vec();
             super::read(bytes, &ModelFile { selected: selection, ..ModelFile::from_test("", &Progress::new()) })
@@ -271,7 +296,7 @@ fn triangles_that_are_taken_together_are_those_that_are_taken_one_by_one() {
         let [together, one_by_one] = [&together, &one_by_one].map(read);
         assert_eq!(together.mesh.triangles, one_by_one.mesh.triangles);
         assert_eq!(together.mesh.corners, one_by_one.mesh.corners);
-        assert_eq!(together.parts, one_by_one.parts);
+        assert_eq!(together.contents.parts, one_by_one.contents.parts);
         let counts = |loaded: &LoadedMesh| -> Vec<String> {
             let before = |warning: &String| warning.split(", the first").next().unwrap_or_default().to_owned();
             loaded.warnings.iter().map(before).collect()

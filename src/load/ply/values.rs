@@ -1,9 +1,9 @@
 //! Reads the values after the header of a PLY file, in text and in binary.
 
-use super::header::{Element, Encoding, Header, Property, PropertyKind, Scalar};
+use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
 use crate::read_error::{FilePosition, ReadError};
-use crate::text_lines::{Line, Lines, first_word, number, parsed, shown, words};
-use geometry::casts::{to_f32, to_usize};
+use crate::text_lines::{Line, Lines, first_word, parsed, shown, words};
+use geometry::casts::to_usize;
 
 /// The position of the next value.
 #[derive(Clone)]
@@ -23,21 +23,6 @@ pub(super) struct Values<'a> {
     pub ends: bool,
     /// Lines of a text file with more numbers than their element has.
     pub long_lines: usize,
-}
-
-/// How elements without lists lie in a binary file.
-pub(super) struct Row {
-    /// The size of one, in bytes.
-    size: usize,
-    /// The values that are read: where each begins in bytes, its type, and its place among the values.
-    values: Vec<(usize, Scalar, usize)>,
-}
-
-/// How faces lie in a binary file: the sizes of what is before and after their list, in bytes, and the type of its length.
-pub(super) struct FaceRow {
-    before: usize,
-    count: Scalar,
-    after: usize,
 }
 
 impl<'a> Values<'a> {
@@ -193,88 +178,6 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// Returns how elements without lists lie in a binary file, if they do: the places that `slots` says for the values of their
-    /// properties.
-    pub(super) fn row(&self, element: &Element, slots: &[Option<usize>]) -> Option<Row> {
-        let (size, is_fixed) = element.least();
-        if !is_fixed || self.encoding == Encoding::Text {
-            return None;
-        }
-        let mut row = Row { size: usize::try_from(size).ok()?, values: Vec::new() };
-        let mut at = 0;
-        for (property, slot) in element.properties.iter().zip(slots) {
-            let PropertyKind::One(scalar) = property.kind else { return None };
-            row.values.extend(slot.map(|slot| (at, scalar, slot)));
-            at += scalar.size();
-        }
-        Some(row)
-    }
-
-    /// Reads the values of a row into their places.
-    ///
-    /// # Errors
-    /// [`ReadError::Broken`] at the end of the file.
-    pub(super) fn read_row(&mut self, row: &Row, places: &mut [f32]) -> Result<(), ReadError> {
-        let Some((own, rest)) = self.bytes.split_at_checked(row.size) else {
-            let (size, left) = (row.size, self.bytes.len());
-            self.ends = true;
-            return Err(self.place().error(format!("an element takes {size} bytes, but {left} are left")));
-        };
-        for &(at, scalar, place) in &row.values {
-            let bytes = &own[at..];
-            places[place] = match (scalar, self.encoding) {
-                // What nearly all files have.
-                (Scalar::F32, Encoding::LittleEndian) => {
-                    bytes.first_chunk().map_or(0.0, |own| f32::from_le_bytes(*own))
-                }
-                (_, encoding) => to_f32(decoded(bytes, scalar, encoding).unwrap_or_default()),
-            };
-        }
-        self.bytes = rest;
-        Ok(())
-    }
-
-    /// Returns how faces lie in a binary file whose only list is that of vertices, property number `list`. The numbers of
-    /// vertices must have 32 bits, as nearly all have.
-    pub(super) fn face_row(&self, element: &Element, list: usize) -> Option<FaceRow> {
-        let size = |properties: &[Property]| -> Option<usize> {
-            let of = |property: &Property| match property.kind {
-                PropertyKind::One(scalar) => Some(scalar.size()),
-                PropertyKind::List { .. } => None,
-            };
-            properties.iter().map(of).sum()
-        };
-        let PropertyKind::List { count, item: Scalar::I32 | Scalar::U32 } = element.properties[list].kind else {
-            return None;
-        };
-        let is_binary = self.encoding != Encoding::Text;
-        let [before, after] = [size(&element.properties[..list])?, size(&element.properties[list + 1..])?];
-        is_binary.then_some(FaceRow { before, count, after })
-    }
-
-    /// Returns the vertices of the next faces, up to the first that isn't a whole triangle.
-    pub(super) fn triangles(&self, row: &FaceRow) -> impl Iterator<Item = [u32; 3]> + use<'a> {
-        let &FaceRow { before, count, after } = row;
-        let (encoding, mut rest) = (self.encoding, self.bytes);
-        let of = if encoding == Encoding::BigEndian { u32::from_be_bytes } else { u32::from_le_bytes };
-        std::iter::from_fn(move || {
-            let list = rest.get(before..)?;
-            if decoded(list, count, encoding)? != 3.0 {
-                return None;
-            }
-            let (numbers, others) = list.get(count.size()..)?.split_first_chunk::<12>()?;
-            rest = others.get(after..)?;
-            let numbers: [[u8; 4]; 3] = [0, 4, 8].map(|at| [0, 1, 2, 3].map(|i| numbers[at + i]));
-            Some(numbers.map(of))
-        })
-    }
-
-    /// Goes on after so many faces, which are whole triangles.
-    pub(super) fn skip_triangles(&mut self, row: &FaceRow, faces: usize) {
-        let size = row.before + row.count.size() + 12 + row.after;
-        self.bytes = self.bytes.get(faces * size..).unwrap_or_default();
-    }
-
     /// Reads the number of values of a list, and checks that the rest of the file or line has as many.
     ///
     /// # Errors
@@ -312,7 +215,7 @@ impl<'a> Values<'a> {
         }
         self.left = rest;
         // Parsed as f64, so that indices are exact.
-        parsed(word).ok_or_else(|| self.place().error(number(word).err().unwrap_or_default()))
+        parsed(word).ok_or_else(|| self.place().error(format!("{} isn't a number", shown(word))))
     }
 
     /// Returns how many bytes follow the last element.

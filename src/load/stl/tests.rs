@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::face_builder::tests::{POINTS, assert_cube, triangles};
-use crate::selection::Selection;
+use crate::selection::{Selection, ShownParts};
 
 fn read(bytes: &[u8]) -> LoadedMesh {
     super::read(bytes.to_vec(), &ModelFile::from_test("cube", &Progress::new())).unwrap()
@@ -70,18 +70,19 @@ fn triangles_of_a_binary_file_have_the_colours_that_programs_give_them() {
 
 #[test]
 fn solids_of_text_files_are_parts() {
-    let hidden = ["one".to_owned()];
-    let selected = Selection { hidden: &hidden, ..Selection::default() };
+    let shown = ShownParts { hidden: vec!["one".to_owned()], ..ShownParts::default() };
+    let selected = Selection { parts: Some(&shown), ..Selection::default() };
     let text = text() + FACET_WITHOUT_NAME;
     let mesh =
         super::read(text.into_bytes(), &ModelFile { selected, ..ModelFile::from_test("cube", &Progress::new()) })
             .expect("triangles");
-    let parts: Vec<_> = mesh.parts.iter().map(|part| (part.name.as_str(), part.triangles, part.is_hidden)).collect();
+    let parts: Vec<_> =
+        mesh.contents.parts.iter().map(|part| (part.name.as_str(), part.triangles, part.is_hidden)).collect();
     assert_eq!(parts, [("one", 5, true), ("two", 7, false), ("solid 3", 1, false)]);
     assert_eq!(mesh.triangles.len(), 8);
     let of_each: Vec<_> = (0..8).map(|triangle| mesh.part_of(triangle)).collect();
     assert_eq!(of_each, [[Some(1); 7].as_slice(), &[Some(2)]].concat());
-    assert!(read(&binary(b"solid one")).parts.is_empty());
+    assert!(read(&binary(b"solid one")).contents.parts.is_empty());
 }
 
 const FACET_WITHOUT_NAME: &str =

@@ -1,9 +1,11 @@
 //! Finds the model in an archive, and reads its parts.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::path::Path;
+use std::rc::Rc;
 
-use super::archive::{Archive, Unpacked};
+use super::archive::Archive;
 use super::model::{Geometry, ModelReader, Part, Placed, UNREAD};
 use super::{broken, xml};
 use crate::format::Format;
@@ -44,28 +46,40 @@ impl Document {
     ) -> Result<Self, ReadError> {
         let root = root(archive, notes)?;
         let mut document = Self { parts: Vec::new(), geometry: Geometry::default(), numbers: HashMap::new() };
-        let mut reading = Reading { archive, budget, progress, notes, before: 0 };
-        let part = archive
-            .open(&root)?
-            .ok_or_else(|| broken(&root, "the archive's relationships name it, but it isn't there"))?;
-        reading.part(&mut document, &root, part)?;
+        let (all, mut before) = (archive.model_bytes().max(1) as f32, 0);
+        // The parts that are named, each once, as those that name them come.
+        let mut paths: Vec<Rc<str>> = vec![root.into()];
+        document.numbers.insert(key(&paths[0]), None);
         let mut next = 0;
-        while let Some(part) = document.parts.get(next) {
-            for path in part.paths() {
-                if document.numbers.contains_key(&key(&path)) {
-                    continue;
+        while let Some(path) = paths.get(next).cloned() {
+            next += 1;
+            let Some(bytes) = archive.open(&path)? else {
+                if next == 1 {
+                    return Err(broken(&path, "the archive's relationships name it, but it isn't there"));
                 }
-                match archive.open(&path)? {
-                    Some(part) => reading.part(&mut document, &path, part)?,
-                    None => {
-                        reading
-                            .notes
-                            .push(format!("{} isn't in the archive, so its objects are left out.", shown(&path)));
-                        document.numbers.insert(key(&path), None);
-                    }
+                notes.push(format!("{} isn't in the archive, so its objects are left out.", shown(&path)));
+                continue;
+            };
+            let mut reader = ModelReader::new(&path, &mut document.geometry, budget, notes);
+            let (mut tags, mut end) = (0_u64, 0);
+            xml::walk(&path, bytes, |step, at| {
+                if tags.is_multiple_of(TAGS) {
+                    progress.set((before + at) as f32 / all);
+                    progress.check()?;
+                }
+                (tags, end) = (tags + 1, at);
+                reader.take(step)
+            })?;
+            before += end;
+            let part = reader.finish()?;
+            document.numbers.insert(key(&path), Some(document.parts.len()));
+            for path in part.paths() {
+                if let Entry::Vacant(unknown) = document.numbers.entry(key(&path)) {
+                    unknown.insert(None);
+                    paths.push(path.clone());
                 }
             }
-            next += 1;
+            document.parts.push(part);
         }
         Ok(document)
     }
@@ -95,47 +109,15 @@ impl Document {
 
 impl Part {
     /// The paths of other parts that it names.
-    fn paths(&self) -> Vec<std::rc::Rc<str>> {
+    fn paths(&self) -> impl Iterator<Item = &Rc<str>> {
         let components = self.order.iter().filter_map(|id| self.objects.get(id)).flat_map(|object| &object.components);
-        let mut paths: Vec<_> = self.items.iter().chain(components).filter_map(|placed| placed.path.clone()).collect();
-        paths.dedup();
-        paths
+        self.items.iter().chain(components).filter_map(|placed| placed.path.as_ref())
     }
 }
 
 /// A part's name as others may write it.
 fn key(path: &str) -> String {
     path.trim_start_matches('/').to_ascii_lowercase()
-}
-
-struct Reading<'a> {
-    archive: &'a Archive<'a>,
-    budget: &'a Budget,
-    progress: &'a Progress,
-    notes: &'a mut Notes,
-    /// How many bytes the parts before had.
-    before: u64,
-}
-
-impl Reading<'_> {
-    fn part(&mut self, document: &mut Document, name: &str, bytes: Unpacked) -> Result<(), ReadError> {
-        let mut reader = ModelReader::new(name, &mut document.geometry, self.budget, self.notes);
-        let (mut tags, mut end) = (0_u64, 0);
-        let all = self.archive.model_bytes().max(1) as f32;
-        xml::walk(name, bytes, |step, at| {
-            if tags.is_multiple_of(TAGS) {
-                self.progress.set((self.before + at) as f32 / all);
-                self.progress.check()?;
-            }
-            (tags, end) = (tags + 1, at);
-            reader.take(step)
-        })?;
-        self.before += end;
-        let part = reader.finish()?;
-        document.numbers.insert(key(name), Some(document.parts.len()));
-        document.parts.push(part);
-        Ok(())
-    }
 }
 
 /// Returns the name of the part with the build.

@@ -14,7 +14,7 @@ use super::xml::{Element, Step};
 use crate::memory_budget::Budget;
 use crate::notes::{Notes, counts};
 use crate::read_error::ReadError;
-use crate::text_lines::{number, parsed, shown, words};
+use crate::text_lines::{parsed, shown, words};
 use geometry::casts::to_u32;
 use geometry::mesh::chunked_vec::ChunkedVec;
 use geometry::names;
@@ -334,7 +334,7 @@ impl<'a> ModelReader<'a> {
                 b"z" => &mut position.z,
                 _ => continue,
             };
-            *axis = number(value.trim_ascii()).unwrap_or(f32::NAN);
+            *axis = parsed(value.trim_ascii()).unwrap_or(f32::NAN);
         }
         self.budget.hold(self.geometry.vertices.next_bytes())?;
         self.geometry.vertices.push(position);

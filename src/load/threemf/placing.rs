@@ -13,7 +13,7 @@ use crate::face_builder::{FaceBuilder, NumberedCorner};
 use crate::import::Import;
 use crate::memory_budget::{Budget, edge_bytes};
 use crate::notes::{Notes, counted};
-use crate::parts::DEFAULT_PART;
+use crate::parts::node_path;
 use crate::read_error::{FilePosition, ReadError};
 use geometry::mesh::build_limits::MAX_TRIANGLES;
 use geometry::mesh::mesh_builder::InputCorner;
@@ -54,6 +54,7 @@ pub(super) fn place(
         counted: &counter.counted,
         faces,
         looks: Looks::new(document),
+        names: Vec::new(),
         corners: Vec::new(),
         found: Faults::default(),
         progress,
@@ -144,6 +145,8 @@ struct Placer<'d, 'a> {
     counted: &'d HashMap<ObjectAt, Option<u64>>,
     faces: &'d mut FaceBuilder<'a>,
     looks: Looks<'d>,
+    /// The names of the object that is being placed, and of those that it is a component of.
+    names: Vec<&'d str>,
     corners: Vec<NumberedCorner>,
     found: Faults,
     progress: &'d Progress,
@@ -160,13 +163,16 @@ impl Placer<'_, '_> {
         }
         let transform = outer * placed.transform;
         let object = &self.document.parts[at.0].objects[&at.1];
+        self.names.push(&object.name);
         self.mesh(at, object, transform)?;
-        object.components.iter().try_for_each(|component| self.placed(at.0, component, transform))
+        object.components.iter().try_for_each(|component| self.placed(at.0, component, transform))?;
+        self.names.pop();
+        Ok(())
     }
 
     fn mesh(&mut self, at: ObjectAt, object: &Object, transform: DAffine3) -> Result<(), ReadError> {
-        let name = if object.name.is_empty() { DEFAULT_PART } else { object.name.as_bytes() };
-        self.faces.enter_part(name)?;
+        let (path, _) = node_path(self.names.iter().rev().map(|name| (*name, false)));
+        self.faces.enter_part(path.as_bytes(), 0)?;
         let is_mirrored = transform.matrix3.determinant() < 0.0;
         let mut last: Option<(u32, Resolved)> = None;
         for i in object.triangles.clone() {

@@ -295,7 +295,24 @@ fn objects_with_triangles_are_parts_by_their_names() {
     let build: String = [3, 2, 1].map(|id| format!("<item objectid=\"{id}\"/>")).concat();
     let bytes = package::package(&model(&objects, &build));
     let loaded = read(&bytes);
-    let parts: Vec<_> = loaded.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+    let parts: Vec<_> = loaded.contents.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
     assert_eq!(parts, [("lid & rim", 24), ("default", 12)]);
     assert_eq!([0, 12, 24].map(|triangle| loaded.part_of(triangle)), [Some(0), Some(1), Some(0)]);
+}
+
+#[test]
+fn components_lie_in_the_objects_that_have_them() {
+    let object =
+        |id: u32, name: &str, content: &str| format!("<object id=\"{id}\"{name} type=\"model\">{content}</object>");
+    let component = |id: u32| format!("<components><component objectid=\"{id}\"/></components>");
+    let objects = [
+        object(1, " name=\"bolt\"", &cube_mesh()),
+        object(2, " name=\"hinge\"", &component(1)),
+        object(3, "", &component(2)),
+        object(4, " name=\"door\"", &component(3)),
+    ];
+    let build = "<item objectid=\"4\"/><item objectid=\"1\"/>";
+    let loaded = read(&package::package(&model(&objects.concat(), build)));
+    let parts: Vec<_> = loaded.contents.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+    assert_eq!(parts, [("door/hinge/bolt", 12), ("bolt", 12)]);
 }

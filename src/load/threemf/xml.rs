@@ -2,7 +2,7 @@
 //! what it means.
 
 use std::borrow::Cow;
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read};
 
 use quick_xml::Error;
 use quick_xml::events::{BytesStart, Event};
@@ -15,7 +15,7 @@ use crate::read_error::ReadError;
 const MAX_DEPTH: usize = 256;
 
 /// The greatest length of a tag, or of a text between tags, in bytes.
-const MAX_LENGTH: usize = 1 << 22;
+const MAX_LENGTH: u64 = 1 << 22;
 
 /// How many bytes are unpacked at a time.
 const PIECE: usize = 1 << 16;
@@ -75,19 +75,23 @@ pub(super) fn walk(
     bytes: impl Read,
     mut take: impl FnMut(Step, u64) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
-    let mut metered = Metered { inner: BufReader::with_capacity(PIECE, bytes), left: MAX_LENGTH };
-    let start = metered.fill_buf().map_err(|error| broken(part, error))?;
+    // One byte more, so that what is too long is told from what ends there.
+    let mut limited = BufReader::with_capacity(PIECE, bytes).take(MAX_LENGTH + 1);
+    let start = limited.fill_buf().map_err(|error| broken(part, error))?;
     if matches!(start, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) {
         return Err(broken(part, "its XML is in UTF-16, but only UTF-8 is read"));
     }
-    let mut reader = Reader::from_reader(metered);
+    let mut reader = Reader::from_reader(limited);
     let (mut buffer, mut depth) = (Vec::new(), 0);
     loop {
         buffer.clear();
-        reader.get_mut().left = MAX_LENGTH;
+        reader.get_mut().set_limit(MAX_LENGTH + 1);
         let event = reader.read_event_into(&mut buffer);
         let event = event.map_err(|error| broken(part, said(&error)));
         let at = reader.buffer_position();
+        if reader.get_ref().limit() == 0 {
+            return Err(broken(part, format!("it has a tag or a text of more than {MAX_LENGTH} bytes")));
+        }
         match event? {
             Event::Start(start) => {
                 depth += 1;
@@ -116,33 +120,5 @@ fn said(error: &Error) -> String {
     match error {
         Error::Io(error) => error.to_string(),
         _ => "its XML isn't well-formed".to_owned(),
-    }
-}
-
-/// Reads bytes, and refuses to read more than so many for one tag.
-struct Metered<R> {
-    inner: BufReader<R>,
-    left: usize,
-}
-
-impl<R: Read> BufRead for Metered<R> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        match self.left {
-            0 => Err(io::Error::other(format!("it has a tag or a text of more than {MAX_LENGTH} bytes"))),
-            _ => self.inner.fill_buf(),
-        }
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.left = self.left.saturating_sub(count);
-        self.inner.consume(count);
-    }
-}
-
-impl<R: Read> Read for Metered<R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.fill_buf()?.read(buffer)?;
-        self.consume(count);
-        Ok(count)
     }
 }

@@ -185,7 +185,33 @@ fn triangles_keep_their_parts_among_several_materials() {
     let mesh = builder.finish(String::new(), &Progress::new()).expect("not cancelled");
     let of_each: Vec<_> = (0..7).map(|triangle| mesh.part_of(triangle)).collect();
     assert_eq!(of_each, [Some(3), Some(5), Some(3), Some(3), None, Some(5), None], "the last one isn't there");
-    let bounds = mesh.part_bounds(5).expect("a part with triangles");
+    let bounds_of = |part: u32| {
+        let ranges = mesh.part_ranges.iter().filter(move |range| range.part == part);
+        mesh.bounds_of(ranges.flat_map(|range| range.triangles.clone()))
+    };
+    let bounds = bounds_of(5).expect("a part with triangles");
     assert_eq!((bounds.min.x, bounds.max.x), (3.0, 5.0));
-    assert_eq!(mesh.part_bounds(4), None);
+    assert_eq!(bounds_of(4), None);
+}
+
+#[test]
+fn triangles_of_a_material_are_left_out_with_their_corners() {
+    let mut builder = MeshBuilder::new();
+    let materials = ["a", "b", "unused"].map(|name| builder.material(Material::plain(name, [1.0; 4])));
+    for (i, material) in [0, 1, 1].into_iter().enumerate() {
+        builder.enter_part(Some(i as u32));
+        let x = 3.0 * i as f32;
+        builder.triangle(materials[material], [corner(x, 0.0), corner(x + 1.0, 0.0), corner(x, 1.0)]);
+    }
+    assert_eq!(builder.used_materials(), 2);
+    let mut asked = Vec::new();
+    let left_out = builder.leave_out(|name, triangles| {
+        asked.push((name.to_owned(), triangles));
+        Ok::<_, std::convert::Infallible>(name == "b")
+    });
+    assert_eq!((left_out, asked), (Ok(()), vec![("a".to_owned(), 1), ("b".to_owned(), 2)]));
+    assert_eq!((builder.len(), builder.used_materials()), (1, 1));
+    let mesh = builder.finish(String::new(), &Progress::new()).expect("not cancelled");
+    assert_eq!((mesh.triangles.len(), mesh.corners.len(), mesh.materials.len()), (1, 3, 1));
+    assert_eq!(mesh.part_ranges.iter().map(|range| range.part).collect::<Vec<_>>(), [0]);
 }

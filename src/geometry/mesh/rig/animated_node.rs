@@ -40,17 +40,12 @@ impl Placement {
 
     /// Replaces the part of the transform that the channel moves by its value at a time, in s.
     pub(super) fn animate(&mut self, channel: &Channel, time: f64) {
-        match channel.property {
-            Property::Translation => {
-                let value = &mut self.translation;
-                channel.keys.sample(time, |i, x| value[i] = x);
-            }
-            Property::Scale => {
-                let value = &mut self.scale;
-                channel.keys.sample(time, |i, x| value[i] = x);
-            }
-            Property::Rotation => self.rotation = channel.keys.rotation(time),
-            Property::Weights => {}
-        }
+        let vector = match channel.property {
+            Property::Translation => &mut self.translation,
+            Property::Scale => &mut self.scale,
+            Property::Rotation => return self.rotation = channel.keys.rotation(time),
+            Property::Weights => return,
+        };
+        channel.keys.sample(time, |i, x| vector[i] = x);
     }
 }

@@ -1,8 +1,7 @@
 //! Writes materials with their images, and all of their numbers.
 //!
-//! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_clearcoat, KHR_materials_emissive_strength,
-//! KHR_materials_ior, KHR_materials_sheen, KHR_materials_specular, KHR_materials_transmission, KHR_materials_unlit and
-//! KHR_texture_transform.
+//! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_emissive_strength, KHR_materials_unlit and
+//! KHR_texture_transform, and those of [`EXTENSIONS`].
 
 use std::io::Cursor;
 use std::sync::Arc;
@@ -11,8 +10,9 @@ use serde_json::{Value, json};
 
 use super::{Writer, pushed};
 use crate::export::ExportError;
-use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
+use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture};
 use geometry::names;
+use load::material_members::{EXTENSIONS, MAGNIFY, MAPS, METALLIC_ROUGHNESS, MINIFY, Member, Members, WRAPS};
 
 const TRANSFORM: &str = "KHR_texture_transform";
 
@@ -49,11 +49,8 @@ impl UvSets {
     pub(super) fn new(material: &Material) -> Self {
         // Without an image of the base colour, corners have the first set themselves.
         let own_is_first = material.texture.is_none();
-        let uses = |set: usize| {
-            let mut maps = material.look.maps.iter().flatten();
-            !(own_is_first && set == 0) && maps.any(|map| matches!(map.uv, MapUv::Set(own, _) if own == set))
-        };
-        let sets = match [uses(0), uses(1)] {
+        let [first, second] = material.look.uv_sets();
+        let sets = match [first && !own_is_first, second] {
             [false, false] => vec![UvSet::Own],
             [true, false] => vec![UvSet::Own, UvSet::File(0)],
             [false, true] => vec![UvSet::Own, UvSet::File(1)],
@@ -81,52 +78,42 @@ impl Writer {
     /// # Errors
     /// An image can't be encoded.
     pub(super) fn material(&mut self, material: &Material, sets: &UvSets) -> Result<usize, ExportError> {
-        let look = &material.look;
-        let mut infos: [Option<Value>; Slot::COUNT] = Default::default();
-        for (map, info) in look.maps.iter().zip(&mut infos) {
+        let mut parts = LookParts { look: material.look.clone(), maps: Default::default() };
+        for (map, info) in material.look.maps.iter().zip(&mut parts.maps) {
             if let Some(map) = map {
                 *info = self.map(map, material, sets)?;
             }
         }
-        let mut of = |slot: Slot| infos[slot as usize].take();
-        let mut rough = json!({
-            "baseColorFactor": material.base_color,
-            "metallicFactor": look.metallic,
-            "roughnessFactor": look.roughness,
-        });
+        let mut rough = json!({ "baseColorFactor": material.base_color });
         if let Some(image) = &material.texture {
             let index = self.texture(image, material.sampling)?;
             rough["baseColorTexture"] = json!({ "index": index, "texCoord": sets.number(UvSet::Own) });
         }
-        set(&mut rough, "metallicRoughnessTexture", of(Slot::MetallicRoughness));
+        parts.write(METALLIC_ROUGHNESS, &mut rough);
         let mut written = json!({
             "name": material.name,
             "pbrMetallicRoughness": rough,
             "doubleSided": material.double_sided,
         });
-        set(&mut written, "normalTexture", with(of(Slot::Normal), "scale", look.normal_scale));
-        set(&mut written, "occlusionTexture", with(of(Slot::Occlusion), "strength", look.occlusion_strength));
-        set(&mut written, "emissiveTexture", of(Slot::Emissive));
-        written["alphaMode"] = json!(match look.alpha {
+        parts.write(MAPS, &mut written);
+        written["alphaMode"] = json!(match material.look.alpha {
             Alpha::Opaque => "OPAQUE",
             Alpha::Mask(_) => "MASK",
             Alpha::Blend => "BLEND",
         });
-        if let Alpha::Mask(cutoff) = look.alpha {
+        if let Alpha::Mask(cutoff) = material.look.alpha {
             written["alphaCutoff"] = json!(cutoff);
         }
-        self.emission(look, &mut written);
-        self.reflection(look, &mut written, &mut of);
-        if look.transmits() {
-            let members = json!({ "transmissionFactor": look.transmission });
-            let maps = [("transmissionTexture", of(Slot::Transmission))];
-            self.extend(&mut written, "KHR_materials_transmission", with_maps(members, maps));
+        self.emission(&material.look, &mut written);
+        if material.look.unlit {
+            self.extend(&mut written, "KHR_materials_unlit", json!({}));
         }
-        if look.has_sheen() {
-            let members = json!({ "sheenColorFactor": look.sheen_color, "sheenRoughnessFactor": look.sheen_roughness });
-            let [color, roughness] = [Slot::SheenColor, Slot::SheenRoughness].map(&mut of);
-            let maps = [("sheenColorTexture", color), ("sheenRoughnessTexture", roughness)];
-            self.extend(&mut written, "KHR_materials_sheen", with_maps(members, maps));
+        for (name, matters, members) in EXTENSIONS {
+            if matters(&material.look) && parts.differ(members) {
+                let mut object = json!({});
+                parts.write(members, &mut object);
+                self.extend(&mut written, name, object);
+            }
         }
         Ok(pushed(&mut self.materials, written))
     }
@@ -138,34 +125,6 @@ impl Writer {
         if brightest > 1.0 {
             let members = json!({ "emissiveStrength": brightest });
             self.extend(written, "KHR_materials_emissive_strength", members);
-        }
-    }
-
-    /// Adds how a material reflects light, where it is not as glTF has it without extensions.
-    fn reflection(&mut self, look: &Look, written: &mut Value, map: &mut impl FnMut(Slot) -> Option<Value>) {
-        let usual = Look::default();
-        if look.unlit {
-            self.extend(written, "KHR_materials_unlit", json!({}));
-        }
-        if look.ior != usual.ior {
-            self.extend(written, "KHR_materials_ior", json!({ "ior": look.ior }));
-        }
-        let (strength, color) = (map(Slot::Specular), map(Slot::SpecularColor));
-        let has_numbers = look.specular != usual.specular || look.specular_color != usual.specular_color;
-        if has_numbers || strength.is_some() || color.is_some() {
-            let members = json!({ "specularFactor": look.specular, "specularColorFactor": look.specular_color });
-            let maps = [("specularTexture", strength), ("specularColorTexture", color)];
-            self.extend(written, "KHR_materials_specular", with_maps(members, maps));
-        }
-        if look.clearcoat > 0.0 {
-            let members =
-                json!({ "clearcoatFactor": look.clearcoat, "clearcoatRoughnessFactor": look.clearcoat_roughness });
-            let maps = [
-                ("clearcoatTexture", map(Slot::Clearcoat)),
-                ("clearcoatRoughnessTexture", map(Slot::ClearcoatRoughness)),
-                ("clearcoatNormalTexture", with(map(Slot::ClearcoatNormal), "scale", look.clearcoat_normal_scale)),
-            ];
-            self.extend(written, "KHR_materials_clearcoat", with_maps(members, maps));
         }
     }
 
@@ -214,24 +173,43 @@ impl Writer {
     }
 }
 
-/// Sets a member that there is.
-fn set(object: &mut Value, name: &str, value: Option<Value>) {
-    if let Some(value) = value {
-        object[name] = value;
+/// A look that is being written.
+struct LookParts {
+    look: Look,
+    /// Where its maps are, and how they are placed. Each is taken when it is written.
+    maps: [Option<Value>; Slot::COUNT],
+}
+
+impl LookParts {
+    /// Whether any of these members has a value that says something.
+    fn differ(&mut self, members: &Members) -> bool {
+        let usual = &mut Look::default();
+        members.iter().any(|(_, member)| match member {
+            Member::Number(number, _) => number(&mut self.look) != number(usual),
+            Member::Color(color, _) => color(&mut self.look) != color(usual),
+            Member::Map(slot) | Member::ScaledMap(slot, ..) => self.maps[*slot as usize].is_some(),
+        })
     }
-}
 
-/// The same info with one more number.
-fn with(info: Option<Value>, name: &str, number: f32) -> Option<Value> {
-    let mut info = info?;
-    info[name] = json!(number);
-    Some(info)
-}
-
-/// The members of an extension, with the maps that there are.
-fn with_maps<const N: usize>(mut members: Value, maps: [(&str, Option<Value>); N]) -> Value {
-    maps.into_iter().for_each(|(name, map)| set(&mut members, name, map));
-    members
+    /// Sets members of an object: all numbers that are finite, and the maps that there are.
+    fn write(&mut self, members: &Members, object: &mut Value) {
+        for (name, member) in members {
+            match member {
+                Member::Number(number, _) => {
+                    let own = Some(*number(&mut self.look)).filter(|own| own.is_finite());
+                    own.into_iter().for_each(|own| object[*name] = json!(own));
+                }
+                Member::Color(color, _) => object[*name] = json!(*color(&mut self.look)),
+                Member::Map(slot) | Member::ScaledMap(slot, ..) => {
+                    let Some(mut info) = self.maps[*slot as usize].take() else { continue };
+                    if let Member::ScaledMap(_, factor, number, _) = member {
+                        info[*factor] = json!(*number(&mut self.look));
+                    }
+                    object[*name] = info;
+                }
+            }
+        }
+    }
 }
 
 /// The place of what a list has each once, and whether it is new there.
@@ -267,21 +245,17 @@ fn transform([a, b, c, d, e, f]: [f32; 6]) -> Option<Option<Value>> {
 }
 
 fn sampler(sampling: Sampling) -> Value {
-    let wrap = sampling.wrap.map(|wrap| match wrap {
-        Wrap::Repeat => 10497,
-        Wrap::Mirror => 33648,
-        Wrap::Clamp => 33071,
-    });
-    let minify = match (sampling.minify_linear, sampling.mip_linear) {
-        (false, None) => 9728,
-        (true, None) => 9729,
-        (false, Some(false)) => 9984,
-        (true, Some(false)) => 9985,
-        (false, Some(true)) => 9986,
-        (true, Some(true)) => 9987,
-    };
-    let magnify = if sampling.magnify_linear { 9729 } else { 9728 };
-    json!({ "magFilter": magnify, "minFilter": minify, "wrapS": wrap[0], "wrapT": wrap[1] })
+    json!({
+        "magFilter": code(&MAGNIFY, sampling.magnify_linear),
+        "minFilter": code(&MINIFY, (sampling.minify_linear, sampling.mip_linear)),
+        "wrapS": code(&WRAPS, sampling.wrap[0]),
+        "wrapT": code(&WRAPS, sampling.wrap[1]),
+    })
+}
+
+/// The code of a value, of which each has one.
+fn code<T: PartialEq>(codes: &[(u64, T)], value: T) -> Option<u64> {
+    codes.iter().find(|(_, own)| *own == value).map(|(code, _)| *code)
 }
 
 #[cfg(test)]

@@ -63,9 +63,10 @@ fn a_material_comes_back_with_its_numbers_and_maps() {
             clearcoat: 0.5,
             clearcoat_normal_scale: 0.25,
             sheen_color: [1.0; 3],
+            anisotropy: 1.0,
             maps: Slot::ALL.map(|slot| match slot {
                 Slot::Normal | Slot::ClearcoatNormal => own(&normals, sampling),
-                Slot::Transmission => None,
+                Slot::Transmission | Slot::Thickness => None,
                 _ => own(&numbers, Sampling::default()),
             }),
             ..Look::default()
@@ -109,6 +110,14 @@ fn what_blends_and_what_transmits_light_come_back() {
     assert_eq!((read.alpha, read.transmission), (Alpha::Opaque, 0.625));
     let map = read.maps[Slot::Transmission as usize].as_ref().expect("a map");
     assert_eq!((&map.texture.rgba, map.uv), (&vec![77; 4], MapUv::Own));
+    // A body that absorbs nothing has no distance, which JSON couldn't hold.
+    for attenuation_distance in [0.75, f32::INFINITY] {
+        let look = &mut mesh.materials[0].look;
+        (look.thickness, look.attenuation_distance, look.attenuation_color) = (2.5, attenuation_distance, [0.5; 3]);
+        let read = read_back(&mesh).materials.remove(0).look;
+        let found = (read.thickness, read.attenuation_distance, read.attenuation_color);
+        assert_eq!(found, (2.5, attenuation_distance, [0.5; 3]));
+    }
 }
 
 #[test]
@@ -123,6 +132,8 @@ fn numbers_of_extensions_come_back() {
         clearcoat_roughness: 0.25,
         sheen_color: [0.25, 0.5, 0.0],
         sheen_roughness: 0.375,
+        anisotropy: 0.75,
+        anisotropy_rotation: -2.0,
         ..Look::default()
     };
     mesh.materials[0].look = look.clone();
@@ -130,7 +141,8 @@ fn numbers_of_extensions_come_back() {
     let numbers = |look: &Look| {
         let colors = [look.emissive, look.specular_color, look.sheen_color];
         let coat = [look.clearcoat, look.clearcoat_roughness];
-        (colors, coat, [look.ior, look.specular, look.sheen_roughness], look.unlit)
+        let long = [look.anisotropy, look.anisotropy_rotation];
+        (colors, coat, long, [look.ior, look.specular, look.sheen_roughness], look.unlit)
     };
     assert_eq!(numbers(&read), numbers(&look));
     mesh.materials[0].look = Look { unlit: true, ..Look::default() };

@@ -33,7 +33,9 @@ fn made(source: &Texture, filter: MipFilter, least: Option<u32>) -> Vec<Texture>
         ..Default::default()
     });
     let test = least.map(|least| AlphaTest { least, covered: covered(source, least) });
-    Mipmaps::new().fill(gpu, &image, &first, filter, test).expect("a small image");
+    let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
+    Mipmaps::new().fill(gpu, &mut encoder, &image, &first, filter, test).expect("a small image");
+    gpu.queue.submit([encoder.finish()]);
     (1..level_count(source.size)).map(|level| read_level(gpu, &image, level)).collect()
 }
 

@@ -6,6 +6,8 @@ use super::Renderer;
 use crate::render::Scene;
 use crate::render::draws::Draw;
 use crate::render::environment::{Environment, LightView};
+use crate::render::materials::PlacedMaterial;
+use crate::render::needs::Needs;
 use crate::settings::{ColorSource, Lighting, Settings, SplitSide};
 use gpu::{ChunkBuffers, GpuError, bind_group};
 
@@ -31,17 +33,32 @@ impl Renderer {
             Some(environment) if settings.lighting == Lighting::Environment => environment.clone(),
             _ => self.studio()?.clone(),
         };
-        let surroundings = environment.surroundings(&self.gpu, &light_view(settings));
+        let view = LightView {
+            brightness: settings.environment_brightness,
+            rotation: settings.light_rotation,
+            exposure: settings.exposure,
+            tone_curve: settings.tone_curve,
+        };
+        let surroundings = environment.surroundings(&self.gpu, &view);
         Ok(Some(PictureLight { environment, surroundings }))
     }
 
-    /// The bind groups of a half's materials for a picture of a scene with these settings, in this light.
+    /// The materials of a half, placed for the shaders that draw it with these settings.
+    pub(super) fn placed<'a>(&self, drawn: &'a Scene, half: SplitSide, settings: &Settings) -> Vec<PlacedMaterial<'a>> {
+        let (mesh, of_half) = (drawn.tessellator.mesh(), settings.half(half).unwrap_or(*settings));
+        let maps = |own| Needs::new(mesh, own, &of_half, self.kind(false)).maps;
+        drawn.materials.iter().zip(mesh.materials.iter().map(maps)).collect()
+    }
+
+    /// The bind groups of a half's materials for a picture of a scene with these settings, in this light; and what is behind
+    /// bodies that refract it.
     pub(super) fn material_groups(
         &self,
         scene: &Scene,
         half: SplitSide,
         settings: &Settings,
         light: Option<&PictureLight>,
+        behind: Option<&wgpu::TextureView>,
     ) -> Result<Vec<wgpu::BindGroup>, GpuError> {
         let Some(drawn) = scene.half(half) else { return Ok(Vec::new()) };
         if settings.overlays.colors.source() == ColorSource::LitSphere {
@@ -52,8 +69,8 @@ impl Renderer {
         let Some(PictureLight { environment, surroundings }) = light else {
             return Ok(drawn.materials.iter().map(|own| own.group.clone()).collect());
         };
-        let lights = drawn.lights.as_ref();
-        Ok(self.materials.lit_groups(&self.gpu, &drawn.materials, environment, surroundings, lights))
+        let (lights, materials) = (drawn.lights.as_ref(), self.placed(drawn, half, settings));
+        Ok(self.materials.lit_groups(&self.gpu, &materials, environment, surroundings, lights, behind))
     }
 
     /// The pipeline and the bind group that draw this light behind everything.
@@ -84,15 +101,5 @@ impl Renderer {
     pub(super) fn chunk_group(&self, chunk: &ChunkBuffers) -> wgpu::BindGroup {
         let bound = [chunk.slab, chunk.patch_factors].map(wgpu::Buffer::as_entire_binding);
         bind_group(&self.gpu, "chunk", &self.pipelines.chunk_layout, (0..).zip(bound))
-    }
-}
-
-/// How settings turn and show the light.
-fn light_view(settings: &Settings) -> LightView {
-    LightView {
-        brightness: settings.environment_brightness,
-        rotation: settings.light_rotation,
-        exposure: settings.exposure,
-        tone_curve: settings.tone_curve,
     }
 }

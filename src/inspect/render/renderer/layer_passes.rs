@@ -8,7 +8,7 @@ use crate::render::draws::{Draw, Faces, LayerDraw, Shading, SurfaceDraw, Triangl
 use crate::render::halves::HalfPlace;
 use crate::render::layers::LayerPass;
 use crate::render::needs::{Needs, PictureKind, has_layers};
-use crate::render::steps::{LayerPart, LayerStep};
+use crate::render::steps::LayerStep;
 use crate::render::surface_draws::{emitted_triangles, own_faces};
 use crate::render::target::depth_attachment;
 use crate::render::{Camera, Scene, Target};
@@ -36,7 +36,7 @@ impl Renderer {
         if is_empty(all) {
             return Ok(());
         }
-        let half = part.map_or(SplitSide::Right, |part| part.half);
+        let half = part.map_or(SplitSide::Right, |(half, _)| half);
         let of_half = settings.half(half).unwrap_or(**settings);
         let Some(frame) = &frames[half as usize] else { return Ok(()) };
         let drawn = scene.half(half).unwrap_or(scene);
@@ -61,7 +61,7 @@ impl Renderer {
             }
             render_pass.set_bind_group(0, &scene_group, &[]);
             render_pass.set_bind_group(3, &layer_group, &[]);
-            if let Some(LayerPart { chunk, .. }) = part {
+            if let Some((_, chunk)) = part {
                 let chunk = drawn.tessellator.chunk(chunk);
                 self.draw_chunk(render_pass, drawn, &layer_areas[half as usize], &surfaces, &chunk);
             }
@@ -174,7 +174,8 @@ fn draws(
         LayerPass::Away { .. } => &[LayerDraw::Away],
         LayerPass::Back { composites: false, .. } => &[LayerDraw::Toward],
         LayerPass::Back { finds, .. } => {
-            let all: &[_] = if material.look.transmits() {
+            // The picture of what is behind a body that refracts light has its colours from elsewhere.
+            let all: &[_] = if material.look.transmits() && !material.look.refracts() {
                 &[LayerDraw::Filter, LayerDraw::Add, LayerDraw::Toward]
             } else {
                 &[LayerDraw::Over, LayerDraw::Toward]

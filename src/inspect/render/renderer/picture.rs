@@ -7,11 +7,12 @@ use crate::render::draws::{Draw, Occluded};
 use crate::render::frame::frame;
 use crate::render::ground::Ground;
 use crate::render::halves::{HalfPlace, half_places};
+use crate::render::layers::LayerPass;
 use crate::render::layout::linear;
 use crate::render::steps::{Step, steps};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{ColorSource, Settings, SplitSide};
-use gpu::{GpuError, Recorder};
+use gpu::{GpuError, Recorder, whole};
 
 /// What all steps of a picture share.
 pub(super) struct Picture<'a> {
@@ -28,6 +29,8 @@ pub(super) struct Picture<'a> {
     /// The same for passes that find layers; none in a picture without layers.
     pub found_materials: [Vec<wgpu::BindGroup>; 2],
     pub steps: Vec<Step>,
+    /// Whether a body refracts light: it is drawn with a picture of what is behind it.
+    refracts: bool,
     camera: &'a Camera,
     /// What draws the light behind everything, if it is shown.
     background: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
@@ -59,18 +62,22 @@ impl Renderer {
         let places = half_places(target.size, settings);
         let half_frame = |half| {
             let (drawn, settings) = scene.half(half).zip(settings.half(half))?;
-            let radius = scene.bounds.radius();
-            Some(frame(&self.gpu, drawn, radius, target, camera, &settings, &places[half as usize]))
+            Some(frame(&self.gpu, drawn, &scene.usual(), target, camera, &settings, &places[half as usize]))
         };
         let steps = steps(scene, settings);
         let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
         let layer_areas = self.layer_areas(scene, target, camera, settings, places);
         let has_layers = !layer_areas.iter().all(|place| is_empty(place.area));
         let found_materials = |half| match scene.half(half) {
-            Some(own) if has_layers => self.materials.found_groups(&self.gpu, &own.materials, target.depths()),
+            Some(own) if has_layers => {
+                self.materials.found_groups(&self.gpu, &self.placed(own, half, settings), target.depths())
+            }
             _ => Vec::new(),
         };
-        let materials = |half| self.material_groups(scene, half, settings, light.as_ref());
+        let has_bodies = |own: &Scene| own.tessellator.mesh().materials.iter().any(|own| own.look.refracts());
+        let refracts = has_layers && SplitSide::BOTH.iter().any(|half| scene.half(*half).is_some_and(has_bodies));
+        let behind = if refracts { Some(whole(target.behind(&self.gpu)?)) } else { None };
+        let materials = |half| self.material_groups(scene, half, settings, light.as_ref(), behind.as_ref());
         Ok(Picture {
             places,
             layer_areas,
@@ -80,6 +87,7 @@ impl Renderer {
             background: shown_light.map(|light| self.background(light)).transpose()?,
             ground_step: ground_step(&steps, scene, camera),
             steps,
+            refracts,
             target,
             camera,
             settings,
@@ -113,6 +121,9 @@ impl Renderer {
             }
         }
         if let Step::Layer(layer) = step {
+            if picture.refracts && layer.pass == LayerPass::Begin {
+                target.keep_behind(recorder, &self.gpu, &self.materials.mipmaps)?;
+            }
             return self.draw_layer(recorder, scene, picture, layer);
         }
         let of_half = settings.half(step.half()).unwrap_or(*settings);
@@ -142,7 +153,11 @@ impl Renderer {
         let ends = |at: Option<usize>| {
             at.and_then(|at| steps.get(at)).is_none_or(|step| matches!(step, Step::Keep | Step::Difference))
         };
-        let (step, is_first, is_last) = (steps[index], ends(index.checked_sub(1)), ends(Some(index + 1)));
+        let (step, is_first) = (steps[index], ends(index.checked_sub(1)));
+        // Layers begin with a picture of what is behind them.
+        let next = steps.get(index + 1);
+        let is_behind = picture.refracts && matches!(next, Some(Step::Layer(next)) if next.pass == LayerPass::Begin);
+        let is_last = is_behind || ends(Some(index + 1));
         let shown = SplitSide::BOTH.map(|half| {
             let (own, frame) = scene.half(half).zip(frames[half as usize].as_ref())?;
             Some((own, self.scene_group(own, frame), &places[half as usize]))

@@ -39,6 +39,7 @@ impl Renderer {
         if settings.overlays.normals {
             draws.extend(Occluded::BOTH.map(Draw::Normals));
         }
+        draws.extend(scene.lines.iter().flat_map(|_| Occluded::BOTH.map(Draw::Lines)));
         each(&Vec::from_iter(HashSet::<Draw>::from_iter(draws)), |&draw| self.get(draw).map(drop))
     }
 
@@ -64,13 +65,5 @@ impl Renderer {
         let faces = if culls { Faces::Fronts } else { Faces::Both };
         let (mesh, kind) = (scene.tessellator.mesh(), self.kind(is_draft));
         mesh.materials.iter().map(|own| surface_draw(settings, mesh, own, faces, kind)).collect()
-    }
-
-    /// Makes the pipelines of all draws, also of those that no picture has needed yet. Measurements of memory use it.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub fn prepare_all(&self) -> Result<(), GpuError> {
-        Draw::all().into_iter().try_for_each(|draw| self.get(draw).map(|_| ()))
     }
 }

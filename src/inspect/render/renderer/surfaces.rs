@@ -2,12 +2,12 @@
 
 use super::Renderer;
 use crate::render::coverage::Coverage;
-use crate::render::draws::{Draw, Faces, Triangles};
+use crate::render::draws::{Faces, Triangles};
 use crate::render::halves::HalfPlace;
 use crate::render::surface_draws::{emitted_triangles, surface_draw};
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{Overlays, Settings};
-use geometry::mesh::{Material, Mesh};
+use geometry::mesh::Material;
 use geometry::tessellate::CoverageView;
 use gpu::layout::DrawArgs;
 use gpu::{ChunkBuffers, GpuError, Recorder};
@@ -45,20 +45,13 @@ impl Renderer {
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
-        let draw = |own: &Material| surface_draw(settings, mesh, own, faces, self.kind(target.is_draft()));
-        let materials = self.material_draws(mesh, materials, draw)?;
+        let kind = self.kind(target.is_draft());
+        let draws = |(own, group): (&Material, &wgpu::BindGroup)| {
+            Ok(vec![(self.get(surface_draw(settings, mesh, own, faces, kind))?, group.clone())])
+        };
+        let materials = mesh.materials.iter().zip(materials).map(draws).collect::<Result<_, GpuError>>()?;
         let pulled = emitted_triangles(settings) == Triangles::Pulled;
         Ok(Surfaces { materials, pulled, fronts, sifted: false })
-    }
-
-    fn material_draws(
-        &self,
-        mesh: &Mesh,
-        groups: &[wgpu::BindGroup],
-        draw: impl Fn(&Material) -> Draw,
-    ) -> Result<Vec<Vec<MaterialDraw>>, GpuError> {
-        let of_material = |(own, group): (_, &wgpu::BindGroup)| Ok(vec![(self.get(draw(own))?, group.clone())]);
-        mesh.materials.iter().zip(groups).map(of_material).collect()
     }
 
     /// Removes triangles that cover no sample from an emitted chunk, if that saves time. Returns false if all of the chunk has to

@@ -6,7 +6,6 @@ use std::collections::BTreeMap;
 use super::modules;
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::camera::FIELD_OF_VIEW;
-use crate::render::colors::Look;
 use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::draws::LayerDraw;
@@ -17,13 +16,14 @@ use crate::render::layout::{
 };
 use crate::render::matcap::MATCAP_REACH;
 use crate::render::mipmap_pass::ALPHAS;
+use crate::render::needs::BEHIND;
 use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::sheen::LEAST_SHEEN_ALPHA;
 use crate::render::tone::{COMPRESSION_START, DESATURATION};
 use crate::settings::{Colors, Overlays, ToneCurve};
 use crate::shot::DIFFERENCE_FLOOR;
-use geometry::mesh::{EdgeKind, MAX_MAPS, MOST_LIGHTS, RELIEF_STEPS, Slot};
+use geometry::mesh::{EdgeKind, MAX_MAPS, MOST_LIGHTS, PartStyle, RELIEF_STEPS, Slot};
 use geometry::tessellate::shared_constants::{
     AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
     BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DIRECTION_ROUNDING, FACING_AWAY, FACING_MARGIN,
@@ -36,7 +36,7 @@ use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use gpu::layout::LOD_GIVEN;
 use gpu::relief_buffers::HEIGHTS_ACROSS;
 use gpu::shader_constants::enum_constants;
-use gpu::{GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP};
+use gpu::{CURVE_SURFACE_STEP, DETAIL_STEP, GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP};
 
 /// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
@@ -78,6 +78,7 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &["WORK_PIECE", "MOST_WORK", "MOST_WORK_OF_ALL"],
         "how much work functions of the user's own may be, which only the device counts",
     ),
+    (&["LEANS"], "how an integral is divided; tests compare it with the integral"),
     (&["LARGE"], "how one pass divides its work; no result depends on it"),
     (
         &[
@@ -102,12 +103,12 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
         &[
             "CLAY_COLOR",
             "CLAY_UNDER_OUTLINES",
-            "ZEBRA_STRIPES",
-            "ZEBRA_AXIS",
             "ZEBRA_DARK",
             "ZEBRA_LIGHT",
-            "CHECKER_SQUARES",
             "CHECKER_DARK",
+            "GLYPHS",
+            "GLYPH_F",
+            "SQUARE_CELLS",
         ],
         "how the surface looks",
     ),
@@ -151,6 +152,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("LAYER_FILTER", number(LayerDraw::Filter as u32)),
         ("LAYER_ADD", number(LayerDraw::Add as u32)),
         ("MAP_COUNT", number(Slot::COUNT as u32)),
+        ("BEHIND", number(BEHIND as u32)),
         ("MAX_MAPS", number(MAX_MAPS as u32)),
         ("WORKGROUP", number(WORKGROUP)),
         ("GRID_WIDTH", number(GRID_WIDTH)),
@@ -191,10 +193,10 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_SHADING_NORMALS", colors(Colors::ShadingNormals)),
         ("OVERLAY_UV_CHECKER", colors(Colors::UvChecker)),
         ("OVERLAY_DEVIATION", colors(Colors::Deviation)),
-        ("LOOK_SURFACE_NORMALS", number(Look::SurfaceNormals as u32)),
-        ("LOOK_CURVATURE", number(Look::Curvature as u32)),
-        ("LOOK_MATCAP", number(Look::Matcap as u32)),
-        ("LOOK_TEXEL_DENSITY", number(Look::TexelDensity as u32)),
+        ("LOOK_SURFACE_NORMALS", number(Colors::SurfaceNormals as u32)),
+        ("LOOK_CURVATURE", number(Colors::Curvature as u32)),
+        ("LOOK_MATCAP", number(Colors::Matcap as u32)),
+        ("LOOK_TEXEL_DENSITY", number(Colors::TexelDensity as u32)),
         ("TEXELS_WITHOUT_IMAGE", number(TEXELS_WITHOUT_IMAGE)),
         ("MATCAP_REACH", number(MATCAP_REACH)),
         ("FOLD_COLOR", color(FOLD_COLOR)),
@@ -249,6 +251,9 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("NEEDED_SHARE", number(NEEDED_SHARE)),
         ("RELIEF_STEPS", number(RELIEF_STEPS as u32)),
         ("TEXTURED", number(TEXTURED)),
+        ("DETAIL_STEP", number(DETAIL_STEP)),
+        ("LEAST_DETAIL", number(PartStyle::LEAST)),
+        ("CURVE_SURFACE_STEP", number(CURVE_SURFACE_STEP)),
         ("FIXED_ONE", number(FIXED_ONE)),
         ("FIXED_HALF", number(FIXED_HALF)),
         ("FIXED_TWO_THIRDS", number(FIXED_TWO_THIRDS)),

@@ -70,6 +70,7 @@ fn shared_structs_have_the_same_layout() {
         displacement,
         height_scale,
         midlevel,
+        chosen_surface,
     });
     same!(Share { direction, level, dominant });
     same!(PatchRelief { form, longest, range, slope, losses });
@@ -111,6 +112,10 @@ fn shared_structs_have_the_same_layout() {
         left,
         coarseness,
         shift,
+        kind,
+        zebra_axis,
+        zebra_stripes,
+        checker_squares,
     });
     same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
     same!(PunctualLight { origin, intensity, inverse_range, direction, cone_scale, cone_offset });
@@ -121,6 +126,8 @@ fn shared_structs_have_the_same_layout() {
         specular,
         coat_normal,
         coat,
+        direction,
+        anisotropy,
         roughness,
         coat_roughness,
         ior,
@@ -161,8 +168,12 @@ fn shared_structs_have_the_same_layout() {
         blends,
         transmission,
         coat_normal_scale,
+        anisotropy,
         sheen_color,
         sheen_roughness,
+        absorption,
+        thickness,
+        anisotropy_direction,
         maps,
     });
     same!(MapPlace { u, v });

@@ -21,7 +21,12 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         tone_curve,
         light_rotation,
         deviation_in,
+        curvature_kind,
         curvature_scale,
+        zebra_stripes,
+        zebra_direction,
+        checker_squares,
+        texel_density_per,
         matcap,
         split,
         split_view,
@@ -80,7 +85,12 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("tone_curve", format!("{tone_curve:?}")),
         ("light_rotation", format!("{light_rotation:?}")),
         ("deviation_in", format!("{deviation_in:?}")),
+        ("curvature_kind", format!("{curvature_kind:?}")),
         ("curvature_scale", format!("{curvature_scale:?}")),
+        ("zebra_stripes", format!("{zebra_stripes:?}")),
+        ("zebra_direction", format!("{zebra_direction:?}")),
+        ("checker_squares", format!("{checker_squares:?}")),
+        ("texel_density_per", format!("{texel_density_per:?}")),
         ("matcap", format!("{matcap:?}")),
         ("split", format!("{split:?}")),
         ("split_view", format!("{split_view:?}")),
@@ -220,7 +230,12 @@ fn unused_options_have_no_effect() {
         "tone-curve",
         "light-rotation",
         "deviation-in",
+        "curvature-kind",
         "curvature-scale",
+        "zebra-stripes",
+        "zebra-direction",
+        "checker-squares",
+        "texel-density-per",
         "matcap",
         "split-view",
         "split-left",
@@ -255,22 +270,39 @@ fn unused_options_have_no_effect() {
         "tone-curve",
         "light-rotation",
     ];
-    let with_light = |before: &[&'static str], after: &[&'static str]| [before, &of_light, after].concat();
+    let of_looks = [
+        "curvature-kind",
+        "curvature-scale",
+        "zebra-stripes",
+        "zebra-direction",
+        "checker-squares",
+        "texel-density-per",
+        "matcap",
+    ];
+    let with_light = |before: &[&'static str], after: &[&'static str]| [before, &of_light, &of_looks, after].concat();
     assert_eq!(
         idle(&phong_left),
         with_light(
             &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
-            &["curvature-scale", "matcap", "split-view", "split-left", "section-at"]
+            &["split-view", "split-left", "section-at"]
         )
     );
     phong_left.split = Some(0.5);
     assert_eq!(
         idle(&phong_left),
-        with_light(
-            &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
-            &["curvature-scale", "matcap", "section-at"]
-        )
+        with_light(&["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"], &["section-at"])
     );
+    for (colors, used) in [
+        (Colors::Curvature, &of_looks[..2]),
+        (Colors::Zebra, &of_looks[2..4]),
+        (Colors::UvChecker, &of_looks[4..5]),
+        (Colors::TexelDensity, &of_looks[5..6]),
+        (Colors::Matcap, &of_looks[6..]),
+    ] {
+        phong_left.overlays.colors = colors;
+        let idle = idle(&phong_left);
+        assert!(of_looks.iter().all(|name| idle.contains(name) != used.contains(name)), "{colors:?}: {idle:?}");
+    }
     phong_left.overlays.colors = Colors::Material;
     for lighting in [Lighting::Studio, Lighting::Environment] {
         phong_left.lighting = lighting;

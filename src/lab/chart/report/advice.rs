@@ -5,7 +5,7 @@ use super::lods::{Range, Saving, saving};
 use super::{Part, fronts, limits};
 use crate::chart::words::plain;
 use crate::chart::{Cost, LodKind};
-use geometry::numbers::short;
+use geometry::numbers::{counted, short};
 use load::markdown;
 
 /// The most methods that are named in a list. Others are counted.
@@ -40,24 +40,23 @@ fn reaching(parts: &[Part], error: f64) -> Option<String> {
     if raced.is_empty() {
         return None;
     }
-    let asked = |cost: Cost| -> Vec<_> {
-        raced.iter().filter_map(|(part, race)| Some((*part, answer(part, race, error, cost)?))).collect()
+    // Every race has a row, so that each of these meshes has an answer.
+    let asked = |cost: Cost| -> Vec<Answer> {
+        raced.iter().filter_map(|(part, race)| answer(part, race, error, cost)).collect()
     };
     let [by_triangles, by_ms] = [Cost::Triangles, Cost::Ms].map(asked);
     let mut text = format!("**Error of at most {} % of the diagonal:**", plain(100.0 * error));
-    let by_triangles_alone: Vec<_> = by_triangles.iter().map(|(_, answer)| answer.clone()).collect();
-    let by_ms: Vec<_> = by_ms.into_iter().map(|(_, answer)| answer).collect();
-    let reached = by_triangles_alone.iter().filter(|answer| matches!(answer, Answer::By(_))).count();
+    let reached = by_triangles.iter().filter(|answer| matches!(answer, Answer::By(_))).count();
     if reached > 0 {
-        let [fewest, fastest] = [&by_triangles_alone, &by_ms].map(|answers| named(parts, answers, reached));
+        let [fewest, fastest] = [&by_triangles, &by_ms].map(|answers| named(parts, answers, reached));
         text += &format!(" fewest triangles: {fewest}; fastest, or at most 5 % slower: {fastest}.");
     }
-    let titles = |is_meant: &dyn Fn(&Answer) -> bool| -> Vec<String> {
-        let meant = by_triangles.iter().filter(|(_, answer)| is_meant(answer));
-        meant.map(|(part, _)| markdown::plain(&part.subject.title)).collect()
+    let titles = |is_meant: fn(&Answer) -> bool| -> Vec<String> {
+        let meant = raced.iter().zip(&by_triangles).filter(|(_, answer)| is_meant(answer));
+        meant.map(|((part, _), _)| markdown::plain(&part.subject.title)).collect()
     };
-    let as_they_are = titles(&|answer| matches!(answer, Answer::AsItIs(_)));
-    let nobody = titles(&|answer| matches!(answer, Answer::Nobody(..)));
+    let as_they_are = titles(|answer| matches!(answer, Answer::AsItIs(_)));
+    let nobody = titles(|answer| matches!(answer, Answer::Nobody(..)));
     if !as_they_are.is_empty() {
         text += &format!(" No tessellation is needed on {}.", markdown::listed(&as_they_are));
     }
@@ -73,7 +72,7 @@ fn named(parts: &[Part], answers: &[Answer], reached: usize) -> String {
     let winners = winners(answers);
     let mut words: Vec<String> = Vec::new();
     for (index, (method, count)) in winners.iter().take(NAMED).enumerate() {
-        let of = if index == 0 { format!(" of {}", fronts::meshes(reached)) } else { String::new() };
+        let of = if index == 0 { format!(" of {}", counted(reached as u64, "mesh")) } else { String::new() };
         words.push(format!("{} (on {count}{of})", fronts::name(parts, *method)));
     }
     if winners.len() > NAMED {

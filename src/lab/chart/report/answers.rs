@@ -40,7 +40,7 @@ pub(super) fn answer<'a>(part: &Part, race: &Race<'a>, error: f64, cost: Cost) -
     let mut rows = vec![best];
     for method in part.subject.methods().into_iter().filter(|method| *method != best.setting.method) {
         let own = race.cheapest(error, cost, |row| row.setting.method == method);
-        rows.extend(own.filter(|row| cost.of(row) <= slack * cost.of(best)));
+        rows.extend(own.filter(|row| cost.of(&row.probe) <= slack * cost.of(&best.probe)));
     }
     Some(Answer::By(rows))
 }
@@ -85,14 +85,14 @@ pub(super) fn tables(parts: &[Part]) -> String {
 /// The text for an answer: the method, and its cost.
 fn cell(part: &Part, (cost, answer): (Cost, Answer)) -> (String, String) {
     match answer {
-        Answer::AsItIs(row) => ("the mesh as it is".to_owned(), amount(cost, cost.of(row))),
+        Answer::AsItIs(row) => ("the mesh as it is".to_owned(), amount(cost, cost.of(&row.probe))),
         Answer::By(rows) => {
             let more = match rows.len() {
                 1 => String::new(),
                 count => format!(", and {} more", count - 1),
             };
             let best = rows[0];
-            (format!("{}{more}", part.subject.named(best)), amount(cost, cost.of(best)))
+            (format!("{}{more}", part.subject.named(best)), amount(cost, cost.of(&best.probe)))
         }
         Answer::Nobody(row, error) => {
             let closest = format!("none; closest is {} with {} %", part.subject.named(row), short(100.0 * error));

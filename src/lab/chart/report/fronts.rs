@@ -2,7 +2,7 @@
 
 use super::{Part, titled};
 use crate::chart::{Cost, Method, Row, distinct};
-use geometry::numbers::grouped;
+use geometry::numbers::{counted, grouped};
 use inspect::settings::Choice;
 use load::markdown;
 
@@ -32,7 +32,7 @@ pub(super) fn standings(parts: &[Part]) -> Vec<Standing> {
             }
         }
         for (index, cost) in COSTS.into_iter().enumerate() {
-            let front = race.front(|row| cost.of(row));
+            let front = race.front(|row| cost.of(&row.probe));
             let rows: Vec<&Row> = front.into_iter().map(|(row, _)| row).filter(|row| !part.is_plain(row)).collect();
             for standing in &mut all {
                 let count = rows.iter().filter(|row| row.setting.method == standing.method).count();
@@ -64,11 +64,6 @@ pub(super) fn table_of(parts: &[Part]) -> String {
     titled("How often each method is on the front", about, &COLUMNS, &rows)
 }
 
-/// A number of meshes in words.
-pub(super) fn meshes(count: usize) -> String {
-    format!("{count} {}", if count == 1 { "mesh" } else { "meshes" })
-}
-
 /// A method's name, as on the first mesh that it was tried on.
 pub(super) fn name(parts: &[Part], method: Method) -> String {
     let part = parts.iter().find(|part| part.subject.methods().contains(&method));
@@ -98,7 +93,10 @@ pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
         let by = if cost == Cost::Ms { "ms" } else { "triangles" };
         if !names.is_empty() {
             let names = markdown::listed(&names);
-            all.push(format!("Most often on the front by {by}: {names}, on {most} of {}.", meshes(tried)));
+            all.push(format!(
+                "Most often on the front by {by}: {names}, on {most} of {}.",
+                counted(tried as u64, "mesh")
+            ));
         }
     }
     let never = standings.iter().filter(|standing| standing.meshes == [0, 0]);

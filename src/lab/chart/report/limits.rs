@@ -1,10 +1,9 @@
 //! How close each surface gets to the reference surface, at any cost.
 
-use super::fronts::meshes;
 use super::lods::Range;
 use super::{Part, titled};
 use crate::chart::{Race, distinct, has_converged};
-use geometry::numbers::short;
+use geometry::numbers::{counted, short};
 use geometry::tessellate::{Surface, SurfaceFamily};
 use inspect::settings::{Choice, Settings};
 use load::markdown;
@@ -65,7 +64,7 @@ pub(super) fn sentences(parts: &[Part]) -> Vec<String> {
 
 /// Says how close a surface gets however fine it is, and why; `None` if that isn't known on any mesh.
 fn stops(parts: &[Part], surface: Surface) -> Option<String> {
-    let (mut reached, mut ratios, mut tried) = (Vec::new(), Vec::new(), 0);
+    let (mut reached, mut ratios, mut tried) = (Vec::new(), Vec::new(), 0_u64);
     for part in parts {
         let Some(race) = part.race() else { continue };
         let Some(limit) = limit(part, &race, surface) else { continue };
@@ -88,7 +87,7 @@ fn stops(parts: &[Part], surface: Surface) -> Option<String> {
     let name = surface.name();
     let against = Range::from_ratios(&ratios)
         .map_or_else(String::new, |range| format!(" It is {}.", closer(&range, ratios.len())));
-    let (on, of, why) = (reached.len(), meshes(tried), reason(surface));
+    let (on, of, why) = (reached.len(), counted(tried, "mesh"), reason(surface));
     Some(format!("However fine, `{name}` comes no closer than {range}, on {on} of {of}: {why}.{against}"))
 }
 

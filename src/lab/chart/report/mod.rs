@@ -7,7 +7,6 @@ mod fronts;
 mod limits;
 mod lods;
 mod section;
-mod waste;
 
 use std::fmt::Write;
 
@@ -102,7 +101,7 @@ pub fn page(occasion: &Occasion, parts: &[Part]) -> String {
     text.extend(advice.iter().map(|sentence| format!("- {sentence}\n")));
     text += &tables(parts);
     text += &limits::table_of(parts);
-    text += &waste::table_of(parts);
+    text += &lods::table_of(parts);
     text += &fronts::table_of(parts);
     text.extend(parts.iter().map(section));
     text

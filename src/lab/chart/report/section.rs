@@ -78,7 +78,7 @@ fn table(part: &Part, names: [&str; 3], rows: &[([String; 3], &Row)]) -> String 
 
 /// A table of the rows that no other row beats, in triangles or in ms.
 fn front<'a>(part: &Part, race: &Race<'a>) -> String {
-    let fronts = [Cost::Triangles, Cost::Ms].map(|cost| race.front(|row| cost.of(row)));
+    let fronts = [Cost::Triangles, Cost::Ms].map(|cost| race.front(|row| cost.of(&row.probe)));
     let is_in = |row: &Row, front: &[(&Row, f64)]| front.iter().any(|(other, _)| std::ptr::eq(*other, row));
     let mut rows: Vec<(&'a Row, f64)> = fronts[0].clone();
     rows.extend(fronts[1].iter().filter(|(row, _)| !is_in(row, &fronts[0])));

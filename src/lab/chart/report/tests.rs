@@ -1,6 +1,5 @@
 use super::fronts::standings;
-use super::lods::saving;
-use super::waste::{table_of, wastes};
+use super::lods::{saving, table_of, wastes};
 use super::*;
 use crate::chart::tests::{row, subject};
 use crate::chart::{Cost, LodKind, Probe, Row, has_converged};

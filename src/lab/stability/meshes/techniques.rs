@@ -9,7 +9,7 @@ use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::rig::{
     AnimatedNode, Binding, Channel, Clip, Delta, Interpolation, Joint, Keys, Morph, Placement, Property, Reach,
 };
-use geometry::mesh::{Corner, HeightMap, Heights, Mesh, Rig, Shape};
+use geometry::mesh::{Corner, Heights, Mesh, Rig, Shape};
 
 /// A level sheet whose normals all lean one way, each a little more or less than the next. Along an edge in that direction
 /// the tangents at both ends rise, and the tangent planes are nearly parallel.
@@ -42,18 +42,9 @@ pub(crate) fn dart() -> Mesh {
     }))
 }
 
-/// A height image of waves, 32 px wide and high, that can be repeated without a seam.
-fn waves() -> HeightMap {
-    let height = |i: u32| {
-        let [x, y] = [i % 32, i / 32].map(|x| std::f32::consts::TAU * (x as f32 + 0.5) / 32.0);
-        0.5 + 0.25 * (2.0 * x).sin() * y.cos() + 0.2 * (x + 2.0 * y).cos()
-    };
-    HeightMap::new([32, 32], (0..1024).map(height).collect())
-}
-
 /// A mesh displaced by waves.
 pub(crate) fn displaced(mut mesh: Mesh) -> Mesh {
-    mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, waves())));
+    mesh.heights = Some(Arc::new(Heights::waves(&mesh, 32, [2.0, 1.0])));
     mesh
 }
 

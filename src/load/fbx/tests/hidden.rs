@@ -7,7 +7,7 @@ use crate::fbx::read_here;
 use crate::import::Import;
 use crate::loaded_mesh::LoadedMesh;
 use crate::model_file::ModelFile;
-use crate::selection::Selection;
+use crate::selection::{Selection, ShownParts};
 use geometry::progress::Progress;
 
 const TRIANGLE: [f64; 9] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
@@ -81,10 +81,37 @@ fn nodes_and_layers_that_are_off_are_hidden_unless_they_are_asked_for() {
     let file = ModelFile { selected, ..ModelFile::from_test("test", &progress) };
     let all = read_here(text(&layered()), &file).expect("no fault");
     assert_eq!(all.triangles.len(), 3);
-    let parts: Vec<_> = all.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
-    assert_eq!(parts, [("off", 1), ("in a layer that is off", 1), ("below, but shown", 1)]);
+    let parts: Vec<_> = all.contents.parts.iter().map(|part| (part.name.as_str(), part.triangles)).collect();
+    assert_eq!(parts, [("off", 1), ("in a layer that is off", 1), ("in a layer that is off/below, but shown", 1)]);
     assert_eq!([0, 1, 2].map(|triangle| all.part_of(triangle)), [Some(0), Some(1), Some(2)]);
     assert!(all.warnings.iter().all(|warning| !warning.contains("hides")), "{:?}", all.warnings);
+}
+
+#[test]
+fn the_first_level_of_detail_is_shown_and_another_one_if_it_is_named() {
+    let group = object("NodeAttribute", 30, "NodeAttribute::", "LodGroup", vec![one("TypeFlags", "LodGroup")]);
+    let objects = vec![
+        geometry(10, &TRIANGLE, &[&[0, 1, 2]], Vec::new()),
+        group,
+        model(20, "car", "LodGroup", &[]),
+        model(21, "high", "Mesh", &[]),
+        model(22, "low", "Null", &[]),
+        model(23, "wheel", "Mesh", &[]),
+    ];
+    let links = [Link(20, 0, ""), Link(30, 20, ""), Link(21, 20, ""), Link(22, 20, ""), Link(23, 22, "")];
+    let meshes = [21, 23].map(|node| Link(10, node, ""));
+    let entries = document(false, 100.0, objects, &links.into_iter().chain(meshes).collect::<Vec<_>>());
+    let first = loaded(&entries);
+    let parts: Vec<_> = first.contents.parts.iter().map(|part| (part.name.as_str(), part.is_hidden)).collect();
+    assert_eq!(parts, [("car/high", false), ("car/low/wheel", true)]);
+    assert_eq!(first.triangles.len(), 1);
+    assert!(first.warnings.iter().any(|warning| warning.contains("levels of detail")), "{:?}", first.warnings);
+    let low = ShownParts { only: vec!["low".to_owned()], ..ShownParts::default() };
+    let progress = Progress::new();
+    let selected = Selection { parts: Some(&low), ..Selection::default() };
+    let file = ModelFile { selected, ..ModelFile::from_test("test", &progress) };
+    let other = read_here(text(&entries), &file).expect("no fault");
+    assert_eq!(other.contents.parts.iter().map(|part| part.is_hidden).collect::<Vec<_>>(), [true, false]);
 }
 
 #[test]

@@ -2,10 +2,13 @@
 
 use glam::Vec3;
 
+use super::super::read_here;
 use super::documents::{LAYER, Link, add, curves, document, geometry, model, morphed_square, skinned_strip, stack};
 use super::loaded;
-use super::tree::{Entry, object, one, properties};
+use super::tree::{Entry, object, one, properties, text};
 use crate::loaded_mesh::LoadedMesh;
+use crate::model_file::ModelFile;
+use crate::selection::{MorphWeights, Selection, ShownParts};
 use geometry::mesh::{Moment, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::deform;
@@ -54,6 +57,22 @@ fn shapes_in_between_bend_the_path_of_a_vertex() {
             let risen = if rest.x * rest.y == 1.0 { height } else { 0.0 };
             assert_near(posed, rest + risen * Vec3::Z, &format!("{rest} at {time} s"));
         }
+    }
+}
+
+#[test]
+fn chosen_weights_of_shapes_are_those_at_rest() {
+    let progress = Progress::new();
+    let shown = ShownParts { morphs: [("rise".to_owned(), 0.75)].into(), ..ShownParts::default() };
+    let selected = Selection { parts: Some(&shown), ..Selection::default() };
+    let file = ModelFile { selected, ..ModelFile::from_test("test", &progress) };
+    let loaded = read_here(text(&morphed_square()), &file).expect("a file without a fault");
+    assert_eq!(loaded.contents.morph_targets, MorphWeights::from([("rise".to_owned(), 0.0)]), "those of the file");
+    for (rest, posed) in at(&loaded, 2.0) {
+        // Half of each of both shapes, and at the clip's end the second.
+        let [height, end] = if rest.x * rest.y == 1.0 { [2.5, 4.0] } else { [0.0; 2] };
+        assert_near(rest, Vec3::new(rest.x, rest.y, height), "at rest");
+        assert_near(posed, Vec3::new(rest.x, rest.y, end), "at the end");
     }
 }
 

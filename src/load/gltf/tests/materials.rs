@@ -145,6 +145,86 @@ fn a_coat_and_a_reflection_have_maps() {
 }
 
 #[test]
+fn long_highlights_have_a_strength_a_direction_and_a_map_and_need_tangents() {
+    let rotation = std::f32::consts::FRAC_PI_2;
+    let long = json!({ "anisotropyStrength": 0.5, "anisotropyRotation": rotation });
+    let mesh = square(json!({ "extensions": { "KHR_materials_anisotropy": long } })).read().unwrap();
+    let look = &mesh.materials[0].look;
+    assert_eq!((look.anisotropy, look.anisotropy_rotation, look.has_anisotropy()), (0.5, rotation, true));
+    assert_eq!(mesh.warnings, [""; 0]);
+    // They go along the base colour's texture coordinates.
+    assert!(details(&mesh).iter().all(|detail| detail.tangent.distance(Vec3::X) < 1e-6));
+    // In the map's own texture coordinates, which are turned by a quarter, u grows along y.
+    let quarter = json!({ "KHR_texture_transform": { "rotation": rotation } });
+    let map = json!({ "anisotropyStrength": 1, "anisotropyTexture": { "index": 0, "extensions": quarter } });
+    let mesh = square(json!({ "extensions": { "KHR_materials_anisotropy": map } })).read().unwrap();
+    assert!(mesh.materials[0].look.maps[Slot::Anisotropy as usize].is_some());
+    assert!(details(&mesh).iter().all(|detail| detail.tangent.distance(Vec3::NEG_Y) < 1e-6));
+    let none = json!({ "anisotropyTexture": { "index": 0 } });
+    let mesh = square(json!({ "extensions": { "KHR_materials_anisotropy": none } })).read().unwrap();
+    assert!(mesh.details.is_none() && mesh.materials[0].look.maps.iter().all(Option::is_none));
+}
+
+/// A body of this thickness, which lets all light through.
+fn body(thickness: f32) -> Value {
+    let volume = json!({
+        "thicknessFactor": thickness, "attenuationDistance": 0.5, "attenuationColor": [1, 0.5, 0.25],
+        "thicknessTexture": { "index": 0 },
+    });
+    let extensions =
+        json!({ "KHR_materials_transmission": { "transmissionFactor": 1 }, "KHR_materials_volume": volume });
+    json!({ "name": "jar", "pbrMetallicRoughness": { "metallicFactor": 0 }, "extensions": extensions })
+}
+
+#[test]
+fn a_body_has_a_thickness_in_its_mesh_and_absorbs_in_the_scene() {
+    let look = material(body(2.0)).look;
+    assert_eq!((look.thickness, look.attenuation_distance, look.attenuation_color), (2.0, 0.5, [1.0, 0.5, 0.25]));
+    // A half is left after half a unit.
+    let [red, green, blue] = look.absorption();
+    assert!(red == 0.0 && (green - 2.0 * 2.0_f32.ln()).abs() < 1e-6 && (blue - 2.0 * green).abs() < 1e-6);
+    assert!(look.refracts() && look.maps[Slot::Thickness as usize].is_some());
+    let thin = material(json!({ "extensions": { "KHR_materials_volume": { "attenuationDistance": 2 } } })).look;
+    assert_eq!((thin.refracts(), thin.absorption()), (false, [0.0; 3]));
+    // Of a scale along one axis the mean counts, and that of the first node.
+    let mut draft = square(body(2.0));
+    draft.root["nodes"] = json!([{ "mesh": 0, "scale": [8, 1, 1] }, { "mesh": 0, "scale": [-2, 2, 2] }]);
+    draft.root["scenes"][0]["nodes"] = json!([0, 1]);
+    let mesh = draft.read().unwrap();
+    assert!((mesh.materials[0].look.thickness - 4.0).abs() < 1e-5, "{}", mesh.materials[0].look.thickness);
+    assert_eq!((mesh.materials[0].look.attenuation_distance, mesh.warnings), (0.5, Vec::<String>::new()));
+    draft.root["nodes"][1]["scale"] = json!([3, 3, 3]);
+    let warnings = draft.read().unwrap().warnings;
+    assert!(matches!(&warnings[..], [said] if said.contains("thickness of material \"jar\"")), "{warnings:?}");
+}
+
+#[test]
+fn a_map_beyond_those_that_are_drawn_is_told() {
+    let info = json!({ "index": 0 });
+    let all = json!({
+        "name": "m", "normalTexture": info, "occlusionTexture": info, "emissiveTexture": info,
+        "pbrMetallicRoughness": { "metallicRoughnessTexture": info, "metallicFactor": 0 },
+        "extensions": {
+            "KHR_materials_sheen": { "sheenColorFactor": [1, 1, 1], "sheenColorTexture": info, "sheenRoughnessTexture": info },
+            "KHR_materials_clearcoat": {
+                "clearcoatFactor": 1, "clearcoatTexture": info, "clearcoatRoughnessTexture": info,
+                "clearcoatNormalTexture": info,
+            },
+            "KHR_materials_specular": { "specularTexture": info, "specularColorTexture": info },
+            "KHR_materials_anisotropy": { "anisotropyStrength": 1, "anisotropyTexture": info },
+        },
+    });
+    let loaded = square(all.clone()).read().unwrap();
+    assert_eq!(loaded.warnings, [""; 0], "there are 12");
+    let mut more = all;
+    more["extensions"]["KHR_materials_transmission"] = json!({ "transmissionFactor": 1, "transmissionTexture": info });
+    more["extensions"]["KHR_materials_volume"] = json!({ "thicknessFactor": 1 });
+    let warnings = square(more).read().unwrap().warnings;
+    let expected = "a map beyond the first 11 isn't drawn; material \"m\" has it.";
+    assert_eq!(warnings, [expected]);
+}
+
+#[test]
 fn extensions_without_an_effect_are_not_named() {
     let clear = json!({ "transmissionFactor": 1 });
     for extensions in [
@@ -407,15 +487,23 @@ fn broken_materials_are_repaired_and_told() {
         (
             json!({ "name": "frosted", "pbrMetallicRoughness": { "metallicFactor": 0 },
                 "extensions": { "KHR_materials_transmission": { "transmissionFactor": 1 } } }),
-            "blur of what is behind rough surfaces (KHR_materials_transmission) isn't drawn; material \"frosted\" has it.",
+            "blur of what is behind rough thin surfaces (KHR_materials_transmission) isn't drawn; material \"frosted\" has it.",
         ),
         (
-            json!({ "name": "jar", "extensions": { "KHR_materials_volume": { "thicknessFactor": 1 } } }),
-            "KHR_materials_volume isn't drawn; material \"jar\" has it.",
+            json!({ "name": "soap", "extensions": { "KHR_materials_iridescence": { "iridescenceFactor": 0.5 } } }),
+            "KHR_materials_iridescence isn't drawn; material \"soap\" has it.",
         ),
         (
-            json!({ "name": "hair", "extensions": { "KHR_materials_anisotropy": { "anisotropyStrength": 0.5 } } }),
-            "KHR_materials_anisotropy isn't drawn; material \"hair\" has it.",
+            json!({ "extensions": { "KHR_materials_volume": { "thicknessFactor": -1 } } }),
+            "KHR_materials_volume/thicknessFactor is -1, but must be at least 0.0; 0 is used",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_volume": { "thicknessFactor": 1, "attenuationDistance": 0 } } }),
+            "/materials/0/extensions/KHR_materials_volume has the attenuation distance 0",
+        ),
+        (
+            json!({ "extensions": { "KHR_materials_anisotropy": { "anisotropyStrength": 2 } } }),
+            "KHR_materials_anisotropy/anisotropyStrength is 2, but must be at most 1.0; 1 is used",
         ),
         (
             json!({ "extensions": { "KHR_materials_sheen": { "sheenColorFactor": [2, 0, 0] } } }),
@@ -504,7 +592,7 @@ fn a_material_that_is_not_there_is_the_default() {
 
 #[test]
 fn many_materials_with_the_same_extension_are_one_sentence() {
-    let strong = json!({ "KHR_materials_anisotropy": { "anisotropyStrength": 1 } });
+    let strong = json!({ "KHR_materials_iridescence": { "iridescenceFactor": 1 } });
     let mut draft = square(json!({ "name": "a", "extensions": strong }));
     let one = draft.root["meshes"][0]["primitives"][0].clone();
     for i in 1..5 {
@@ -514,6 +602,6 @@ fn many_materials_with_the_same_extension_are_one_sentence() {
         draft.push("materials", json!({ "name": format!("m{i}"), "extensions": strong }));
     }
     let warnings = draft.read().unwrap().warnings;
-    let expected = "KHR_materials_anisotropy isn't drawn; materials \"a\", \"m1\", \"m2\" and 2 more have it.";
+    let expected = "KHR_materials_iridescence isn't drawn; materials \"a\", \"m1\", \"m2\" and 2 more have it.";
     assert_eq!(warnings, [expected]);
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::parts::Part;
+use crate::selection::ShownParts;
 
 /// Reads what is selected of a document.
 fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfError> {
@@ -10,7 +11,7 @@ fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfE
 }
 
 fn part(name: &str, triangles: u32, is_hidden: bool) -> Part {
-    Part { name: name.to_owned(), triangles, is_hidden }
+    Part { name: name.to_owned(), triangles, is_hidden, level: 0 }
 }
 
 /// Two nodes of one name, one with the name of its mesh, one that shows nothing, and one without a name.
@@ -34,29 +35,68 @@ fn named() -> Draft {
 #[test]
 fn named_nodes_are_parts_and_hidden_ones_are_left_out() {
     let read = |hidden: &[&str]| {
-        let hidden: Vec<String> = hidden.iter().map(|name| (*name).to_owned()).collect();
-        read_selected(&named(), Selection { hidden: &hidden, ..Selection::default() }).expect("triangles")
+        let hidden = hidden.iter().map(|name| (*name).to_owned()).collect();
+        let shown = ShownParts { hidden, ..ShownParts::default() };
+        read_selected(&named(), Selection { parts: Some(&shown), ..Selection::default() }).expect("triangles")
     };
     let whole = read(&[]);
-    assert_eq!((whole.triangles.len(), &whole.parts[..]), (4, &[part("left", 2, false), part("mesh", 1, false)][..]));
+    let parts = |left: bool, below: bool| {
+        [part("left", 1, left), part("left/left", 1, below), part("mesh", 1, false), part("default", 1, false)]
+    };
+    assert_eq!((whole.triangles.len(), &whole.contents.parts[..]), (4, &parts(false, false)[..]));
     let of_each: Vec<_> = (0..4).map(|triangle| whole.part_of(triangle)).collect();
-    assert_eq!(of_each, [Some(0), Some(0), Some(1), None], "children follow their parents");
+    assert_eq!(of_each, [Some(0), Some(1), Some(2), Some(3)], "children follow their parents");
     let some = read(&["left"]);
-    assert_eq!((some.triangles.len(), &some.parts[..]), (2, &[part("left", 2, true), part("mesh", 1, false)][..]));
+    assert_eq!((some.triangles.len(), &some.contents.parts[..]), (2, &parts(true, true)[..]));
     assert!(some.corners.iter().all(|corner| corner.position.x > 8.0 || corner.position.y > 6.0));
     assert!(some.warnings.is_empty(), "{:?}", some.warnings);
+    let own = read(&["/left/."]);
+    assert_eq!((own.triangles.len(), &own.contents.parts[..]), (3, &parts(true, false)[..]), "children stay");
+}
+
+#[test]
+fn other_levels_of_detail_are_placed_beside_the_first_and_shown_if_they_are_named() {
+    let mut draft = named();
+    draft.root["extensionsUsed"] = json!(["MSFT_lod"]);
+    draft.root["nodes"] = json!([
+        { "name": "group", "translation": [0, 7, 0], "children": [1] },
+        { "name": "near", "mesh": 0, "extensions": { "MSFT_lod": { "ids": [2, 99, 1] } } },
+        { "name": "far", "mesh": 1, "children": [3] },
+        { "name": "bolt", "mesh": 1 },
+        { "name": "near", "mesh": 1, "extensions": { "MSFT_lod": { "ids": [5] } } },
+        { "name": "far", "mesh": 1 },
+    ]);
+    draft.root["scenes"] = json!([{ "nodes": [0, 4, 5] }]);
+    let read = |only: &[&str]| {
+        let mut named = ShownParts::default();
+        named.show_only(only.iter().map(|name| (*name).to_owned()).collect());
+        let selected = Selection { parts: Some(&named), ..Selection::default() };
+        let loaded = read_selected(&draft, selected).expect("triangles");
+        let shown = loaded.contents.parts.iter().filter(|part| !part.is_hidden).map(|part| part.name.clone());
+        (shown.collect::<Vec<_>>(), loaded)
+    };
+    let (shown, first) = read(&[]);
+    assert_eq!((shown, first.triangles.len()), (vec!["group/near".to_owned(), "near".to_owned()], 2));
+    assert!(first.warnings.iter().any(|warning| warning.contains("levels of detail")), "{:?}", first.warnings);
+    let (shown, other) = read(&["group/far"]);
+    assert_eq!((shown, other.triangles.len()), (vec!["group/far".to_owned(), "group/far/bolt".to_owned()], 2));
+    assert!(other.corners.iter().all(|corner| corner.position.y > 6.0), "it moves with the group");
+    assert_eq!(read(&["group"]).0, ["group/near"]);
 }
 
 #[test]
 fn hidden_nodes_may_be_broken_and_hiding_all_is_said() {
     let mut draft = named();
     draft.root["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(99);
-    let hidden = ["left".to_owned(), "mesh".to_owned()];
-    let selected = |hidden| Selection { hidden, ..Selection::default() };
-    assert!(read_selected(&draft, selected(&hidden[..1])).is_err());
-    assert_eq!(read_selected(&draft, selected(&hidden)).expect("the node without a name").triangles.len(), 1);
+    let [some, all] = [&["left"][..], &["left", "mesh"]].map(|hidden| {
+        let hidden = hidden.iter().map(|name| (*name).to_owned()).collect();
+        ShownParts { hidden, ..ShownParts::default() }
+    });
+    let [some, all] = [&some, &all].map(|shown| Selection { parts: Some(shown), ..Selection::default() });
+    assert!(read_selected(&draft, some).is_err());
+    assert_eq!(read_selected(&draft, all).expect("the node without a name").triangles.len(), 1);
     draft.root["nodes"].as_array_mut().expect("nodes").truncate(3);
     draft.root["scenes"] = json!([{ "nodes": [0, 2] }]);
-    let said = read_selected(&draft, selected(&hidden)).map(|_| ()).expect_err("nothing is left").to_string();
+    let said = read_selected(&draft, all).map(|_| ()).expect_err("nothing is left").to_string();
     assert!(said.contains("its named parts are hidden"), "{said}");
 }

@@ -62,13 +62,16 @@ fn a_scene_is_chosen_by_name_or_number() {
         [(None, 1), (Some("hall"), 0), (Some("scene 1"), 1), (Some("2"), 2), (Some("0"), 2), (Some("attic"), 1)];
     for (scene, expected) in cases {
         let loaded = selected(&three(), scene);
-        assert_eq!((loaded.scene, loaded.bounds().max.z), (Some(expected), expected as f32), "{scene:?}");
-        assert_eq!((&loaded.scenes[..], loaded.warnings.len()), (&["hall", "scene 1", "0"].map(str::to_owned)[..], 0));
+        assert_eq!((loaded.contents.scene, loaded.bounds().max.z), (Some(expected), expected as f32), "{scene:?}");
+        assert_eq!(
+            (&loaded.contents.scenes[..], loaded.warnings.len()),
+            (&["hall", "scene 1", "0"].map(str::to_owned)[..], 0)
+        );
     }
     let mut none = triangle();
     none.root.as_object_mut().unwrap().retain(|key, _| !key.starts_with("scene"));
     let loaded = selected(&none, Some("0"));
-    assert_eq!((loaded.scene, loaded.scenes.len(), loaded.triangles.len()), (None, 0, 1));
+    assert_eq!((loaded.contents.scene, loaded.contents.scenes.len(), loaded.triangles.len()), (None, 0, 1));
 }
 
 #[test]
@@ -80,7 +83,7 @@ fn a_scene_that_is_not_there_is_an_error_with_the_names() {
         let selected = Selection { scene: Some(scene), ..Selection::default() };
         source.load_selected(selected, &Limits::default(), &Progress::new())
     };
-    assert_eq!(load(Source::File(path.clone()), "hall").expect("a scene").scene, Some(0));
+    assert_eq!(load(Source::File(path.clone()), "hall").expect("a scene").contents.scene, Some(0));
     let error = load(Source::File(path), "3").expect_err("another scene");
     assert!(matches!(error, LoadError::Absent { what: "scene", .. }));
     let said = error.to_string();
@@ -260,7 +263,7 @@ fn a_vrm_file_is_a_glb_file() {
 #[test]
 fn the_draft_of_every_kind_is_read() {
     let loaded = of_every_kind().read().expect("three triangles");
-    assert_eq!((loaded.triangles.len(), loaded.scene), (3, Some(1)));
+    assert_eq!((loaded.triangles.len(), loaded.contents.scene), (3, Some(1)));
     assert!(loaded.rig.is_some());
     assert_eq!(loaded.warnings.len(), 2, "{:?}", loaded.warnings);
 }

@@ -45,7 +45,7 @@ fn primitives_have_the_materials_of_the_variant() {
         let names: Vec<_> = loaded.mesh.materials.iter().map(|material| material.name.as_str()).collect();
         assert_eq!(names, expected, "{variant:?}");
         assert_eq!(
-            (&loaded.variants[..], loaded.warnings.len()),
+            (&loaded.contents.variants[..], loaded.warnings.len()),
             (&["day", "night", "variant 2"].map(str::to_owned)[..], 0)
         );
     }
@@ -59,7 +59,7 @@ fn faults_of_variants_are_repaired_and_told() {
     none.root["extensions"]["KHR_materials_variants"]["variants"] = json!("many");
     let loaded = loaded(&none, Some("day"));
     assert!(
-        loaded.variants.is_empty() && loaded.warnings[0].contains("variants isn't a list"),
+        loaded.contents.variants.is_empty() && loaded.warnings[0].contains("variants isn't a list"),
         "{:?}",
         loaded.warnings
     );

@@ -4,8 +4,7 @@
 //! Source: KTX 2.0 specification, appendices "BasisLZ" and "ETC1S".
 
 use super::bits::Bits;
-use super::huffman::read_code;
-use super::prefix_code::PrefixCode;
+use super::prefix_code::{PrefixCode, read_code};
 
 /// What is added to the base colour for each of the four shades, by intensity.
 const SHADES: [[i32; 4]; 8] = [
@@ -45,18 +44,11 @@ struct Endpoint {
 /// The shades of a block: a byte a row, 2 bits a texel, the lowest for the texel on the left.
 type Selector = [u8; 4];
 
-/// Where the data of an image is, relative to its level.
-#[derive(Clone, Copy)]
-pub(super) struct Slices {
-    pub color: [u32; 2],
-    pub alpha: [u32; 2],
-}
-
-/// Reads the start and the length of the data of image `index` in the global data; none if they aren't there.
-pub(super) fn slices(global: &[u8], index: usize) -> Option<Slices> {
+/// Reads where the colours and the alpha of image `index` are by the global data, as start and length in its level; none if that isn't there.
+pub(super) fn slices(global: &[u8], index: usize) -> Option<[[u32; 2]; 2]> {
     let entry = global.get(HEADER * (index + 1)..)?.first_chunk::<HEADER>()?;
     let [_, a, b, c, d] = std::array::from_fn(|i| u32::from_le_bytes(std::array::from_fn(|k| entry[4 * i + k])));
-    Some(Slices { color: [a, b], alpha: [c, d] })
+    Some([[a, b], [c, d]])
 }
 
 impl Codebooks {

@@ -4,6 +4,8 @@
 //! Sources: KTX 2.0 specification, appendix "UASTC texture encoding"; Khronos Data Format Specification 1.3, chapter 23 (ASTC):
 //! section 23.13 for endpoints, 23.15 for weights, 23.21 for partitions, which are tables here.
 
+use super::bits::Bits;
+
 /// The number of bytes of a block.
 pub(super) const BLOCK: usize = 16;
 
@@ -126,20 +128,9 @@ static OTHER_TWO_SUBSETS: [u32; 19] = [
     0x6fff, 0x1333, 0x11ff, 0x136c, 0x00ef,
 ];
 
-/// The bits of a block that haven't been read, the next one lowest.
-struct BlockBits(u128);
-
-impl BlockBits {
-    fn take(&mut self, count: u32) -> u32 {
-        let bits = self.0 as u32 & ((1 << count) - 1);
-        self.0 >>= count;
-        bits
-    }
-}
-
 /// Returns the texels of a block as RGBA, row by row; none if it is no block of UASTC.
 pub(super) fn texels(block: &[u8; BLOCK]) -> Option<[[u8; 4]; 16]> {
-    let mut bits = BlockBits(u128::from_le_bytes(*block));
+    let mut bits = Bits::new(block);
     let is_code = |mode: &Mode| u32::from(block[0]) & ((1 << mode.code.1) - 1) == u32::from(mode.code.0);
     let index = MODES.iter().position(is_code)?;
     let mode = &MODES[index];
@@ -190,7 +181,7 @@ fn unquantized(weight: u32, bits: u32) -> u32 {
 
 impl Mode {
     /// Reads the ends of the lines of colours: for each subset and component the low and the high one, 0 to 255.
-    fn ends(&self, bits: &mut BlockBits, subsets: usize) -> [[[u32; 2]; 4]; 3] {
+    fn ends(&self, bits: &mut Bits, subsets: usize) -> [[[u32; 2]; 4]; 3] {
         let count = 2 * self.components * subsets;
         let mut values = [0; 18];
         self.endpoints.read(bits, &mut values[..count]);
@@ -208,7 +199,7 @@ impl Mode {
 
 impl Endpoints {
     /// Reads endpoints, from 0 to 255. All groups of trits or quints stand before the bits.
-    fn read(self, bits: &mut BlockBits, values: &mut [u32]) {
+    fn read(self, bits: &mut Bits, values: &mut [u32]) {
         // How many values are in a group, and how many bits a group of so many values has.
         let sizes: &[u32] = match self.base {
             3 => &[0, 2, 4, 5, 7, 8],

@@ -1,0 +1,50 @@
+//! The weights of the file's morph targets: slid, reset, undone, and in the command that draws the same.
+
+use documents::moving::moving;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use pnaen::app::App;
+
+use crate::{click, scroll_to, settle, uniform, uniform_of, vase};
+
+/// The least x of the mesh: the beam's upper end, which is 1 wide, swells by 0.8 of that at a weight of 1.
+fn least(harness: &Harness<App>) -> f32 {
+    harness.state().loaded().expect("a mesh").mesh.bounds().min.x
+}
+
+fn chosen(harness: &Harness<App>) -> Vec<(String, f32)> {
+    harness.state().loaded().expect("a mesh").preparation.parts.morphs.clone().into_iter().collect()
+}
+
+fn weight(harness: &Harness<App>) -> Option<f64> {
+    harness.get_by_role_and_label(Role::Slider, "Swell").accesskit_node().numeric_value()
+}
+
+#[test]
+fn morph_targets_are_weighed_undone_and_reset() {
+    let (_folder, mut harness) = uniform_of("moving.glb", moving());
+    scroll_to(&mut harness, "Reset morph targets");
+    let near = |own: f32, expected: f32| (own - expected).abs() < 1e-5;
+    assert!(near(least(&harness), -0.6) && weight(&harness) == Some(0.25), "as the file says");
+    let camera = *harness.state().camera();
+    harness.get_by_role_and_label(Role::Slider, "Swell").set_value_accesskit(1.0);
+    settle(&mut harness);
+    assert!(near(least(&harness), -0.9), "{}", least(&harness));
+    assert_eq!((chosen(&harness), *harness.state().camera()), (vec![("Swell".to_owned(), 1.0)], camera));
+    let context = harness.ctx.clone();
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert!(near(least(&harness), -0.6) && chosen(&harness).is_empty());
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    assert!(near(least(&harness), -0.9));
+    click(&mut harness, "Reset morph targets");
+    assert!(near(least(&harness), -0.6) && chosen(&harness).is_empty() && weight(&harness) == Some(0.25));
+}
+
+#[test]
+fn a_file_without_morph_targets_has_no_list_of_them() {
+    let harness = uniform(Some(vase()));
+    assert!(harness.query_by_label("Morph targets").is_none());
+}
