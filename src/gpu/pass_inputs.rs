@@ -97,8 +97,6 @@ impl<'a> PassInputs<'a> {
             "edge_factors" => &mesh.edge_factors,
             "material_patches" => &mesh.material_patches,
             "search_workgroups" => &mesh.search_workgroups,
-            "shares" => &mesh.shares,
-            "reliefs" => &mesh.reliefs,
             "maps" => &mesh.maps,
             "slab" => &slab?.uniform,
             "patch_factors" => &slab?.patch_factors,
@@ -108,7 +106,7 @@ impl<'a> PassInputs<'a> {
             "draw_args" => &slab?.draw_args,
             "vertex_halves" => &self.arena.vertices,
             "indices" => &self.arena.indices,
-            name => return mesh.relief.as_ref()?.get(name),
+            name => &mesh.relief.iter().find(|(own, _)| *own == name)?.1,
         })
     }
 }

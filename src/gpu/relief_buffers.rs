@@ -1,10 +1,10 @@
 //! What displacement needs in device memory: height images, and what patches share where they meet.
 
-use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
+use super::buffer::{filled, filled_texture, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
 use geometry::groups::in_groups;
-use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
+use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology, patch_reliefs};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
 pub const HEIGHTS_ACROSS: u32 = 4096;
@@ -13,7 +13,7 @@ pub const HEIGHTS_ACROSS: u32 = 4096;
 pub(crate) struct HeightImages {
     pub view: wgpu::TextureView,
     /// Bytes that this value uploaded; 0 if it shares another's.
-    bytes: u64,
+    pub bytes: u64,
 }
 
 impl HeightImages {
@@ -47,10 +47,6 @@ impl HeightImages {
             bytes: 4 * all.len() as u64,
         })
     }
-
-    pub(crate) fn bytes(&self) -> u64 {
-        self.bytes
-    }
 }
 
 /// A [`HeightMap`] for each image.
@@ -66,41 +62,41 @@ pub(crate) fn height_maps(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer 
     uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table))
 }
 
-/// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves by a [`Sharing`](geometry::mesh::Sharing).
-/// Lists of varying length lie one after another in one buffer; `starts` holds where each begins, and then where the last
-/// ends.
-pub struct ReliefBuffers {
-    /// By their names in WGSL: for each point its corners, each with the bits of its weight in the point's direction, and the
-    /// factors of its edges; for each corner its patches.
-    lists: [(&'static str, wgpu::Buffer); 6],
-    pub corner_count: u32,
-}
-
-impl ReliefBuffers {
-    /// # Errors
-    /// A buffer would be larger than the adapter binds.
-    pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Result<Self, GpuError> {
-        let (corner_ranges, corner_patches) = patches_of_corners(mesh, topology);
-        let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
-        let lists = [
-            ("part_starts", filled(gpu, "part starts", &dominance.part_starts)?),
-            ("parts", filled(gpu, "parts", &parts)?),
-            ("factor_starts", filled(gpu, "factor starts", &dominance.factor_starts)?),
-            ("point_factors", filled(gpu, "point factors", &dominance.factors)?),
-            ("corner_ranges", filled(gpu, "corner ranges", &corner_ranges)?),
-            ("corner_patches", filled(gpu, "corner patches", &corner_patches)?),
-        ];
-        Ok(Self { lists, corner_count: mesh.corners.len() as u32 })
-    }
-
-    /// The list of this name.
-    pub fn get(&self, name: &str) -> Option<&wgpu::Buffer> {
-        self.lists.iter().find(|(own, _)| *own == name).map(|(_, list)| list)
-    }
-
-    pub fn bytes(&self) -> u64 {
-        bytes_of(self.lists.iter().map(|(_, list)| list))
-    }
+/// What passes know of a mesh that heights displace, by the names in WGSL. Without heights there are only the lists that passes
+/// are bound to in any case, and they are empty. Lists of varying length lie one after another in one buffer; `starts` holds where
+/// each begins, and then where the last ends.
+///
+/// # Errors
+/// A buffer would be larger than the adapter binds.
+pub(crate) fn relief_buffers(
+    gpu: &Gpu,
+    mesh: &Mesh,
+    topology: &Topology,
+    dominance: Option<&Dominance>,
+) -> Result<Vec<(&'static str, wgpu::Buffer)>, GpuError> {
+    let shares = dominance.map(|dominance| shares(mesh, dominance)).unwrap_or_default();
+    let reliefs = patch_reliefs(mesh.heights.as_deref(), mesh, topology);
+    let mut buffers = vec![
+        // What patches share where displacement must not tear them apart.
+        ("shares", filled(gpu, "shares", &shares)?),
+        // What LOD by error knows of the heights over each patch.
+        ("reliefs", filled(gpu, "reliefs", &reliefs)?),
+    ];
+    let Some(dominance) = dominance else { return Ok(buffers) };
+    let (corner_ranges, corner_patches) = patches_of_corners(mesh, topology);
+    let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
+    buffers.extend([
+        // The corners of each point, each with the bits of its weight in the point's direction.
+        ("part_starts", filled(gpu, "part starts", &dominance.part_starts)?),
+        ("parts", filled(gpu, "parts", &parts)?),
+        // The factors of its edges.
+        ("factor_starts", filled(gpu, "factor starts", &dominance.factor_starts)?),
+        ("point_factors", filled(gpu, "point factors", &dominance.factors)?),
+        // The patches of each corner.
+        ("corner_ranges", filled(gpu, "corner ranges", &corner_ranges)?),
+        ("corner_patches", filled(gpu, "corner patches", &corner_patches)?),
+    ]);
+    Ok(buffers)
 }
 
 /// The [`Share`]s of a mesh, filled in as far as they depend on the mesh alone. In this order:
@@ -108,7 +104,7 @@ impl ReliefBuffers {
 /// - one for each point,
 /// - one for each factor,
 /// - two for each corner.
-pub fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
+fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
     let share = |&dominant: &u32| Share { dominant, ..bytemuck::Zeroable::zeroed() };
     let shared = dominance.corners.iter().chain(&dominance.sides).map(share);
     shared.chain(std::iter::repeat_n(share(&0), 2 * mesh.corners.len())).collect()
