@@ -16,7 +16,7 @@ use super::uri::Files;
 use super::warnings::untextured_warning;
 use geometry::mesh::build_limits::{MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, Heights, MAX_MAPS, bytes_beside_maps};
-use geometry::mesh::{HeightAmount, Mesh, Texture};
+use geometry::mesh::{HeightAmount, Material, Mesh};
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
@@ -248,30 +248,29 @@ fn of_colors(
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Vec<Option<HeightMap>>, HeightError> {
-    let mut textures: Vec<_> = mesh.materials.iter().filter_map(|material| material.texture.as_ref()).collect();
-    textures.sort_unstable_by_key(|texture| Arc::as_ptr(texture));
-    textures.dedup_by_key(|texture| Arc::as_ptr(texture));
+    let of = |material: &Material| material.texture.as_ref().map(|texture| (Arc::as_ptr(texture), texture.clone()));
+    let textures: HashMap<_, _> = mesh.materials.iter().filter_map(of).collect();
     let count = textures.len();
     if count == 0 {
         let left_out = warnings.iter().find(|warning| warning.starts_with("the texture of "));
         let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
     }
-    let kept = textures.iter().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
+    let kept = textures.values().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
     budget.hold(kept).map_err(|refused| too_much(mesh, count, refused))?;
     let mut maps = HashMap::new();
-    for (index, texture) in textures.into_iter().enumerate() {
+    for (index, (key, texture)) in textures.iter().enumerate() {
         let progress = progress.part(index as f32 / count as f32, (index + 1) as f32 / count as f32);
-        maps.insert(Arc::as_ptr(texture), map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)?);
+        maps.insert(key, map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)?);
     }
-    let map = |texture: &Arc<Texture>| maps.get(&Arc::as_ptr(texture)).cloned();
-    Ok(mesh.materials.iter().map(|material| material.texture.as_ref().and_then(map)).collect())
+    Ok(mesh.materials.iter().map(|material| maps.get(&of(material)?.0).cloned()).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use geometry::mesh::Shape;
+    use geometry::mesh::Texture;
 
     #[test]
     fn materials_that_share_an_image_share_a_map() {

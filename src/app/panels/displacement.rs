@@ -80,9 +80,7 @@ impl App {
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
             self.displace(ui.ctx(), chosen);
         }
-        if self.has_heights() {
-            self.displacement_rows(ui);
-        }
+        self.displacement_rows(ui);
     }
 
     /// Names the first few materials whose images say how far they move the surface.
@@ -110,14 +108,13 @@ impl App {
     }
 
     fn displacement_rows(&mut self, ui: &mut egui::Ui) {
-        let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
-        let follows_settings = heights.as_ref().is_some_and(|heights| heights.follow_settings());
-        let radius = heights.map_or(0.0, |heights| heights.radius);
+        let Some(document) = &self.document else { return };
+        let Some(heights) = document.loaded.mesh.heights.clone() else { return };
         let settings = &mut self.settings;
         option_row(ui, &options::DISPLACEMENT, settings, key_name(&Action::ToggleDisplacement));
         // Otherwise each image has a scale and a midlevel of its own.
-        if follows_settings {
-            let units = short(f64::from(settings.tessellation.height_scale * radius));
+        if heights.follow_settings() {
+            let units = short(f64::from(settings.tessellation.height_scale * heights.radius));
             let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
             option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);
             option_row(ui, &options::MIDLEVEL, settings, "");

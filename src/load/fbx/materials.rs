@@ -95,7 +95,8 @@ impl<'a> Materials<'a> {
         };
         let source = LookSource::new(material, mesh);
         let maps = [&source.base, &source.normal, &source.roughness, &source.metalness, &source.emission];
-        let sets = maps.into_iter().chain([&source.occlusion]).flatten().map(|map| map.uvs.set).collect();
+        let sets =
+            maps.into_iter().chain([&source.occlusion, &source.height]).flatten().map(|map| map.uvs.set).collect();
         let key = (Some(material.element.typed_id), sets);
         if let Some(&resolved) = self.resolved.get(&key) {
             return Ok(resolved);

@@ -85,10 +85,6 @@ impl MaterialSource {
         source
     }
 
-    fn map(&mut self, slot: Slot, map: Option<MapSource>) {
-        self.maps[slot as usize] = map;
-    }
-
     /// Reads members of an object: maps only where they matter to the look that was read so far.
     fn read(
         &mut self,
@@ -108,12 +104,12 @@ impl MaterialSource {
                     *own = object.numbers(name, *own, *range);
                 }
                 Member::Map(_) | Member::ScaledMap(..) if !matters(&self.look) => {}
-                Member::Map(slot) => self.map(*slot, MapSource::new(object, name, textures)),
+                Member::Map(slot) => self.maps[*slot as usize] = MapSource::new(object, name, textures),
                 Member::ScaledMap(slot, factor, number, range) => {
                     if let Some(info) = object.inside(name) {
                         let own = number(&mut self.look);
                         *own = info.number(factor, *own, *range);
-                        self.map(*slot, MapSource::inside(&info, textures));
+                        self.maps[*slot as usize] = MapSource::inside(&info, textures);
                     }
                 }
             }
@@ -161,9 +157,9 @@ impl MaterialSource {
     fn glossy(&mut self, glossy: &Members, textures: usize) {
         self.base_color = glossy.numbers("diffuseFactor", [1.0; 4], UNIT);
         self.base_map = MapSource::new(glossy, "diffuseTexture", textures);
-        self.map(Slot::MetallicRoughness, None);
-        self.map(Slot::Specular, None);
-        self.map(Slot::SpecularColor, MapSource::new(glossy, "specularGlossinessTexture", textures));
+        self.maps[Slot::MetallicRoughness as usize] = None;
+        self.maps[Slot::Specular as usize] = None;
+        self.maps[Slot::SpecularColor as usize] = MapSource::new(glossy, "specularGlossinessTexture", textures);
         let glossiness = glossy.number("glossinessFactor", 1.0, UNIT);
         self.glossiness = Some(glossiness);
         let look = &mut self.look;

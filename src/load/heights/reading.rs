@@ -9,7 +9,7 @@ use png::{BitDepth, DecodingError};
 use super::HeightError;
 use crate::environment_file::unpacking_bytes;
 use crate::files::{self, FileError, file_reason, read_file};
-use crate::images::{decoding_bytes, metadata_limits, png_header};
+use crate::images::{check_size, decoding_bytes, metadata_limits, png_header};
 use crate::memory_budget::Budget;
 use crate::watched_bytes::watched;
 use crate::webp;
@@ -17,9 +17,6 @@ use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, MAX_KEPT};
 use geometry::progress::{Cancelled, Progress};
-
-/// The greatest width and height of an image that is read, in px.
-const MAX_SIZE: u32 = 16384;
 
 /// The bytes of a file at most: more than the largest image takes without compression.
 const LARGEST_FILE: u64 = 4 << 30;
@@ -127,12 +124,8 @@ impl ImageFile<'_> {
         HeightError::Image { path: self.path.to_owned(), reason }
     }
 
-    fn check(&self, [width, height]: [u32; 2]) -> Result<[u32; 2], HeightError> {
-        if width.max(height) > MAX_SIZE {
-            let most = format!("but at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less");
-            return Err(self.fail(format!("it has {width} x {height} px, {most}")));
-        }
-        Ok([width, height])
+    fn check(&self, size: [u32; 2]) -> Result<[u32; 2], HeightError> {
+        check_size("it", size).map(|()| size).map_err(|reason| self.fail(reason))
     }
 
     fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
@@ -222,6 +215,7 @@ mod tests {
     use image::{DynamicImage, ImageBuffer, Luma, Rgb, RgbImage};
 
     use super::*;
+    use crate::images::MAX_SIZE;
 
     /// Writes a file into a folder.
     fn write(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> std::path::PathBuf {
