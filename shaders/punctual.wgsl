@@ -1,5 +1,5 @@
 // Lights that shine from a place or from one direction, as glTF's KHR_lights_punctual describes them. Places and directions are in
-// object space, whose units count as metres. src/inspect/render/punctual.rs has the same functions.
+// object space, whose units count as metres. src/inspect/for_tests/punctual.rs has the same functions.
 
 // The greatest number of lights.
 const MOST_LIGHTS: u32 = 16u;

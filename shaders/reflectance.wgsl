@@ -1,6 +1,6 @@
 // How surfaces reflect light: the materials of glTF 2.0 (specification, appendix B) with the extensions KHR_materials_ior,
 // KHR_materials_specular, KHR_materials_clearcoat, KHR_materials_transmission, KHR_materials_volume, KHR_materials_sheen and
-// KHR_materials_anisotropy. Nothing here reads a texture or a buffer. src/inspect/render/reflectance.rs has the same functions.
+// KHR_materials_anisotropy. Nothing here reads a texture or a buffer. src/inspect/for_tests/reflectance.rs has the same functions.
 
 const PI: f32 = 3.14159265;
 

@@ -1,4 +1,4 @@
-// Linear light to what a screen can show. src/inspect/render/tone.rs has the same functions.
+// Linear light to what a screen can show. src/inspect/for_tests/tone.rs has the same functions.
 
 const TONE_CURVE_NEUTRAL: u32 = 0u;
 const TONE_CURVE_NONE: u32 = 1u;

@@ -25,6 +25,10 @@ pub(super) struct Undoable {
     /// How the mesh is prepared, but for the import, which is in the settings.
     pub preparation: Preparation,
     pub companions: [Option<Source>; CompanionFile::ALL.len()],
+    /// Whether the mesh is compared with the limit of its own cage.
+    pub own_limit: bool,
+    /// Whether the mesh is compared with what it was before its file changed.
+    pub is_with_before: bool,
 }
 
 /// The states before and after the present one.
@@ -112,6 +116,8 @@ impl App {
             settings: self.settings_without_files(),
             preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
             companions: CompanionFile::ALL.map(|companion| self.companion(companion)),
+            own_limit: self.has_own_limit(),
+            is_with_before: self.shows_before(),
         }
     }
 
@@ -128,9 +134,11 @@ impl App {
         self.history.change_all(|step| {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
+            step.own_limit = false;
             for companion in [CompanionFile::ReferenceShape, CompanionFile::LeftMesh, CompanionFile::Factors] {
                 step.companions[companion as usize] = None;
             }
+            step.is_with_before = false;
         });
     }
 
@@ -156,7 +164,9 @@ impl App {
     }
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
-        let Some(Undoable { settings, preparation, companions: files }) = step else { return };
+        let Some(Undoable { settings, preparation, companions: files, own_limit, is_with_before }) = step else {
+            return;
+        };
         use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
         [ReferenceShape, LeftMesh, Matcap, Environment]
             .into_iter()
@@ -167,11 +177,20 @@ impl App {
         if self.jobs.load().is_some_and(|load| load.keep_view) {
             self.jobs.stop(Work::Mesh);
         }
+        if self.has_own_limit() != own_limit {
+            self.close_companion(ReferenceShape);
+            if own_limit {
+                self.read_reference(context, None, true);
+            }
+        }
         for (companion, source) in CompanionFile::ALL.into_iter().zip(files) {
             if self.companion(companion) != source {
                 self.close_companion(companion);
                 source.into_iter().for_each(|source| self.open_companion(context, companion, source));
             }
+        }
+        if self.shows_before() != is_with_before {
+            if is_with_before { self.compare_with_before() } else { self.close_companion(LeftMesh) }
         }
         self.put_settings(settings);
         let preparation = Preparation { import: settings.import, ..preparation };

@@ -1,6 +1,9 @@
 //! Formats numbers and names for the window.
 
+use std::path::Path;
+
 pub(super) use geometry::names::shortened;
+use geometry::names::shown_path;
 pub(super) use geometry::numbers::{counted, grouped, short};
 
 /// Formats a number and its share of all, in percent.
@@ -16,6 +19,11 @@ pub(super) fn mebibytes(bytes: u64) -> String {
 /// Formats a factor with this many decimals. Some kinds of LOD ask for huge factors, which are shortened.
 pub(super) fn factor(number: f64, decimals: usize) -> String {
     if number.abs() < 1000.0 { format!("{number:.decimals$}") } else { short(number) }
+}
+
+/// A file's name without its folder.
+pub(super) fn file_name(path: &Path) -> String {
+    shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())))
 }
 
 /// Reads a number that was typed, with or without its unit. The decimal separator may be a comma.

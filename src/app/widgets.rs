@@ -1,8 +1,11 @@
 //! Widgets that the panels share.
 
+use std::path::Path;
+
 use egui::RichText;
 use egui::scroll_area::ScrollSource;
 
+use super::text::file_name;
 use super::wheel;
 
 /// The width of the settings' labels in points: as much as the longest, "Segment length", takes.
@@ -27,16 +30,43 @@ pub(super) fn chooser<T: Copy + PartialEq>(
     value: &mut T,
     choices: &[(T, &str, &str)],
 ) {
-    let label = ui.label(name).on_hover_text(hover);
     let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
-    // High enough for the longest list, where the window is.
-    let height = (0.6 * ui.ctx().content_rect().height()).clamp(260.0, 480.0);
-    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).height(height).show_ui(ui, |ui| {
+    list_row(ui, name, hover, shown, |ui| {
         for (choice, text, hover) in choices {
             ui.selectable_value(value, *choice, *text).on_hover_text(*hover);
         }
     });
-    combo.response.labelled_by(label.id).on_hover_text(hover);
+}
+
+/// A row with a name and a list, of which `shown` is chosen.
+pub(super) fn list_row(ui: &mut egui::Ui, name: &str, hover: &str, shown: &str, entries: impl FnOnce(&mut egui::Ui)) {
+    let label = ui.label(name).on_hover_text(hover);
+    // High enough for the longest list, where the window is.
+    let height = (0.6 * ui.ctx().content_rect().height()).clamp(260.0, 480.0);
+    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).truncate().height(height);
+    combo.show_ui(ui, entries).response.labelled_by(label.id).on_hover_text(hover);
+    ui.end_row();
+}
+
+/// A row that names a file which is open.
+pub(super) fn file_row(ui: &mut egui::Ui, name: &str, hover: &str, path: &Path) {
+    ui.label(name).on_hover_text(hover);
+    ui.add(egui::Label::new(file_name(path)).truncate()).on_hover_text(path.display().to_string());
+    ui.end_row();
+}
+
+/// A row with a button. Returns whether it was clicked.
+pub(super) fn button_row(ui: &mut egui::Ui, name: &str, hover: &str) -> bool {
+    ui.label("");
+    let is_clicked = ui.button(name).on_hover_text(hover).clicked();
+    ui.end_row();
+    is_clicked
+}
+
+/// A row with a text that may take several lines.
+pub(super) fn text_row(ui: &mut egui::Ui, text: String, color: egui::Color32) {
+    ui.label("");
+    ui.add(egui::Label::new(RichText::new(text).color(color)).wrap());
     ui.end_row();
 }
 
@@ -47,22 +77,6 @@ pub(super) fn fixed(ui: &mut egui::Ui, name: &str, shown: &str, why: &str) {
     let response = ui.add_enabled_ui(false, |ui| combo.show_ui(ui, |_| {}).response).inner;
     response.labelled_by(label.id).on_disabled_hover_text(why);
     ui.end_row();
-}
-
-/// A row with a name and a list whose entries `show` makes.
-pub(super) fn list_row(ui: &mut egui::Ui, name: &str, shown: String, hover: &str, show: impl FnOnce(&mut egui::Ui)) {
-    let label = ui.label(name).on_hover_text(hover);
-    let combo = egui::ComboBox::from_id_salt(name).selected_text(shown).truncate().show_ui(ui, show);
-    combo.response.labelled_by(label.id).on_hover_text(hover);
-    ui.end_row();
-}
-
-/// A row with nothing but a button. Returns whether it was clicked.
-pub(super) fn button_row(ui: &mut egui::Ui, text: &str, hover: &str) -> bool {
-    ui.label("");
-    let is_clicked = ui.button(text).on_hover_text(hover).clicked();
-    ui.end_row();
-    is_clicked
 }
 
 /// A row with a name and a right-aligned number.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::options::{CameraOption, whole_from};
+use super::options::{CameraOption, ReferenceOption, whole_from};
 use super::{
     AdapterOption, CliError, ProgressPrinter, SurfaceOptions, WeldOption, file_error, file_of, keep_apart, load_apart,
     make_folder, options, refuse, stop_on_interrupt, write_text,
@@ -25,7 +25,6 @@ use lab::chart::report::{LeftOut, Part, TABLE};
 use lab::chart::{Bench, Effort, LodKind, Plan, Setting, Subject, bitmap, columns, has_converged, svg};
 use load::Source;
 use load::files::file_reason;
-use load::import::Subdivide;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -33,10 +32,8 @@ pub struct Args {
     /// shape:torus@2 (finer); with --report, by default seven shapes, and assets/vase.glb where there is one
     #[arg(value_parser = options::source(), required_unless_present = "report")]
     pub files: Vec<Source>,
-    /// Reference surface that errors are measured against: a mesh, such as the high-poly original, or a shape. By default
-    /// the exact surface of a shape; other meshes have none. Takes one mesh only
-    #[arg(long = "reference-surface", value_name = "FILE", value_parser = options::source())]
-    pub reference_shape: Option<Source>,
+    #[command(flatten)]
+    pub reference: ReferenceOption,
     #[command(flatten)]
     pub weld: WeldOption,
     /// Surfaces to try
@@ -93,7 +90,7 @@ pub struct Args {
 
 impl Args {
     fn settings(&self) -> Result<Vec<Setting>, CliError> {
-        let is_unclear = self.reference_shape.is_some() && self.files.len() != 1;
+        let is_unclear = self.reference.reference_shape.is_some() && self.files.len() != 1;
         refuse(is_unclear, "--reference-surface takes one mesh: chart the others on their own")?;
         let settings = self.plan().settings();
         refuse(settings.is_empty(), "subtriangulation has uniform LOD only: add uniform to --lods")?;
@@ -123,23 +120,19 @@ impl Args {
         Effort { accuracy, most_triangles: self.max_triangles, ..usual }
     }
 
-    /// The reference surface of a mesh, and its name: that of `--reference-surface`, or else the exact surface of a shape.
-    fn reference_shape_of(&self, mesh: &Source) -> Result<Option<(ReferenceShape, String)>, CliError> {
-        let asked = self.reference_shape.as_ref();
-        let exact = asked.unwrap_or(mesh).shape().and_then(ReferenceShape::from_shape);
-        let Some(source) = asked.filter(|_| exact.is_none()) else {
-            return Ok(exact.map(|exact| (exact, "the exact surface".to_owned())));
-        };
-        Ok(Some((self.weld.reference_shape(source, Subdivide::File)?, source.title())))
+    /// The reference surface of a mesh, and its name: the one that was chosen, or else the exact surface of a shape.
+    fn reference_shape_of(&self, mesh: &Source) -> Result<Option<(String, ReferenceShape)>, CliError> {
+        let exact = || Some(("the exact surface".to_owned(), ReferenceShape::from_shape(mesh.shape()?)?));
+        Ok(self.reference.load(mesh, &self.weld.preparation(), Source::title)?.or_else(exact))
     }
 }
 
 /// A mesh to be charted, and its reference surface with a name.
-type Loading = (Loaded, Option<(ReferenceShape, String)>);
+type Loading = (Loaded, Option<(String, ReferenceShape)>);
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let settings = args.settings()?;
-    let read = args.files.iter().chain(&args.reference_shape).map(file_of);
+    let read = args.files.iter().chain(&args.reference.reference_shape).map(file_of);
     keep_apart(read, [args.output.as_deref(), args.csv.as_deref()])?;
     let load_one = |source: &Source| {
         let written = [args.output.as_deref(), args.csv.as_deref()];
@@ -206,7 +199,7 @@ impl Session {
             camera: view.view.camera(&view, (&loaded.mesh, None, &scene.bounds), view.viewport())?,
             scene,
             target: &self.target,
-            reference_shape: reference_shape.as_ref().map(|(reference_shape, _)| reference_shape),
+            reference_shape: reference_shape.as_ref().map(|(_, reference_shape)| reference_shape),
             base: Settings::from(Tessellation::default()),
             effort: args.effort(),
         };
@@ -238,7 +231,7 @@ impl Session {
             let of = format!("{title}: {too_large} of {} settings", settings.len());
             super::warn(&[format!("{of} have more than {most_triangles} triangles and are left out.")]);
         }
-        let reference_shape = reference_shape.as_ref().map(|(_, words)| words.clone());
+        let reference_shape = reference_shape.as_ref().map(|(words, _)| words.clone());
         let adapter = self.engine.gpu.info.name.clone();
         Ok((Subject { title, reference_shape, adapter, size: args.size, rows }, left_out))
     }

@@ -12,13 +12,15 @@ use inspect::render::Camera;
 use inspect::settings::{Colors, Lighting, Settings, options};
 use inspect::shot::{CopiedCommand, Turn, given};
 use load::files::Limits;
+use load::import::Subdivide;
 use load::{HeightSource, ShownParts, Source};
 use proptest::prelude::*;
 
 use crate::cli::options::Declared;
 use crate::cli::{Cli, CliError, Command, render};
 use geometry::mesh::Bounds;
-use inspect::settings::{Matcap, Overlays, random};
+use inspect::for_tests::random;
+use inspect::settings::{Matcap, Overlays};
 use load::Import;
 
 /// Splits a line into words as a shell does.
@@ -53,6 +55,7 @@ fn shown<'a>(
         size,
         animation: None,
         reference_shape: None,
+        reference_subdivide: None,
         left_mesh: None,
         factors: None,
         lod_shader: None,
@@ -114,12 +117,14 @@ fn options_with_other_values_are_written() {
     let camera = Camera { orthographic: true, target, field_of_view: 25.5, roll: -12.25, ..camera() };
     let shown = CopiedCommand {
         reference_shape: Some(&reference_shape),
+        reference_subdivide: Some(Subdivide::Loop),
         triangle: Some(7),
         ..shown(&source, &preparation, &settings, &camera)
     };
     let args = parsed(&shown.line());
     assert_eq!(args.file, Source::File("./-x.glb".into()));
-    assert_eq!(args.shot.reference_shape, Some(Source::File("./shape:y".into())));
+    assert_eq!(args.shot.reference.reference_shape, Some(Source::File("./shape:y".into())));
+    assert_eq!(args.shot.reference.reference_subdivide, Some(Subdivide::Loop));
     let heights = Some(HeightSource::File("./material".into()));
     assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
     assert_eq!((args.shot.select, args.shot.surface.view.orthographic), (Some(7), true));
@@ -129,7 +134,8 @@ fn options_with_other_values_are_written() {
     let moving = CopiedCommand { animation: Some(("-run, fast", 0.1)), ..shown };
     let args = parsed(&moving.line());
     assert_eq!((args.shot.surface.animation.as_deref(), args.shot.surface.time), (Some("-run, fast"), 0.1));
-    assert_eq!(args.shot.reference_shape, None, "an animation has no reference surface");
+    assert_eq!(args.shot.reference.reference_shape, None, "an animation has no reference surface");
+    assert_eq!(args.shot.reference.reference_subdivide, None, "nor has it a cage of its own");
 }
 
 #[test]

@@ -201,8 +201,6 @@ pub enum CliError {
     NotTheSame { theirs: String, count: usize },
     #[error("no picture is drawn, since coordinates are too large: omit -o, or scale the other program's output")]
     NothingToDraw,
-    #[error("{file} can't be a reference surface: it has no triangles; choose another mesh")]
-    NoReferenceShape { file: String },
     #[error("{file} has no animation \"{name}\": it has {has}")]
     NoAnimation { file: String, name: String, has: String },
     #[error("interrupted after {done} of {all} {what}: what was done is written")]

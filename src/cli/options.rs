@@ -10,12 +10,13 @@ use clap::Args;
 use glam::Vec2;
 
 use super::{CliError, note, refuse};
+use geometry::choice::Choice;
 use geometry::mesh::crease_band::WIDEST;
 use geometry::mesh::{FileCamera, Moment, PartStyle};
 use geometry::progress::Progress;
 use geometry::tessellate::{Displacement, LodView, Surface, Tessellation, tolerance_within_budget};
 use gpu::Timing;
-use inspect::engine::{Engine, Loaded, Preparation};
+use inspect::engine::{Engine, Loaded, Preparation, load_reference};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
 use inspect::settings::options::TOLERANCE_RANGE;
@@ -23,7 +24,7 @@ use inspect::settings::{ARENA_BYTES, Settings};
 use load::files::Limits;
 use load::format::known_extensions;
 use load::import::Subdivide;
-use load::{HeightSource, Import, ShownParts, Source};
+use load::{HeightSource, ShownParts, Source};
 
 pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
 use declared::GivenTessellation;
@@ -267,12 +268,36 @@ impl WeldOption {
             limits: self.limit.limits(),
         }
     }
+}
 
-    /// Loads a reference surface, whose polygons are the cage of a subdivision surface if `subdivide` says so.
-    pub(crate) fn reference_shape(&self, source: &Source, subdivide: Subdivide) -> Result<ReferenceShape, CliError> {
-        let import = Import { subdivide, ..self.import.0 };
-        let found = ReferenceShape::load(source, import, &self.limit.limits(), &Progress::new())?;
-        found.ok_or_else(|| CliError::NoReferenceShape { file: source.to_string() })
+/// The surface that what is emitted is compared with.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ReferenceOption {
+    /// Reference surface that distances and errors are measured from: a mesh file, such as the high-poly original, or a shape.
+    /// By default the exact surface of a shape; for other meshes the surface that the tessellation converges to
+    #[arg(long = "reference-surface", value_name = "FILE", value_parser = source())]
+    pub reference_shape: Option<Source>,
+    /// Compare with the limit of the subdivision surface whose cage is made of the polygons of --reference-surface, or without
+    /// that option of those of the mesh's own file
+    #[arg(long, value_name = "SCHEME", value_parser = choice::<Subdivide>())]
+    pub reference_subdivide: Option<Subdivide>,
+}
+
+impl ReferenceOption {
+    /// Loads the surface that was chosen for a mesh, and returns it with its name, made of that of its source; none if none was.
+    pub(crate) fn load(
+        &self,
+        mesh: &Source,
+        own: &Preparation,
+        name: fn(&Source) -> String,
+    ) -> Result<Option<(String, ReferenceShape)>, CliError> {
+        if self.reference_shape.is_none() && self.reference_subdivide.is_none() {
+            return Ok(None);
+        }
+        let (from, subdivide) = (self.reference_shape.as_ref(), self.reference_subdivide.unwrap_or_default());
+        let found = load_reference(from, (mesh, own), subdivide, &Progress::new())?;
+        let scheme = self.reference_subdivide.map_or_else(String::new, |scheme| format!(" ({})", scheme.name()));
+        Ok(Some((name(from.unwrap_or(mesh)) + &scheme, found)))
     }
 }
 

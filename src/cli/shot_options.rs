@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::options::{LodCameraOption, PictureOptions, whole_from};
+use super::options::{LodCameraOption, PictureOptions, ReferenceOption, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of, files_of_heights,
     keep_apart, load, load_apart, note, options, refuse, warn,
@@ -19,9 +19,8 @@ use inspect::reference_shape::ReferenceShape;
 use inspect::render::environment::Environment;
 use inspect::render::{Camera, Scene, framed_size};
 use inspect::settings::{Choice, ColorSource, Lighting};
-use inspect::shot::{FactorsFile, ReferenceSurface, Shot, ShotError, ShotView, Subject};
+use inspect::shot::{FactorsFile, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
-use load::import::Subdivide;
 use load::panorama::Panorama;
 use load::{Source, load_matcap};
 
@@ -43,13 +42,8 @@ pub struct ShotOptions {
     /// latitude down, with -Z in its middle
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
-    /// Reference surface for the deviation overlay and the stats: a mesh file, such as the high-poly original, or a shape. By default the exact surface of a shape; for other meshes the overlay
-    /// takes the surface that the tessellation converges to
-    #[arg(long = "reference-surface", value_name = "FILE", value_parser = options::source())]
-    pub reference_shape: Option<Source>,
-    /// Take the polygons of the reference surface's file as the cage of a subdivision surface, and compare with the limit of that
-    #[arg(long, value_name = "SCHEME", value_parser = options::choice::<Subdivide>(), default_value = Subdivide::File.name(), requires = "reference_shape")]
-    pub reference_subdivide: Subdivide,
+    #[command(flatten)]
+    pub reference: ReferenceOption,
     /// Another mesh for the left of the split, such as the high-poly original: a mesh file, or a shape
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub split_with: Option<Source>,
@@ -91,7 +85,7 @@ impl ShotOptions {
         refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
         let is_hidden = self.split_with.is_some() && self.picture.0.split.is_none();
         refuse(is_hidden, "--split-with needs --split, which shows it")?;
-        let reference_shape = self.reference_shape.as_ref().and_then(file_of);
+        let reference_shape = self.reference.reference_shape.as_ref().and_then(file_of);
         let left = self.split_with.as_ref().and_then(file_of);
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
         let shaders = [self.user_lod.lod_shader.as_deref(), self.user_surface.surface_shader.as_deref()];
@@ -141,9 +135,6 @@ impl ShotOptions {
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
         let reference_surface = self.reference_surface(&loaded)?;
-        if matches!(reference_surface, Some(ReferenceSurface::Limit)) {
-            self.user_surface.check_deviation()?;
-        }
         let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
         let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
@@ -164,27 +155,25 @@ impl ShotOptions {
         Ok((subject, factors_file))
     }
 
-    /// The surface to compare with: that of `--reference-surface`, or if the overlay is shown the exact surface or the limit surface.
-    fn reference_surface(&self, loaded: &Loaded) -> Result<Option<ReferenceSurface>, CliError> {
-        let Self { surface, picture, .. } = self;
+    /// The surface to compare with, and its name: the one that was chosen, or if the overlay is shown the exact surface; none for
+    /// the limit surface.
+    fn reference_surface(&self, loaded: &Loaded) -> Result<Option<(String, Arc<ReferenceShape>)>, CliError> {
+        let Self { surface, picture, reference, .. } = self;
         let moves = surface.animation.is_some();
-        if let Some(source) = &self.reference_shape {
-            refuse(
-                moves,
-                "--reference-surface can't be combined with --animation: the reference surface doesn't move",
-            )?;
-            let reference_shape = surface.weld.reference_shape(source, self.reference_subdivide)?;
-            return Ok(Some(ReferenceSurface::ReferenceShape(source.to_string(), Arc::new(reference_shape))));
-        }
-        if picture.0.overlays.colors.source() != ColorSource::ReferenceSurface {
-            return Ok(None);
+        let chosen = reference.load(&loaded.source, &loaded.preparation, Source::to_string)?;
+        refuse(
+            moves && chosen.is_some(),
+            "--reference-surface and --reference-subdivide can't be combined with --animation: that surface doesn't move",
+        )?;
+        if chosen.is_some() || picture.0.overlays.colors.source() != ColorSource::ReferenceSurface {
+            return Ok(chosen.map(|(name, chosen)| (name, Arc::new(chosen))));
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();
         let exact = loaded.source.shape().filter(|_| is_plain).and_then(ReferenceShape::from_shape);
-        let found = exact.map(|reference_shape| {
-            ReferenceSurface::ReferenceShape(loaded.source.to_string(), Arc::new(reference_shape))
-        });
-        Ok(Some(found.unwrap_or(ReferenceSurface::Limit)))
+        if exact.is_none() {
+            self.user_surface.check_deviation()?;
+        }
+        Ok(exact.map(|exact| (loaded.source.to_string(), Arc::new(exact))))
     }
 
     /// Reads the light of a file. Standard error tells what was repaired.

@@ -100,6 +100,8 @@ pub enum FileAction {
     Close(CompanionFile),
     /// Shows the mesh before its file changed beside the new one.
     CompareWithBefore,
+    /// Compares the mesh with the limit of its own cage.
+    CompareWithOwnLimit,
     /// Opens the window that chooses how a picture is saved.
     SavePicture,
     SaveTurntable,

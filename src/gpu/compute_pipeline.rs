@@ -14,38 +14,30 @@ use super::{Gpu, GpuError};
 /// A shader module, made when it is first needed.
 pub struct ShaderModule {
     name: &'static str,
-    text: ModuleText,
+    /// The text, if it was made; else it is that of the module's files.
+    text: Option<String>,
     made: Lazy<wgpu::ShaderModule>,
     /// What each entry point uses of group 0: bindings and the names of their variables.
     variables: OnceLock<HashMap<String, Vec<(u32, String)>>>,
 }
 
-/// Where a module's text comes from.
-enum ModuleText {
-    Files(WgslModule),
-    Made(String),
-}
-
 impl ShaderModule {
     /// The module whose entry points are in the file of this name.
     pub fn new(name: &'static str) -> Self {
-        Self::with(name, ModuleText::Files(WgslModule(name)))
+        Self::with(name, None)
     }
 
     /// The module with this text.
     pub(super) fn from_text(name: &'static str, text: String) -> Self {
-        Self::with(name, ModuleText::Made(text))
+        Self::with(name, Some(text))
     }
 
-    fn with(name: &'static str, text: ModuleText) -> Self {
+    fn with(name: &'static str, text: Option<String>) -> Self {
         Self { name, text, made: Lazy::default(), variables: OnceLock::new() }
     }
 
     fn text(&self) -> Cow<'_, str> {
-        match &self.text {
-            ModuleText::Files(module) => Cow::Owned(module.text()),
-            ModuleText::Made(text) => Cow::Borrowed(&**text),
-        }
+        self.text.as_deref().map_or_else(|| WgslModule(self.name).text().into(), Cow::from)
     }
 
     /// The module on the device, which is the same at every call.
@@ -56,7 +48,7 @@ impl ShaderModule {
     pub fn get(&self, gpu: &Gpu) -> Result<&wgpu::ShaderModule, GpuError> {
         // wgpu counts the turns of each loop, which is a quarter of the time of searches and of a software driver's compiler.
         let mut checks = wgpu::ShaderRuntimeChecks::checked();
-        checks.force_loop_bounding = matches!(self.text, ModuleText::Made(_));
+        checks.force_loop_bounding = self.text.is_some();
         self.made.get_or_make(gpu, || {
             let source = wgpu::ShaderSource::Wgsl(self.text());
             let descriptor = wgpu::ShaderModuleDescriptor { label: Some(self.name), source };

@@ -49,6 +49,7 @@ use geometry::mesh::{Mesh, Pose, Rig, Topology};
 use geometry::tessellate::{Inputs, LodView, Tessellation};
 
 pub use crate::GpuError;
+pub use crate::arena::Capacity;
 
 /// The layout of the vertices in slots 0 and 1, whose shader locations are
 /// 0. the position in object units: `vec3<f32>`,
@@ -79,19 +80,6 @@ pub const NORMAL_WGSL: &str = shaders::text("octahedral_normal");
 pub struct Context {
     gpu: Gpu,
     pipelines: Arc<ComputePipelines>,
-}
-
-/// The memory for a mesh's output. A vertex takes 32 bytes, a triangle 12.
-///
-/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles. Smaller numbers are raised to those of one
-/// patch: 8,256 vertices and 16,129 triangles. WebGPU's default limits allow 4,194,304 vertices and
-/// 11,184,810 triangles.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Capacity {
-    /// The most vertices that are emitted.
-    pub vertices: u32,
-    /// The most triangles that are emitted.
-    pub triangles: u32,
 }
 
 /// A mesh on the device with memory for its tessellation.
@@ -162,8 +150,7 @@ impl TessellatedMesh {
         let mesh = mesh.into();
         let topology = Arc::new(Topology::new(&mesh));
         let (gpu, pipelines) = (&context.gpu, context.pipelines.clone());
-        let counts = [capacity.vertices, capacity.triangles];
-        Ok(Self { tessellator: Tessellator::with_capacity(gpu, pipelines, mesh, topology, counts)?, inputs: None })
+        Ok(Self { tessellator: Tessellator::with_capacity(gpu, pipelines, mesh, topology, capacity)?, inputs: None })
     }
 
     /// Makes another view of the same mesh, with its own settings, pose and output. Both share the mesh, its topology and its height
@@ -172,8 +159,7 @@ impl TessellatedMesh {
     /// # Errors
     /// [`GpuError::TooLarge`] if the output is larger than the device binds.
     pub fn another_view(&self, capacity: Capacity) -> Result<Self, GpuError> {
-        let counts = [capacity.vertices, capacity.triangles];
-        Ok(Self { tessellator: self.tessellator.sibling_with_capacity(counts)?, inputs: None })
+        Ok(Self { tessellator: self.tessellator.sibling_with_capacity(capacity)?, inputs: None })
     }
 
     /// The mesh at rest.

@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 
 pub use geometry::mesh::rig::{Binding, Delta, JointMatrix};
-pub use geometry::mesh::{Curve, PatchRelief};
+pub use geometry::mesh::{CornerDetail, Curve, PatchRelief};
 pub use geometry::tessellate::{PatchFactors, Vertex};
 
 /// The view that factors are computed for.
@@ -93,27 +93,6 @@ pub struct Corner {
     pub _pad: f32,
     pub uv: [f32; 2],
     pub _pad2: [f32; 2],
-}
-
-/// What a corner has beside its shading attributes, for materials that need more: see [`geometry::mesh::CornerDetail`].
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct CornerDetail {
-    /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file.
-    pub uvs: [[f32; 2]; 2],
-    pub color: [f32; 4],
-    /// A unit vector, or zero if it isn't known; then the sign of the bitangent, 1 or -1.
-    pub tangent: [f32; 4],
-}
-
-impl CornerDetail {
-    pub fn new(detail: &geometry::mesh::CornerDetail) -> Self {
-        Self {
-            uvs: detail.uvs.map(|uv| uv.to_array()),
-            color: detail.color.to_array(),
-            tangent: detail.tangent.extend(detail.bitangent_sign).to_array(),
-        }
-    }
 }
 
 /// The two inner control points of a curve: the one near its start, and the one near its end.

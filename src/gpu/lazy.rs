@@ -31,14 +31,11 @@ impl<T> Lazy<T> {
         if let Some(made) = self.made.get() {
             return Ok(made);
         }
-        // There is nothing that a thread could have left half done when it panicked.
-        let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(made) = self.made.get() {
-            return Ok(made);
-        }
-        let made = gpu.attempt(make)?;
-        gpu.note_made();
-        Ok(self.made.get_or_init(|| made))
+        self.get_or_try_make(|| {
+            let made = gpu.attempt(make)?;
+            gpu.note_made();
+            Ok(made)
+        })
     }
 
     /// The same for what says itself whether it could be made.
@@ -48,26 +45,16 @@ impl<T> Lazy<T> {
     pub fn get_or_try_make(&self, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
         // There is nothing that a thread could have left half done when it panicked.
         let _making = self.making.lock().unwrap_or_else(PoisonError::into_inner);
-        get_or_try(&self.made, make)
+        if let Some(made) = self.made.get() {
+            return Ok(made);
+        }
+        let made = make()?;
+        Ok(self.made.get_or_init(|| made))
     }
 
     /// Whether it was made.
     pub fn is_made(&self) -> bool {
         self.made.get().is_some()
-    }
-}
-
-/// What `cell` holds, or else what `make` makes for it. An error is not kept.
-///
-/// # Errors
-/// Those of `make`.
-pub(super) fn get_or_try<T>(cell: &OnceLock<T>, make: impl FnOnce() -> Result<T, GpuError>) -> Result<&T, GpuError> {
-    match cell.get() {
-        Some(made) => Ok(made),
-        None => {
-            let made = make()?;
-            Ok(cell.get_or_init(|| made))
-        }
     }
 }
 

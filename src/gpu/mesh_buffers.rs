@@ -169,9 +169,9 @@ fn corner(own: &geometry::mesh::Corner) -> Corner {
 }
 
 fn corner_details(gpu: &Gpu, mesh: &Mesh) -> Result<wgpu::Buffer, GpuError> {
-    let none = [geometry::mesh::CornerDetail::default()];
+    let none = [CornerDetail::default()];
     let details = mesh.details.as_deref().map_or(&none[..], |details| details);
-    filled_by(gpu, "corner details", details.len(), |i| CornerDetail::new(&details[i]))
+    filled_by(gpu, "corner details", details.len(), |i| details[i])
 }
 
 fn patch(patch: &geometry::mesh::Patch, grouped: &CurveItems) -> Patch {

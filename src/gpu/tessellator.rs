@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use glam::Mat4;
 
-use super::arena::Arena;
+use super::arena::{Arena, Capacity};
 use super::buffer::{filled, uniform_buffer};
 use super::layout::{Chunk, Params};
 use super::mesh_buffers::Grouping;
@@ -104,14 +104,14 @@ impl Tessellator {
         pipelines: Arc<ComputePipelines>,
         mesh: Arc<Mesh>,
         topology: Arc<Topology>,
-        [vertices, triangles]: [u32; 2],
+        capacity: Capacity,
     ) -> Result<Self, GpuError> {
         let (patches, limit) = (topology.patches.len() as u64, u64::from(SLAB_PATCHES));
         if patches > limit {
             return Err(GpuError::TooManyPatches { patches, limit });
         }
         let images = mesh.heights.as_deref().map(|heights| HeightImages::new(gpu, heights)).transpose()?;
-        let (solid, arena) = (Solid::find(&mesh, &topology), Arena::with_capacity(gpu, vertices, triangles)?);
+        let (solid, arena) = (Solid::find(&mesh, &topology), Arena::with_capacity(gpu, capacity)?);
         Self::with(gpu, pipelines, mesh, topology, solid, images, |_| Ok(arena))
     }
 
@@ -120,9 +120,9 @@ impl Tessellator {
     ///
     /// # Errors
     /// The output is larger than the adapter binds.
-    pub fn sibling_with_capacity(&self, [vertices, triangles]: [u32; 2]) -> Result<Self, GpuError> {
+    pub fn sibling_with_capacity(&self, capacity: Capacity) -> Result<Self, GpuError> {
         let images = self.images.as_ref().map(HeightImages::shared);
-        let arena = Arena::with_capacity(&self.gpu, vertices, triangles)?;
+        let arena = Arena::with_capacity(&self.gpu, capacity)?;
         let (mesh, topology) = (self.mesh.clone(), self.topology.clone());
         Self::with(&self.gpu, self.pipelines.clone(), mesh, topology, self.solid.clone(), images, |_| Ok(arena))
     }

@@ -19,7 +19,7 @@ use geometry::tessellate::{Inputs, LodView};
 use gpu::{AdapterChoice, ComputePipelines, Gpu, GpuError, Recorder, Timing};
 
 pub use clip_survey::{ClipFinding, MomentFound, worst_moment};
-pub use loading::{Loaded, Preparation, load};
+pub use loading::{Loaded, Preparation, load, load_reference};
 pub use measurements::{MeasurementResults, Measurements};
 pub use readbacks::CopiedChunk;
 pub use silhouette::{SilhouetteDrawing, SilhouetteView};

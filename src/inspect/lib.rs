@@ -3,6 +3,8 @@
 pub mod adjacency_file;
 pub mod engine;
 pub mod export;
+#[cfg(any(test, feature = "for_tests"))]
+pub mod for_tests;
 pub mod gates;
 pub mod html;
 pub mod measure;

@@ -2,10 +2,11 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec2, DVec3, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
+use glam::{DVec2, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
 
 use super::import::{Import, Subdivision};
 use super::recent_corners::NumberedCorner;
+use super::rig_builder::RigBuilder;
 use geometry::casts::to_u32;
 use geometry::mesh::CornerDetail;
 use geometry::mesh::build_limits::{Budget, MAX_TRIANGLES, MemoryRefused};
@@ -21,6 +22,8 @@ const PER_POINT_MEANWHILE: u64 = 48;
 const PER_NORMAL: u64 = 12;
 const PER_UV: u64 = 64;
 const PER_DETAIL: u64 = 128;
+/// Of a refined point that a clip may move, with its joints and their weights.
+const PER_BINDING: u64 = 400;
 
 /// What a face has beside its corners.
 #[derive(Clone, Copy)]
@@ -31,11 +34,13 @@ pub(super) struct OfFace {
     pub is_hole: bool,
 }
 
-/// A cage whose points are the distinct positions of corners.
+/// A cage whose points are the distinct positions of corners; or of corners' vertices, if clips move them apart.
 #[derive(Default)]
 pub(super) struct CageFaces {
     subdivision: Subdivision,
-    numbers: HashMap<[u32; 3], u32>,
+    /// Whether clips may move it.
+    moves: bool,
+    numbers: HashMap<([u32; 3], u32), u32>,
     positions: Vec<Vec3>,
     starts: Vec<u32>,
     points: Vec<u32>,
@@ -50,8 +55,8 @@ pub(super) struct CageFaces {
 }
 
 impl CageFaces {
-    pub(super) fn new(subdivision: Subdivision, import: &Import) -> Self {
-        Self { subdivision, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
+    pub(super) fn new(subdivision: Subdivision, import: &Import, moves: bool) -> Self {
+        Self { subdivision, moves, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
     }
 
     /// Adds a face of three or more corners. Loop's scheme gets its triangles. Returns how many faces have a point twice: these are left
@@ -67,17 +72,19 @@ impl CageFaces {
         budget: &Budget,
     ) -> Result<usize, MemoryRefused> {
         let whole: Vec<usize> = (0..corners.len()).collect();
-        let is_whole = self.subdivision.scheme != Scheme::Loop;
-        let bytes = PER_CORNER * if is_whole { whole.len() } else { 3 * triangles.len() } as u64;
+        let parts: Vec<&[usize]> = match self.subdivision.scheme {
+            Scheme::CatmullClark => vec![&whole],
+            Scheme::Loop => triangles.iter().map(|triangle| &triangle[..]).collect(),
+        };
+        let bytes = PER_CORNER * parts.iter().map(|part| part.len() as u64).sum::<u64>();
         budget.hold(bytes)?;
         self.held += bytes;
-        let parts: Vec<&[usize]> =
-            if is_whole { vec![&whole] } else { triangles.iter().map(|triangle| &triangle[..]).collect() };
         let mut left_out = 0;
         for part in parts {
             let start = self.points.len();
             for &corner in part {
-                let point = self.point(corners[corner].corner.position);
+                let NumberedCorner { corner, vertex, .. } = corners[corner];
+                let point = self.point(corner.position, vertex.map_or(0, |[vertex, ..]| vertex));
                 self.points.push(point);
             }
             if has_equal(&self.points[start..]) {
@@ -93,28 +100,29 @@ impl CageFaces {
         Ok(left_out)
     }
 
-    /// Makes the edge between two positions a crease.
-    pub(super) fn crease(&mut self, ends: [Vec3; 2], sharpness: f32) {
-        let ends = ends.map(|end| self.point(end));
+    /// Makes the edge between two positions, with the vertices there, a crease.
+    pub(super) fn crease(&mut self, ends: [(Vec3, u32); 2], sharpness: f32) {
+        let ends = ends.map(|(position, vertex)| self.point(position, vertex));
         self.creases.extend((ends[0] != ends[1]).then_some((ends, sharpness)));
     }
 
     /// Makes a point sharp.
-    pub(super) fn sharpen(&mut self, position: Vec3, sharpness: f32) {
-        let point = self.point(position);
+    pub(super) fn sharpen(&mut self, (position, vertex): (Vec3, u32), sharpness: f32) {
+        let point = self.point(position, vertex);
         self.sharp_points.push((point, sharpness));
     }
 
-    fn point(&mut self, position: Vec3) -> u32 {
-        let key = position.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
-        *self.numbers.entry(key).or_insert_with(|| {
+    fn point(&mut self, position: Vec3, vertex: u32) -> u32 {
+        let place = position.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
+        *self.numbers.entry((place, if self.moves { vertex } else { 0 })).or_insert_with(|| {
             self.positions.push(position);
             to_u32(self.positions.len() - 1)
         })
     }
 
     /// Refines the cage, and gives the corners of each refined face to `add`, with points and normals of the limit surface. `details` are
-    /// those that corners have by their numbers. A cage that can't be refined stays as it is, and the reason is returned.
+    /// those that corners have by their numbers; what clips move is bound to `rig`. A cage that can't be refined stays as it is, and
+    /// the reason is returned.
     ///
     /// # Errors
     /// Those of `add`, and [`MemoryRefused`].
@@ -122,6 +130,7 @@ impl CageFaces {
         self,
         budget: &Budget,
         details: Option<&mut DetailTable>,
+        rig: Option<&mut RigBuilder>,
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
     ) -> Result<Option<String>, E> {
         let Subdivision { scheme, levels, boundary } = self.subdivision;
@@ -145,7 +154,7 @@ impl CageFaces {
         };
         let (why_not, held) = match refinement {
             Ok(refinement) => {
-                self.refined(&refinement, details, budget, add)?;
+                self.refined(&refinement, details, rig, budget, add)?;
                 (None, memory)
             }
             Err((why_not, held)) => {
@@ -165,7 +174,8 @@ impl CageFaces {
         let per_corner =
             PER_NORMAL + if self.has_uvs() { PER_UV } else { 0 } + if has_details { PER_DETAIL } else { 0 };
         // All levels together have at most four thirds of the elements of the last one.
-        let counted = [(size.bytes(), 4, 3), (size.points, PER_POINT, 1), (size.corners, per_corner, 1)];
+        let per_point = PER_POINT + if self.moves { PER_BINDING } else { 0 };
+        let counted = [(size.bytes(), 4, 3), (size.points, per_point, 1), (size.corners, per_corner, 1)];
         counted
             .into_iter()
             .fold(0, |sum: u64, (count, each, part)| sum.saturating_add(count.saturating_mul(each) / part))
@@ -179,10 +189,13 @@ impl CageFaces {
         &self,
         refinement: &Refinement,
         mut details: Option<&mut DetailTable>,
+        rig: Option<&mut RigBuilder>,
         budget: &Budget,
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
     ) -> Result<(), E> {
-        let (places, normals) = self.limit(refinement);
+        let refined = refinement.refine(&self.positions.iter().map(|position| position.as_dvec3()).collect::<Vec<_>>());
+        let limit = refinement.limit(&refined);
+        let (places, normals) = (limit.values(), limit.normals());
         let at_corners = |has: bool, value: &dyn Fn(&NumberedCorner) -> DVec4| {
             let values: Vec<DVec4> = self.corners.iter().filter(|_| has).map(value).collect();
             if has { refinement.refine_corners(&values) } else { values }
@@ -195,19 +208,23 @@ impl CageFaces {
             let [a, b] = detail(at).uvs.map(Vec2::as_dvec2);
             DVec4::new(a.x, a.y, b.x, b.y)
         });
+        let bound =
+            rig.map(|rig| rig.bind_refined(refinement, &self.bindings(details.as_deref()), budget)).transpose()?;
         let mut corners = Vec::new();
         for face in refinement.faces() {
             corners.clear();
             for k in face.corners {
+                let point = refinement.corners()[k] as usize;
+                let binding = bound.as_ref().map_or(0, |bound| bound[point]);
                 let number = match &mut details {
                     Some(details) => {
                         let [a, b] = [more_uvs[k].xy(), more_uvs[k].zw()].map(DVec2::as_vec2);
                         let own = CornerDetail { uvs: [a, b], color: colors[k].as_vec4(), ..CornerDetail::default() };
-                        details.number(own, 0, budget)?
+                        details.number(own, binding, budget)?
                     }
-                    None => 0,
+                    None => binding,
                 };
-                let position = places[refinement.corners()[k] as usize];
+                let position = places[point].as_vec3();
                 let normal = Some(normals[k]).filter(|_| self.has_normals);
                 let uv = uvs.get(k).map_or(Vec2::ZERO, |uv| uv.xy().as_vec2());
                 corners.push(NumberedCorner { corner: InputCorner { position, normal, uv }, number, vertex: None });
@@ -217,12 +234,14 @@ impl CageFaces {
         Ok(())
     }
 
-    /// The points of the limit surface, and its normals at the corners of faces.
-    fn limit(&self, refinement: &Refinement) -> (Vec<Vec3>, Vec<Vec3>) {
-        let positions: Vec<DVec3> = self.positions.iter().map(|position| position.as_dvec3()).collect();
-        let refined = refinement.refine(&positions);
-        let limit = refinement.limit(&refined);
-        (limit.values().into_iter().map(DVec3::as_vec3).collect(), limit.normals())
+    /// What each point is bound to: what its first corner is, since others differ from that in their normals alone. A point that is
+    /// in no face is bound to nothing.
+    fn bindings(&self, details: Option<&DetailTable>) -> Vec<u32> {
+        let mut bindings = vec![u32::MAX; self.positions.len()];
+        for (&point, at) in self.points.iter().zip(&self.corners).rev() {
+            bindings[point as usize] = details.map_or(at.number, |details| details.binding(at.number));
+        }
+        bindings
     }
 }
 

@@ -13,6 +13,7 @@ use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
 use super::recent_corners::RecentCorners;
+use super::rig_builder::RigBuilder;
 use super::tangents;
 use super::uri::Files;
 use super::warnings::repair_warnings;
@@ -110,21 +111,27 @@ impl<'a> FaceBuilder<'a> {
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
-            cage: import.subdivision().map(|own| CageFaces::new(own, &import)),
+            cage: import.subdivision().map(|own| CageFaces::new(own, &import, false)),
             is_refined: None,
             is_hole: false,
         }
     }
 
-    /// Adds the refined faces of the cage that was collected. `details` are those of corners, if the reader has them.
+    /// Adds the refined faces of the cage that was collected. `details` are those of corners, if the reader has them, and `rig` what
+    /// clips move.
     ///
     /// # Errors
     /// [`ReadError::TooMany`], [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
-    pub(super) fn end_cage(&mut self, details: Option<&mut DetailTable>, progress: &Progress) -> Result<(), ReadError> {
+    pub(super) fn end_cage(
+        &mut self,
+        details: Option<&mut DetailTable>,
+        rig: Option<&mut RigBuilder>,
+        progress: &Progress,
+    ) -> Result<(), ReadError> {
         let Some(cage) = self.cage.take() else { return Ok(()) };
         let mut own = self.colors.take();
         let why_not =
-            cage.refine(self.memory, details.or(own.as_mut()), |corners, OfFace { material, part, .. }| {
+            cage.refine(self.memory, details.or(own.as_mut()), rig, |corners, OfFace { material, part, .. }| {
                 progress.check()?;
                 self.builder.enter_part(part);
                 self.store(material, corners, false)
@@ -305,7 +312,7 @@ impl<'a> FaceBuilder<'a> {
     /// # Errors
     /// [`ReadError::Empty`] and [`ReadError::Cancelled`].
     pub(super) fn finish(mut self, name: &str, holds: String, progress: &Progress) -> Result<LoadedMesh, ReadError> {
-        self.end_cage(None, progress)?;
+        self.end_cage(None, None, progress)?;
         let (file_bytes, memory, colors) = (self.memory.files(), self.memory, self.colors.take());
         let are_colored = self.are_colored;
         let (mut loaded, numbers, mut notes) = self.finish_numbered(name, holds, progress)?;
@@ -326,7 +333,7 @@ impl<'a> FaceBuilder<'a> {
         holds: String,
         progress: &Progress,
     ) -> Result<(LoadedMesh, Vec<u32>, Notes), ReadError> {
-        self.end_cage(None, progress)?;
+        self.end_cage(None, None, progress)?;
         self.parts.enter_materials(&mut self.builder, self.memory)?;
         let hides_all = self.builder.is_empty() && self.parts.are_hidden();
         let named = hides_all.then(|| format!("{holds}, and its parts are hidden; {}", self.parts.names()));

@@ -27,7 +27,7 @@ choices! {
     pub enum Subdivide {
         #[default]
         File => "file", "As the file says",
-            "What an FBX file marks as a subdivision surface is refined, unless a clip moves the file.";
+            "What an FBX file marks as a subdivision surface is refined.";
         Off => "none", "None", "Polygons are drawn as they are.";
         CatmullClark => "catmull-clark", "Catmull-Clark",
             "Polygons are the cage of a Catmull-Clark surface. Refined points and their normals are those of its limit.";
@@ -138,6 +138,11 @@ impl Import {
             Subdivide::Loop => Scheme::Loop,
         };
         Some(Subdivision { scheme, levels: self.levels_or(USUAL_LEVELS), ..Subdivision::default() })
+    }
+
+    /// Whether all polygons are refined, whatever the file says.
+    pub fn refines_all(&self) -> bool {
+        self.subdivision().is_some()
     }
 
     /// How often cages are refined of which the file says so many times.

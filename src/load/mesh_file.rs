@@ -63,9 +63,9 @@ pub enum LoadError {
     /// The mesh, or something that is made of it, would take too much memory.
     #[error("{}: {what} {reason}; split the model into several files", shown_path(path))]
     TooMuch { path: PathBuf, what: &'static str, reason: String },
-    /// A cage can't be refined, but must be.
+    /// A mesh has no triangles, or its cage can't be refined, but must be.
     #[error("{file} can't be a reference surface: {reason}")]
-    Unrefined { file: String, reason: String },
+    NoReference { file: String, reason: String },
     /// The file has no triangles.
     #[error("{} has no triangles to show: {holds}", shown_path(path))]
     Empty { path: PathBuf, holds: String },
@@ -111,8 +111,8 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
 }
 
 /// The warning about what was to be refined and isn't.
-const NOT_REFINED: &str = "Not all of it is refined as a subdivision surface: only polygons of FBX files without clips, and of OBJ, \
-                           PLY, OFF, STL and 3MF files, can be.";
+pub const NOT_REFINED: &str = "Not all of it is refined as a subdivision surface: only polygons of FBX, OBJ, PLY, OFF, STL and \
+                           3MF files can be.";
 
 /// Loads a mesh as [`load`] does, with the materials of a variant, or another scene than the default one.
 ///
@@ -135,7 +135,7 @@ pub fn load_selected(
     };
     let mut mesh = read(format, if is_utf16 { in_utf8(bytes) } else { bytes }, path, selected, limits, progress)?;
     mesh.warnings.splice(0..0, warning);
-    if selected.import.subdivision().is_some() && !mesh.is_refined {
+    if selected.import.refines_all() && !mesh.is_refined {
         mesh.warnings.push(NOT_REFINED.to_owned());
     }
     before.check(path)?;

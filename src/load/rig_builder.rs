@@ -3,18 +3,19 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use glam::{DMat4, Vec3};
+use glam::{DMat4, DVec3, Vec3};
 
 use super::attachment::{Attachment, SceneNodes, attachments};
 use super::binding_space::{BindingSpace, posed, unturned, untwisted};
 use super::notes::Notes;
 use super::tangents;
 use geometry::casts::{to_f32, to_u32};
-use geometry::mesh::build_limits::BuildError;
+use geometry::mesh::build_limits::{BuildError, MemoryRefused};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::normals::GivenNormal;
 use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
+use geometry::mesh::subdivision::Refinement;
 use geometry::mesh::{Budget, CornerDetail, CornerDetails, Mesh};
 use geometry::progress::Progress;
 
@@ -215,7 +216,9 @@ impl RigBuilder {
         let rest = rig.rest();
         for ((binding, corner), &id) in rig.bindings.iter_mut().zip(&mesh.corners).zip(corners) {
             if self.bound[id as usize].without_normal {
-                binding.normal = untwisted(binding, &rest, corner.normal).to_array();
+                let own = &rig.deltas[binding.first_delta as usize..][..binding.delta_count as usize];
+                let turned = own.iter().map(|delta| Vec3::from(delta.normal) * rest.weights[delta.weight as usize]);
+                binding.normal = (untwisted(binding, &rest, corner.normal) - turned.sum::<Vec3>()).to_array();
             }
         }
         if let Some(details) = mesh.details.as_ref().filter(|details| has_tangents(details)) {
@@ -229,6 +232,59 @@ impl RigBuilder {
         }
         refer_to_tangents(rig, &self.tangent_deltas);
         rig.reach = Reach::new(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
+    }
+
+    /// Binds the points that a cage is refined to, as combinations of what the cage's points are bound to, by the numbers of `cage`:
+    /// their positions, weights and displacements are those of the limit. Of a point's joints the four with the largest weights are
+    /// used, and its normal is computed from the one that its corner gets. Returns the points' numbers.
+    ///
+    /// # Errors
+    /// [`MemoryRefused`].
+    pub(super) fn bind_refined(
+        &mut self,
+        refinement: &Refinement,
+        cage: &[u32],
+        budget: &Budget,
+    ) -> Result<Vec<u32>, MemoryRefused> {
+        let binding = |&id: &u32| self.bound.get(id as usize).map_or_else(Binding::default, |bound| bound.binding);
+        let cage: Vec<Binding> = cage.iter().map(binding).collect();
+        let vector = |vector: [f32; 3]| Vec3::from(vector).as_dvec3();
+        let positions = refinement.refine(&cage.iter().map(|own| vector(own.position)).collect::<Vec<_>>());
+        let positions = refinement.limit(&positions).values();
+        // What isn't used of a vertex's joints comes last, and has no weight.
+        let hung = |own: &Binding| own.joints.into_iter().zip(own.weights.map(f64::from)).collect();
+        let joints = refinement.limit_of_some(&cage.iter().map(hung).collect::<Vec<_>>());
+        // A target moves positions under an even number, and turns normals under an odd one.
+        let displaced = |own: &Binding| {
+            let deltas = &self.rig.deltas[own.first_delta as usize..][..own.delta_count as usize];
+            let both = |delta: &Delta| [(2 * delta.weight, delta.position), (2 * delta.weight + 1, delta.normal)];
+            deltas.iter().flat_map(both).map(|(number, own)| (number, vector(own))).collect()
+        };
+        let displaced = refinement.limit_of_some(&cage.iter().map(displaced).collect::<Vec<_>>());
+        budget.hold(displaced.iter().map(|list| list.len() as u64).sum::<u64>() * PER_DELTA)?;
+        let points = positions.into_iter().zip(joints).zip(displaced);
+        Ok(points.map(|((position, joints), displaced)| self.bind_point(position, joints, &displaced)).collect())
+    }
+
+    /// Binds a refined point; joints' weights needn't add up to 1.
+    fn bind_point(&mut self, position: DVec3, mut joints: Vec<(u32, f64)>, displaced: &[(u32, DVec3)]) -> u32 {
+        if self.problem.is_some() {
+            return u32::MAX;
+        }
+        joints.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+        joints.truncate(4);
+        joints.sort_by_key(|(joint, _)| *joint);
+        let sum: f64 = joints.iter().map(|(_, weight)| weight).sum();
+        let mut binding = Binding { position: position.as_vec3().to_array(), ..Binding::default() };
+        for (k, (joint, weight)) in joints.into_iter().enumerate() {
+            (binding.joints[k], binding.weights[k]) = (joint, to_f32(weight / sum));
+        }
+        let deltas = displaced.chunk_by(|a, b| a.0 / 2 == b.0 / 2).map(|own| {
+            let part = |odd| own.iter().find(|own| own.0 % 2 == odd).map_or([0.0; 3], |own| own.1.as_vec3().to_array());
+            Delta { position: part(0), weight: own[0].0 / 2, normal: part(1), tangent: 0 }
+        });
+        let bound = BoundVertex { binding, alike: 0, without_normal: true, tangent: None };
+        self.bind(bound, &deltas.collect::<Vec<_>>(), &[])
     }
 
     fn joint(&mut self, joint: Joint) -> u32 {
@@ -313,7 +369,8 @@ pub(super) struct NodeBinder<'a> {
     skin: Option<&'a SkinJoints>,
     /// For each joint of the skin, its index in the palette once it is used.
     skin_joints: Vec<Option<u32>>,
-    binder: &'a mut RigBuilder,
+    /// What the vertices of all nodes are bound to.
+    pub binder: &'a mut RigBuilder,
 }
 
 /// A vertex before it is deformed.

@@ -210,6 +210,27 @@ fn halves_side_by_side_show_the_middle_of_their_view_and_a_difference_what_diffe
 }
 
 #[test]
+fn lines_are_drawn_over_a_difference_and_change_nothing_beside_them() {
+    let folder = Folder::new();
+    let draw = |overlay: &[&str]| {
+        let path = folder.path("picture.png");
+        let pn = ["render", "shape:cube-split", "--surface", "pn", "--lod", "uniform", "--factor", "4"];
+        let split = ["--split", "0.5", "--split-view", "difference", "--size", "160x120", "-o", &*path];
+        output(&[&pn[..], &split, overlay].concat());
+        image::open(&path).expect("a picture").to_rgba8()
+    };
+    let [without, with] = [draw(&[]), draw(&["--overlay", "cracks"])];
+    let is_grey = |[red, green, blue, alpha]: [u8; 4]| red == green && green == blue && alpha == 255;
+    assert!(without.pixels().all(|pixel| is_grey(pixel.0)));
+    let pairs = with.pixels().zip(without.pixels());
+    let drawn: Vec<_> = pairs.filter(|(with, without)| with != without).map(|(with, _)| with.0).collect();
+    assert!((150..10_000).contains(&drawn.len()), "{} px of lines", drawn.len());
+    assert!(drawn.iter().all(|[red, green, blue, alpha]| red >= green && red >= blue && *alpha == 255));
+    let red = drawn.iter().filter(|[red, green, _, _]| *red > 200 && *green < 120).count();
+    assert!(red > 50, "{red} px have the colour of cracks");
+}
+
+#[test]
 fn another_mesh_left_of_a_split_is_drawn_and_counted_as_it_is_alone() {
     let folder = Folder::new();
     // The same bounding box, so that one camera sees both alike.

@@ -1,6 +1,6 @@
 //! Polygons that are taken as the cage of a subdivision surface.
 
-use super::{Folder, both, failure, number, output, stats};
+use super::{Folder, both, failure, number, output, run, stats};
 
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
 const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
@@ -80,6 +80,76 @@ fn how_far_a_tessellated_cage_is_from_its_limit_surface_is_measured() {
     std::fs::write(&file, [CUBE, QUADS, "v 3 0 0\nf 1 2 9\n"].concat()).expect("a writable folder");
     let refused = failure(&[&["render", &*file, "-o", "a.png", "--subdivide", "none"][..], &reference].concat(), 1);
     assert!(refused.contains("can't be a reference surface") && refused.contains("3 faces meet"), "{refused}");
+}
+
+/// Writes the cube, and returns its path.
+fn cube(folder: &Folder) -> String {
+    folder.write("cube.obj", [CUBE, QUADS].concat())
+}
+
+/// Options that draw a cage as it is, and compare it with its own limit.
+const OWN: [&str; 6] = ["--surface", "flat", "--factor", "1", "--reference-subdivide", "catmull-clark"];
+
+#[test]
+fn a_cage_is_compared_with_its_own_limit_without_naming_it_twice() {
+    let folder = Folder::new();
+    let file = cube(&folder);
+    let said = |options: &[&str]| stats(&[&[&*file][..], &OWN, options].concat())["accuracy"].clone();
+    let own = said(&[]);
+    assert_eq!(own["reference_surface"], format!("{file} (catmull-clark)"));
+    assert_eq!(own, said(&["--reference-surface", &file]));
+    // The last refinement moved the reference by more than what is missing to the limit, which finer points lie on.
+    let step = number(&own, "/reference_step");
+    let missing = number(&said(&["--subdivide", "catmull-clark", "--levels", "6"]), "/to_reference/max/at_least");
+    assert!(step > 2e-4 && step < 0.05, "{step}");
+    assert!(missing > step / 10.0 && missing < step / 2.0, "{missing} after a step of {step}");
+    let plain = stats(&[&*file, "--reference-surface", "shape:torus"]);
+    assert!(plain["accuracy"]["reference_step"].is_null(), "{plain}");
+    // Its faces as they are.
+    let flat = stats(&[&*file, "--surface", "flat", "--factor", "1", "--reference-subdivide", "none"]);
+    assert_eq!(flat["accuracy"]["reference_surface"], format!("{file} (none)"));
+    assert!(number(&flat, "/accuracy/to_reference/max/at_most") < 1e-5, "{flat}");
+    // What is hidden is hidden in the reference too.
+    let [lid, rest] = [&QUADS[..10], &QUADS[10..]];
+    let parts = folder.write("parts.obj", format!("{CUBE}o box\n{rest}o lid\n{lid}"));
+    let refined = ["--subdivide", "catmull-clark", "--levels", "4", "--hide-part", "lid"];
+    let open = stats(&[&[&*parts][..], &OWN, &refined].concat());
+    let most = ["to", "from"].map(|way| number(&open, &format!("/accuracy/{way}_reference/max/at_most")));
+    assert!(most.iter().all(|most| *most < 1e-3), "{most:?}");
+}
+
+#[test]
+fn gates_charts_and_checks_take_the_own_limit() {
+    let folder = Folder::new();
+    let (file, picture) = (cube(&folder), folder.path("cube.png"));
+    let render = |limit: &'static str| {
+        let gate = ["-o", &picture, "--size", "64x48", "--fail-on", limit];
+        run(&[&["render", &file][..], &OWN, &gate].concat()).status.code()
+    };
+    assert_eq!((render("deviation:0.9"), render("deviation:0.8")), (Some(0), Some(1)));
+    let options = ["--surfaces", "flat", "--lods", "uniform", "--factors", "1", "--samples", "2000", "--size", "64x48"];
+    let own = ["chart", &*file, "--csv", "-", "--reference-subdivide", "catmull-clark"];
+    let chart = output(&[&own[..], &options].concat());
+    let mut reader = csv::Reader::from_reader(chart.as_bytes());
+    let row = reader.records().next().expect("a row").expect("a whole row");
+    let error: f64 = row[13].parse().expect("a number");
+    // A part of the diagonal of the limit, whose half is between its corners' 0.87 and the cage's 1.74.
+    assert!(error > 0.866 / 3.47 && error < 0.866 / 1.73, "{error}");
+    for (limit, code) in [("0.9", 0), ("0.8", 1)] {
+        let options = "surface = \"flat\"\nfactor = 1\nreference-subdivide = \"catmull-clark\"";
+        let config = folder.write("own.toml", format!("fail-on = [\"deviation:{limit}\"]\n[options]\n{options}\n"));
+        let ran = run(&["check", &file, "--config", &config]);
+        assert_eq!(ran.status.code(), Some(code), "{}", String::from_utf8_lossy(&ran.stdout));
+    }
+}
+
+#[test]
+fn what_has_no_cage_of_its_own_is_refused() {
+    let own = ["-o", "a.png", "--reference-subdivide", "loop"];
+    for mesh in ["shape:torus", "shape:vase", "assets/vase.glb"] {
+        let refused = failure(&[&["render", mesh][..], &own].concat(), 1);
+        assert!(refused.contains("can't be a reference surface") && refused.contains("only polygons of"), "{refused}");
+    }
 }
 
 #[test]

@@ -185,7 +185,8 @@ fn only_what_changed_is_recorded() {
     let Engine { gpu, pipelines, .. } = engine();
     let (mesh, topology) = (Arc::new(Shape::CubeSplit.build()), Arc::new(Topology::new(&Shape::CubeSplit.build())));
     let mut tessellator =
-        Tessellator::with_capacity(gpu, pipelines.clone(), mesh, topology, [0, 0]).expect("a small mesh");
+        Tessellator::with_capacity(gpu, pipelines.clone(), mesh, topology, Capacity { vertices: 0, triangles: 0 })
+            .expect("a small mesh");
     let mut recorded = |tessellation: Option<Tessellation>| {
         let mut names = Names::default();
         if let Some(tessellation) = tessellation {

@@ -5,17 +5,18 @@ use std::sync::OnceLock;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3, Vec4, vec3};
 use gpu::{bind_group, read_buffer};
-use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, level_of_roughness, prefiltered, roughness_of_level};
-use inspect::render::cube_map::CubeMap;
-use inspect::render::dfg::{environment_dfg, environment_sheen};
-use inspect::render::environment::{ENVIRONMENT, Environment, LightView};
-use inspect::render::irradiance::{irradiance, irradiance_of};
-use inspect::render::reflectance::{
+use inspect::for_tests::environment::{environment_dfg, environment_sheen, irradiance_of, level_of_roughness};
+use inspect::for_tests::prefiltered::prefiltered;
+use inspect::for_tests::reflectance::{
     AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, mean_roughness, reflect_ambient,
     sheen_direction, stretched_alphas, transmitted,
 };
+use inspect::for_tests::tone::tone_mapped;
+use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, roughness_of_level};
+use inspect::render::cube_map::CubeMap;
+use inspect::render::environment::{ENVIRONMENT, Environment, LightView};
+use inspect::render::irradiance::irradiance;
 use inspect::render::studio::studio_light;
-use inspect::render::tone::tone_mapped;
 use inspect::settings::ToneCurve;
 use load::panorama::Panorama;
 use wgpu::util::DeviceExt;

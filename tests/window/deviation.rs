@@ -12,7 +12,7 @@ use load::Source;
 use pnaen::app::App;
 
 use crate::editing::{assert_draws, copied};
-use crate::{choose, click, open_list, press, settle, uniform, window};
+use crate::{choose, click, open_list, press, settle, uniform, uniform_of, window};
 
 #[test]
 fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {
@@ -82,6 +82,55 @@ fn a_reference_surface_is_loaded_and_stays_if_the_next_one_fails() {
     click(&mut harness, "File");
     click(&mut harness, "Forget reference surface");
     assert_eq!((harness.state().reference_shape(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
+}
+
+/// A cube of quadrilaterals.
+const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+                    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
+
+#[test]
+fn a_mesh_is_compared_with_its_own_subdivision_limit() {
+    let (folder, mut harness) = uniform_of("cube.obj", CUBE);
+    choose(&mut harness, "Surface", "Flat");
+    let context = harness.ctx.clone();
+    let compare = "Compare with its subdivision limit";
+    click(&mut harness, "File");
+    click(&mut harness, compare);
+    assert!(harness.state().has_own_limit() && harness.state().reference_shape().is_none());
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Deviation);
+    assert!(
+        harness.query_by_label("subdivision limit").is_some() && harness.query_by_label("Last refinement").is_some()
+    );
+    // A corner of the cage is twice as far from the middle as that of the limit.
+    let corner = 0.75_f64.sqrt();
+    let largest = harness.state().deviation(SplitSide::Right).expect("measured");
+    assert!((largest - corner).abs() < 0.01, "{largest}");
+    let command = copied(&mut harness);
+    assert!(
+        command.contains("--reference-subdivide catmull-clark") && !command.contains("--reference-surface"),
+        "{command}"
+    );
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert!(!harness.state().has_own_limit());
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    assert!(harness.state().has_own_limit());
+    // The file is written anew, longer on one side.
+    std::fs::write(folder.path().join("cube.obj"), CUBE.replace("v -1", "v -1.5")).expect("a writable folder");
+    harness.state_mut().reload(&context);
+    settle(&mut harness);
+    let longer = harness.state().deviation(SplitSide::Right).expect("measured");
+    assert!(longer > corner + 0.03, "{longer}");
+    click(&mut harness, "File");
+    click(&mut harness, "Forget reference surface");
+    assert!(!harness.state().has_own_limit());
+    // A shape has no polygons of its own.
+    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
+    settle(&mut harness);
+    click(&mut harness, "File");
+    click(&mut harness, compare);
+    assert!(harness.query_by_label_contains("can't be a reference surface").is_some());
 }
 
 /// The distance between the inscribed and the circumscribed sphere of an icosahedron, of radius 1.

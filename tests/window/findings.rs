@@ -445,6 +445,18 @@ fn colours_have_a_number_under_the_pointer_while_it_rests() {
     let found = last_label(&harness, |text| text.ends_with(" units") && text.split(' ').count() == 2);
     let found: f64 = found.and_then(|text| text.trim_end_matches(" units").parse().ok()).expect("a distance");
     assert!(found <= 1.001 * largest, "{found} of {largest}");
+    // In px it is as long as it would be across the view, where the sphere is.
+    choose(&mut harness, "Distances in", "Px");
+    harness.hover_at(place);
+    settle(&mut harness);
+    let px = last_label(&harness, |text| text.ends_with(" px") && text.split(' ').count() == 2);
+    let px: f64 = px.and_then(|text| text.trim_end_matches(" px").parse().ok()).expect("a distance");
+    let camera = harness.state().camera();
+    let bounds = harness.state().loaded().expect("a mesh").mesh.bounds();
+    let height = harness.get_by_role_and_label(Role::Image, "Viewport").rect().height();
+    let nearest = camera.distance - 0.5 * (bounds.max - bounds.min).max_element();
+    let expected = found * f64::from(camera.distance / camera.units_per_pixel(height) / nearest);
+    assert!((px / expected - 1.0).abs() < 0.1, "{px} and {expected} px");
     // A pointer that goes on before anything is found leaves nothing under way.
     let start = harness.state().pictures();
     harness.hover_at(place + egui::vec2(9.0, 0.0));

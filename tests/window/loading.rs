@@ -240,6 +240,43 @@ fn a_mesh_that_changed_is_compared_with_what_it_was_and_with_another_file() {
     says_nothing(&harness);
 }
 
+#[test]
+fn the_mesh_before_a_change_is_undone_and_left_out_of_copied_commands() {
+    let (folder, mut harness) = uniform_of("quad.obj", QUAD);
+    let path = folder.path().join("quad.obj");
+    std::fs::write(&path, QUAD.replace("f 1 2 3 4", "f 1 2 3 # one")).expect("a writable folder");
+    wait_for_label(&mut harness, "changed on disk, loaded anew");
+    settle(&mut harness);
+    let (context, settings) = (harness.ctx.clone(), *harness.state().settings());
+    click(&mut harness, "changed on disk, loaded anew");
+    harness.get_by_label("Left: before the change, PN-AEN\n242 triangles, 0 cracked edges");
+    let compared = *harness.state().settings();
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert_eq!(*harness.state().settings(), settings);
+    assert!(harness.query_by_label_contains("Left: before the change").is_none());
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    assert_eq!(*harness.state().settings(), compared);
+    harness.get_by_label("Left: before the change, PN-AEN\n242 triangles, 0 cracked edges");
+    let command = copied(&mut harness);
+    assert!(!command.contains("--split"), "{command}");
+    harness.get_by_label_contains("no command can name the earlier version of a file");
+    press(&mut harness, egui::Key::Escape);
+    choose(&mut harness, "Left mesh", "The same");
+    harness.get_by_label("Left: PN-AEN\n121 triangles, 0 cracked edges");
+    assert!(copied(&mut harness).contains("--split"), "a command can name this mesh");
+    assert!(harness.query_by_label_contains("the earlier version of a file").is_none());
+    press(&mut harness, egui::Key::Escape);
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    harness.get_by_label("Left: before the change, PN-AEN\n242 triangles, 0 cracked edges");
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    harness.get_by_label("Left: PN-AEN\n121 triangles, 0 cracked edges");
+    says_nothing(&harness);
+}
+
 /// Waits for something that isn't waited for by `settle`.
 fn wait_for_label(harness: &mut Harness<App>, label: &str) {
     let start = Instant::now();

@@ -4,6 +4,8 @@ use egui::OutputCommand;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use geometry::mesh::PartStyle;
+use geometry::tessellate::Surface;
 use load::ShownParts;
 use pnaen::app::App;
 
@@ -45,6 +47,24 @@ fn parts_are_filtered_shown_alone_and_framed() {
     harness.state_mut().select_triangle(Some(6));
     settle(&mut harness);
     harness.get_by_role_and_label(Role::Label, "Part3");
+}
+
+#[test]
+fn a_part_gets_a_surface_and_a_detail_of_its_own() {
+    let (_folder, mut harness) = uniform_of("parts.obj", eleven_parts());
+    for (menu, entry) in [("Its surface", "Phong AEN"), ("Its detail", "1/2")] {
+        harness.get_by_label("Part7").click_secondary();
+        settle(&mut harness);
+        click(&mut harness, menu);
+        click(&mut harness, entry);
+    }
+    let style = PartStyle { surface: Some(Surface::PhongAen), detail: 0.5 };
+    let styles = |harness: &Harness<App>| harness.state().loaded().expect("a mesh").preparation.parts.styles.clone();
+    assert!(matches!(&styles(&harness)[..], [(name, own)] if name.ends_with("Part7") && *own == style));
+    assert_eq!(harness.state().loaded().expect("a mesh").mesh.part_styles[7], style);
+    harness.get_by_label("surface=phong-aen,detail=0.5");
+    click(&mut harness, "Show only Part7");
+    assert_eq!(styles(&harness).len(), 1, "what is shown doesn't change it");
 }
 
 #[test]

@@ -6,8 +6,13 @@ use crate::app::App;
 use crate::app::jobs::companion_files::absolute_path;
 use crate::app::jobs::picture_job::PictureChoices;
 use inspect::render::Camera;
+use inspect::settings::Settings;
 use inspect::shot::{CopiedCommand, Turn};
 use load::{HeightSource, Source};
+
+const DRAWS_IT: &str = "This command draws it without a window:";
+const DRAWS_RIGHT: &str = "This command draws the right half without a window. The left half is left out, because no command can \
+                           name the earlier version of a file:";
 
 impl App {
     /// Copies the command that draws what is shown with these choices, and shows that command in a window.
@@ -30,11 +35,13 @@ impl App {
     pub(in crate::app) fn copy_line(&mut self, context: &egui::Context, command: Option<String>) {
         let Some(command) = command else { return };
         context.copy_text(command.clone());
-        self.commands.copied = Some(command);
+        let lacks_left = self.settings.split.is_some() && self.shows_before();
+        self.commands.copied = Some((command, if lacks_left { DRAWS_RIGHT } else { DRAWS_IT }));
     }
 
     /// The command that draws what is shown, with these choices, as this camera sees it; none without a mesh. Without an
-    /// output, the file is named after the mesh. A turn makes it a turntable, as a GIF or not.
+    /// output, the file is named after the mesh. A turn makes it a turntable, as a GIF or not. A left half that shows the earlier
+    /// version of a file is left out.
     pub(in crate::app) fn command_of(
         &self,
         theme: egui::Theme,
@@ -55,6 +62,7 @@ impl App {
         }
         preparation.heights.iter_mut().for_each(HeightSource::make_absolute);
         let settings = self.saved_settings_of(theme, choices);
+        let settings = Settings { split: settings.split.filter(|_| !self.shows_before()), ..settings };
         let px = |size: glam::Vec2| size.to_array().map(|side| side as u32);
         let frozen = self.viewport.frozen.as_ref();
         let shown = CopiedCommand {
@@ -67,6 +75,7 @@ impl App {
             size: self.saved_size(choices),
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
             reference_shape: reference_shape.as_ref(),
+            reference_subdivide: self.has_own_limit().then(|| self.own_scheme()),
             left_mesh: left_mesh.as_ref(),
             factors: self.factors_file(),
             lod_shader: self.lod_shader_file().filter(|_| self.uses_lod_shader()),
@@ -83,12 +92,12 @@ impl App {
     }
 
     pub(in crate::app) fn command_window(&mut self, context: &egui::Context) {
-        let Some(command) = &self.commands.copied else { return };
+        let Some((command, said)) = &self.commands.copied else { return };
         let mut is_open = true;
         let window = egui::Window::new("Copied").open(&mut is_open).resizable(false).collapsible(false);
         let window = window.pivot(egui::Align2::CENTER_TOP).fixed_pos(self.message_place());
         window.default_width(520.0).show(context, |ui| {
-            ui.label("This command draws it without a window:");
+            ui.label(*said);
             ui.add(egui::Label::new(egui::RichText::new(command).monospace()).wrap().selectable(true));
         });
         if !is_open {

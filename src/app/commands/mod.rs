@@ -17,8 +17,8 @@ pub(super) struct Commands {
     pub shows_keys: bool,
     /// The search for a command, while it is open.
     pub palette: Option<Palette>,
-    /// The command line that was copied, while it is shown.
-    pub copied: Option<String>,
+    /// The command line that was copied, and what is said about it, while it is shown.
+    pub copied: Option<(String, &'static str)>,
     /// The menu of the bar whose name was clicked last, unless that closed it.
     pub clicked_menu: Option<Menu>,
     pub last: Option<Action>,

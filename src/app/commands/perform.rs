@@ -130,6 +130,7 @@ impl App {
             FileAction::OpenVase => self.open(context, Source::Vase),
             FileAction::Reload => self.reload(context),
             FileAction::CompareWithBefore => self.compare_with_before(),
+            FileAction::CompareWithOwnLimit => self.read_reference(context, None, true),
             FileAction::NextMesh => self.open_neighbour(context, |neighbours| neighbours.after),
             FileAction::PreviousMesh => self.open_neighbour(context, |neighbours| neighbours.before),
             FileAction::Close(beside) => self.close_companion(*beside),

@@ -25,17 +25,14 @@ impl App {
         if !self.dialogs.picture.is_open {
             return;
         }
-        let mut is_open = true;
-        let (mut saves, mut copies) = (false, false);
-        let window = egui::Window::new("Save picture").open(&mut is_open).resizable(false).collapsible(false);
-        let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
         let mut choices = self.dialogs.picture.choices;
-        window.show(context, |ui| {
+        let (mut is_open, mut saves, mut copies) = (true, false, false);
+        let window = egui::Window::new("Save picture").open(&mut is_open).resizable(false).collapsible(false);
+        window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(context, |ui| {
             self.picture_rows(ui, &mut choices);
-            [saves, copies] = self.save_buttons(
-                ui,
-                "Asks for the name of the file, and writes it: a PNG picture, or a report on it as an HTML page.",
-            );
+            let hover =
+                "Asks for the name of the file, and writes it: a PNG picture, or a report on it as an HTML page.";
+            [saves, copies] = self.save_buttons(ui, hover);
         });
         self.dialogs.picture = PictureWindow { is_open: is_open && !saves, choices };
         if saves {

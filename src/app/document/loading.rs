@@ -213,8 +213,10 @@ impl App {
         if !keep_view {
             self.close_companion(CompanionFile::ReferenceShape);
             self.close_companion(CompanionFile::LeftMesh);
-        } else if is_turned {
-            self.follow_reference_shape(context);
+        } else {
+            self.follow_reference_shape(context, is_turned);
+        }
+        if keep_view && is_turned {
             self.follow_left_mesh(context);
             self.forget_before();
         }

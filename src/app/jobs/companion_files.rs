@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::job_list::Work;
 use crate::app::App;
+use crate::app::text::file_name;
 use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
@@ -17,7 +18,7 @@ use inspect::render::environment::Environment;
 use inspect::settings::{Colors, Lighting};
 use load::environment_file::EnvironmentFile;
 use load::import::Subdivide;
-use load::{Import, Source, load_matcap};
+use load::{Source, load_matcap};
 
 /// What is open, and what it was read from.
 pub(crate) struct Opened<S, T> {
@@ -30,8 +31,8 @@ pub(crate) struct Opened<S, T> {
 /// A file. Its path is absolute: a dash would be standard input, and copied commands and the next window need all of it.
 pub(crate) type OpenFile<T> = Opened<PathBuf, T>;
 
-/// The reference surface that was chosen for the mesh.
-pub(crate) type ChosenReferenceShape = Opened<Source, Arc<ReferenceShape>>;
+/// The reference surface that was chosen for the mesh: that of a source, or without one the limit of the mesh's own cage.
+pub(crate) type ChosenReferenceShape = Opened<Option<Source>, Arc<ReferenceShape>>;
 
 /// A mesh left of the split in place of the one that is open: that of a source, or without one the mesh before its file changed on disk.
 pub(crate) type LeftMesh = Opened<Option<Source>, Loaded>;
@@ -59,11 +60,6 @@ impl LeftMesh {
     pub(crate) fn title(&self) -> String {
         self.from.as_ref().map_or_else(|| "before the change".to_owned(), Source::title)
     }
-}
-
-/// The file's name without its folder.
-pub(crate) fn file_name(path: &Path) -> String {
-    shown_path(Path::new(path.file_name().unwrap_or(path.as_os_str())))
 }
 
 /// The path from the root, or as it is without a working folder.
@@ -154,32 +150,53 @@ impl App {
 impl App {
     /// Starts to load a reference surface. Until it is loaded, the one before it stays.
     pub fn open_reference_shape(&mut self, context: &egui::Context, source: Source) {
-        let (wanted, limits) = (source.clone(), self.jobs.limits);
-        let import = Import { subdivide: Subdivide::File, ..self.preparation().import };
-        let load = move |progress: &Progress| match ReferenceShape::load(&wanted, import, &limits, progress) {
-            Ok(Some(reference_shape)) => Ok(Arc::new(reference_shape)),
-            Ok(None) => Err(format!("{wanted} can't be a reference surface: it has no triangles")),
-            Err(error) => Err(error.to_string()),
+        self.read_reference(context, Some(source), true);
+    }
+
+    /// The same, also for the limit of the mesh's own cage. `is_chosen` says whether deviation is shown once it is read.
+    pub(in crate::app) fn read_reference(&mut self, context: &egui::Context, from: Option<Source>, is_chosen: bool) {
+        let (own, preparation) = (self.source().cloned().unwrap_or_default(), self.preparation());
+        let subdivide = if from.is_some() { Subdivide::File } else { self.own_scheme() };
+        let what = from.as_ref().unwrap_or(&own).title();
+        let wanted = from.clone();
+        let load = move |progress: &Progress| {
+            let found = engine::load_reference(wanted.as_ref(), (&own, &preparation), subdivide, progress);
+            found.map(Arc::new).map_err(|error| error.to_string())
         };
-        let (title, what) = (format!("Loading the reference surface {}", source.title()), source.title());
-        let take = |app: &mut Self, reference_shape| {
-            app.reference_shape = Some(Opened::new(source, reference_shape));
-            app.settings.overlays.colors = Colors::Deviation;
+        let title = format!("Loading the reference surface {what}");
+        let take = move |app: &mut Self, reference_shape| {
+            app.reference_shape = Some(Opened::new(from, reference_shape));
+            if is_chosen {
+                app.settings.overlays.colors = Colors::Deviation;
+            }
         };
         self.read_companion(context, CompanionFile::ReferenceShape, title, what, load, take);
     }
 
-    /// Loads a reference surface of a file again, which is turned and scaled as the mesh is.
-    pub(in crate::app) fn follow_reference_shape(&mut self, context: &egui::Context) {
+    /// Loads the reference surface again after the mesh was: the limit of its own cage, or if the mesh was turned or scaled a
+    /// file.
+    pub(in crate::app) fn follow_reference_shape(&mut self, context: &egui::Context, is_turned: bool) {
         let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.clone());
-        if let Some(source @ (Source::File(_) | Source::Vase)) = chosen {
-            self.open_reference_shape(context, source);
+        let follows = |from: &Option<Source>| from.as_ref().is_none_or(|source| is_turned && source.shape().is_none());
+        if let Some(from) = chosen.filter(follows) {
+            self.read_reference(context, from, false);
         }
     }
 
-    /// The reference surface that was chosen for the mesh.
+    /// The source of the reference surface that was chosen for the mesh, if it has one of its own.
     pub fn reference_shape(&self) -> Option<&Source> {
-        self.reference_shape.as_ref().map(|chosen| &chosen.from)
+        self.reference_shape.as_ref().and_then(|chosen| chosen.from.as_ref())
+    }
+
+    /// Whether the limit of the mesh's own cage was chosen as reference surface.
+    pub fn has_own_limit(&self) -> bool {
+        self.reference_shape.as_ref().is_some_and(|chosen| chosen.from.is_none())
+    }
+
+    /// How the mesh's own cage is refined where its limit is the reference surface.
+    pub(in crate::app) fn own_scheme(&self) -> Subdivide {
+        let import = self.preparation().import;
+        if import.refines_all() { import.subdivide } else { Subdivide::CatmullClark }
     }
 
     /// The reference surface that distances are measured from: its number, the surface (none for the limit surface), and
@@ -191,7 +208,8 @@ impl App {
             return limit();
         };
         if let Some(chosen) = &self.reference_shape {
-            return (chosen.generation, Some(chosen.content.clone()), chosen.from.title());
+            let name = chosen.from.as_ref().map_or_else(|| "subdivision limit".to_owned(), Source::title);
+            return (chosen.generation, Some(chosen.content.clone()), name);
         }
         let is_plain = !self.settings.tessellation.displacement.is_on();
         match (&document.exact, document.loaded.source.shape()) {
@@ -227,17 +245,24 @@ impl App {
     /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.
     pub(in crate::app) fn forget_before(&mut self) {
         self.document.iter_mut().for_each(|document| document.before = None);
-        if self.left_mesh.as_ref().is_some_and(|left| left.from.is_none()) {
+        if self.shows_before() {
             self.close_companion(CompanionFile::LeftMesh);
         }
+        self.history.change_all(|step| step.is_with_before = false);
     }
 
     /// Shows the mesh as it was before its file changed, tessellated as the new one is.
     pub(in crate::app) fn compare_with_before(&mut self) {
         let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
+        self.close_companion(CompanionFile::LeftMesh);
         self.settings.left = self.settings.tessellation;
         self.left_mesh = Some(Opened::new(None, before));
         self.settings.split.get_or_insert(self.viewport.last_split);
+    }
+
+    /// Whether the left half is for the mesh as it was before its file changed.
+    pub(in crate::app) fn shows_before(&self) -> bool {
+        self.left_mesh.as_ref().is_some_and(|left| left.from.is_none())
     }
 }
 

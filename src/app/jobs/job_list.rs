@@ -49,11 +49,6 @@ impl Work {
         !matches!(self, Clip | File | Dialog | State | Checks | Chart | StandIn | MeshFiles | Folder)
     }
 
-    /// Whether it reads a file beside the mesh.
-    fn is_companion(self) -> bool {
-        matches!(self, Self::Companion(_))
-    }
-
     /// Whether it ends with the document.
     fn is_of_document(self) -> bool {
         use Work::{Chart, Checks, Clip, Explanation, Folder, LeftHalf, MeshFiles, StandIn};
@@ -213,7 +208,7 @@ impl Jobs {
 
     /// Whether a file beside the mesh is being read.
     pub(crate) fn opens_companions(&self) -> bool {
-        self.jobs.iter().any(|job| job.work.is_companion() && !job.has_landed)
+        self.jobs.iter().any(|job| matches!(job.work, Work::Companion(_)) && !job.has_landed)
     }
 
     /// Waits for a job, whose result isn't wanted.
@@ -257,7 +252,7 @@ impl App {
         while let Some((work, land)) = self.jobs.take(self.viewport.picture.is_free()) {
             let settings = self.settings_without_files();
             land(self, context);
-            if self.takes_back && (work == Work::Mesh || work.is_companion()) {
+            if self.takes_back && matches!(work, Work::Mesh | Work::Companion(_)) {
                 // If the mesh wasn't read anew, its import is the one that is there.
                 self.put_settings(Settings { import: self.settings.import, ..settings });
             }

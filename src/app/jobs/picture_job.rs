@@ -2,6 +2,7 @@
 //! their own.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::scenes::arena_bytes;
 use crate::app::App;
@@ -11,10 +12,11 @@ use gpu::{Gpu, GpuError, Timing};
 use inspect::engine::Engine;
 use inspect::export::{Exported, ending};
 use inspect::measure::EmittedChunk;
+use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
-use inspect::settings::{ARENA_BYTES, ColorSource, Overlays, Settings, SplitSide};
+use inspect::settings::{ARENA_BYTES, Choice, ColorSource, Overlays, Settings, SplitSide};
 use inspect::shot::files::write_factors;
-use inspect::shot::{ReferenceSurface, Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
+use inspect::shot::{Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
 
 /// How much of the progress is for reading the mesh back from the device; the rest is for writing the file.
 const READING: f32 = 0.8;
@@ -215,15 +217,15 @@ impl App {
         Some(ShotParts { engine: self.engine.clone(), make, subject, view })
     }
 
-    /// What commands compare with: the chosen mesh; and while the overlay is on, an exact or the limit surface.
-    fn reference_surface(&self, settings: &Settings) -> Option<ReferenceSurface> {
+    /// What commands compare with, and its name: the chosen surface; and while the overlay is on, an exact one.
+    fn reference_surface(&self, settings: &Settings) -> Option<(String, Arc<ReferenceShape>)> {
         let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
-        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.to_string());
-        let exact = self.source().filter(|_| is_shown).map(ToString::to_string);
-        match self.yardstick().1 {
-            Some(reference_shape) => Some(ReferenceSurface::ReferenceShape(chosen.or(exact)?, reference_shape)),
-            // The CPU doesn't know the limit surface of a shader.
-            None => (is_shown && !self.uses_surface_shader()).then_some(ReferenceSurface::Limit),
-        }
+        let (own, reference_shape) = (self.source()?.to_string(), self.yardstick().1?);
+        let name = match self.reference_shape.as_ref().map(|chosen| &chosen.from) {
+            Some(Some(source)) => source.to_string(),
+            Some(None) => format!("{own} ({})", self.own_scheme().name()),
+            None => Some(own).filter(|_| is_shown)?,
+        };
+        Some((name, reference_shape))
     }
 }

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::background_job::caught;
-use super::companion_files::{absolute_path, file_name, new_generation};
+use super::companion_files::{absolute_path, new_generation};
 use super::file_watch::{Stamped, watch};
 use super::job_list::Work;
 use crate::app::App;
+use crate::app::text::file_name;
 use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;

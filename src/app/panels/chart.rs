@@ -161,36 +161,23 @@ impl App {
 impl ChartBasis {
     /// Says in which respect this differs from `now`; none if they are equal.
     fn other_than(&self, now: &Self) -> Option<&'static str> {
-        if self.document != now.document {
-            Some("another mesh is shown")
-        } else if self.moment != now.moment {
-            Some("another pose is shown")
-        } else if self.reference_shape != now.reference_shape {
-            Some("another reference surface is chosen")
-        } else if (self.camera, self.size) != (now.camera, now.size) {
-            Some("the view has changed")
-        } else {
-            (self.base != now.base).then_some("other settings have changed")
-        }
+        let respects = [
+            (self.document != now.document, "another mesh is shown"),
+            (self.moment != now.moment, "another pose is shown"),
+            (self.reference_shape != now.reference_shape, "another reference surface is chosen"),
+            ((self.camera, self.size) != (now.camera, now.size), "the view has changed"),
+            (self.base != now.base, "other settings have changed"),
+        ];
+        respects.into_iter().find_map(|(differs, why)| differs.then_some(why))
     }
 }
 
 /// The settings without those that the chart varies, which are set to their defaults.
 fn base(settings: &Settings) -> Settings {
-    let Tessellation { surface, normals, partitioning, lod, factor, pixels, tolerance, near, far, .. } =
-        Tessellation::default();
-    let whole = whole(settings);
-    let tried = Tessellation {
-        surface,
-        normals,
-        partitioning,
-        lod,
-        factor,
-        pixels,
-        tolerance,
-        near,
-        far,
-        ..whole.tessellation
-    };
-    whole.with(tried)
+    let (mut base, usual) = (whole(settings), Tessellation::default());
+    let own = &mut base.tessellation;
+    (own.surface, own.normals, own.partitioning) = (usual.surface, usual.normals, usual.partitioning);
+    (own.lod, own.factor, own.pixels, own.tolerance) = (usual.lod, usual.factor, usual.pixels, usual.tolerance);
+    (own.near, own.far) = (usual.near, usual.far);
+    base
 }

@@ -4,7 +4,7 @@ use egui::RichText;
 
 use crate::app::App;
 use crate::app::text::{grouped, short};
-use crate::app::widgets::{FoundRow, columns, fact, found_list, list, list_title, number, swatch};
+use crate::app::widgets::{FoundRow, columns, fact, found_list, list, list_title, marked, number};
 use crate::commands::{Action, with_key};
 use geometry::mesh::{TJunction, Topology};
 use geometry::view::ulp;
@@ -111,12 +111,10 @@ impl App {
             return;
         }
         ui.add_space(4.0);
+        let hover = "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these \
+                     gaps, because the edge's segments don't depend on the point.";
         ui.horizontal(|ui| {
-            swatch(ui, T_JUNCTION_COLOR);
-            ui.label("T-junctions").on_hover_text(
-                "Points that lie on the open edge of another triangle, or close beside it. No tessellation closes these gaps, \
-                 because the edge's segments don't depend on the point.",
-            );
+            marked(ui, Some(T_JUNCTION_COLOR), "T-junctions", hover);
             number(ui, &grouped(junctions.len() as u64));
         });
         columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, 0 to 1"), true);
@@ -220,11 +218,8 @@ fn side_rows(ui: &mut egui::Ui, sides: &[EdgeSide]) {
         }
         ui.end_row();
         for (k, side) in sides.iter().enumerate() {
-            ui.horizontal(|ui| {
-                swatch(ui, SIDE_COLORS[k % SIDE_COLORS.len()]);
-                ui.label(format!("Triangle {}", side.triangle))
-                    .on_hover_text("The triangle's number in the mesh, from 0.");
-            });
+            let (color, name) = (SIDE_COLORS[k % SIDE_COLORS.len()], format!("Triangle {}", side.triangle));
+            marked(ui, Some(color), &name, "The triangle's number in the mesh, from 0.");
             number(ui, &format!("{:.5}", side.factor));
             number(ui, &side.segments().to_string());
             ui.end_row();

@@ -8,7 +8,7 @@ use crate::app::jobs::measure_job::MeasureError;
 use crate::app::panels::option_rows::option_row;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short, shortened};
-use crate::app::widgets::{fact, number, swatch};
+use crate::app::widgets::{fact, marked, number};
 use geometry::tessellate::Inputs;
 use geometry::view::project;
 use inspect::gates::Spot;
@@ -161,9 +161,15 @@ impl App {
         }
         let mut clicked = None;
         egui::Grid::new("deviation").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "The surface that distances are measured to: the exact surface of a shape made in code, a file chosen \
-                         under File, or else the surface that the tessellation converges to.";
+            let hover = "The surface that distances are measured to: the exact surface of a shape made in code, a file or the \
+                         limit of the mesh's own cage, chosen under File, or else the surface that the tessellation \
+                         converges to.";
             fact(ui, "Reference", &shortened(&name, 20), hover);
+            if let Some(step) = reference_shape.as_ref().and_then(|own| own.step) {
+                let hover = "How far the last refinement of the reference surface's cage moved it at most, in object units. \
+                             About a third of that is missing to the limit surface.";
+                fact(ui, "Last refinement", &format!("{} units", short(step)), hover);
+            }
             option_row(ui, &options::DEVIATION_IN, &mut self.settings, "");
             for half in SplitSide::BOTH {
                 let surface = self.surface_title(half);
@@ -208,10 +214,7 @@ impl App {
         fact(ui, "", &text(self.deviation_px(half), "px"), hover);
         let hover = "Root mean square of the distance over the area that is shown, in object units.";
         fact(ui, "RMS", &text(found.map(|found| found.rms), "units"), hover);
-        ui.horizontal(|ui| {
-            swatch(ui, WORST_COLOR);
-            ui.label("Worst point").on_hover_text("The point where the distance is largest. A click frames it.");
-        });
+        marked(ui, Some(WORST_COLOR), "Worst point", "The point where the distance is largest. A click frames it.");
         let worst = found.and_then(|found| found.worst);
         let column = ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             let text = worst.map_or_else(|| "…".into(), |worst| format!("in patch {}", worst.patch));

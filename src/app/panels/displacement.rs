@@ -61,7 +61,7 @@ impl App {
              height map (--height).{}",
             self.amounts(),
         );
-        list_row(ui, "Height map", shown, &hover, |ui| {
+        list_row(ui, "Height map", &hover, &shown, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
             };

@@ -2,7 +2,7 @@
 
 use super::option_rows::{option_hover, option_row};
 use crate::app::App;
-use crate::app::widgets::button_row;
+use crate::app::widgets::{button_row, file_row};
 use crate::commands::{CLOSE_ENVIRONMENT, CompanionFile, ENVIRONMENT, Purpose};
 use inspect::settings::{Lighting, options};
 
@@ -46,17 +46,13 @@ impl App {
 
     /// The file of light that is open, and a button that closes it or opens one.
     fn environment_row(&mut self, ui: &mut egui::Ui) {
-        let Some(open) = &self.environment else {
-            if button_row(ui, "Open environment…", ENVIRONMENT) {
-                self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::Environment));
+        if let Some(open) = &self.environment {
+            file_row(ui, "Panorama", "The file of light that is open (--environment).", &open.from);
+            if button_row(ui, "Close environment", CLOSE_ENVIRONMENT) {
+                self.close_companion(CompanionFile::Environment);
             }
-            return;
-        };
-        ui.label("Panorama").on_hover_text("The file of light that is open (--environment).");
-        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.from.display().to_string());
-        ui.end_row();
-        if button_row(ui, "Close environment", CLOSE_ENVIRONMENT) {
-            self.close_companion(CompanionFile::Environment);
+        } else if button_row(ui, "Open environment…", ENVIRONMENT) {
+            self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::Environment));
         }
     }
 }

@@ -16,7 +16,7 @@ impl App {
         let image = self.matcap.as_ref().map(OpenFile::name);
         let shown = image.clone().unwrap_or_else(|| own.label().to_owned());
         let hover = with_note(options::MATCAP.text, "--matcap, --matcap-image");
-        list_row(ui, options::MATCAP.label, shown, &hover, |ui| {
+        list_row(ui, options::MATCAP.label, &hover, &shown, |ui| {
             for matcap in Matcap::ALL {
                 let is_shown = image.is_none() && own == matcap;
                 if ui.selectable_label(is_shown, matcap.label()).on_hover_text(matcap.text()).clicked() {

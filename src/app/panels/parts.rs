@@ -9,11 +9,14 @@ use crate::app::sections::Section;
 use crate::app::text::{counted, grouped};
 use crate::app::widgets::{list, switch_button};
 use crate::commands::{Action, CameraAction, all};
+use geometry::choice::Choice;
+use geometry::mesh::PartStyle;
 use geometry::names::{shortened, shown};
+use geometry::tessellate::Surface;
 use inspect::render::framed_size;
 use load::ShownParts;
 use load::part_tree::{Branch, end, leaves, name};
-use load::selection::{MATERIAL, is_part_of};
+use load::selection::{MATERIAL, is_material, is_part_of};
 
 /// The greatest length of a name in a list, in characters.
 pub(super) const LONGEST: usize = 40;
@@ -26,7 +29,7 @@ const INDENT: f32 = 12.0;
 const MOST_INDENTS: usize = 6;
 
 /// What is done with a part or a group: a place in the tree.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum PartAction {
     /// Shows it, or leaves it out.
     Set(usize, bool),
@@ -34,8 +37,14 @@ enum PartAction {
     Solo(usize),
     Frame(usize),
     CopyName(usize),
+    /// Gives it a surface and a detail of its own.
+    Style(usize, PartStyle),
     ShowAll,
 }
+
+/// The details on offer.
+const DETAILS: [(f32, &str); 7] =
+    [(0.125, "1/8"), (0.25, "1/4"), (0.5, "1/2"), (1.0, "1"), (2.0, "2"), (4.0, "4"), (8.0, "8")];
 
 impl App {
     /// A switch for each part and group, if the file has several. The mesh is loaded again without those that are hidden.
@@ -55,7 +64,7 @@ impl App {
             let at = listed[row];
             let (response, chosen) = part_row(ui, &tree, at, (picked, &selected), folded);
             action = chosen.or(action);
-            response.context_menu(|ui| action = part_entries(ui, &tree, at).or(action));
+            response.context_menu(|ui| action = part_entries(ui, &tree, at, &selected).or(action));
             response
         });
         let selects = !(selected.hidden.is_empty() && selected.only.is_empty());
@@ -86,7 +95,7 @@ impl App {
         let picked = picked.and_then(|part| tree.iter().position(|branch| branch.part == Some(part)));
         let action = picked.and_then(|at| {
             ui.strong(shortened(&shown(&tree[at].path), LONGEST));
-            part_entries(ui, &tree, at)
+            part_entries(ui, &tree, at, &self.preparation().parts)
         });
         if picked.is_some() {
             ui.separator();
@@ -110,6 +119,7 @@ impl App {
             PartAction::Solo(at) => parts.show_only(vec![name(tree, &tree[at])]),
             PartAction::ShowAll => parts.show_only(Vec::new()),
             PartAction::Frame(at) => self.frame_part(tree, at),
+            PartAction::Style(at, style) => parts.set_style(&name(tree, &tree[at]), style),
             PartAction::CopyName(at) => context.copy_text(name(tree, &tree[at])),
         }
         self.prepare(context, |preparation| preparation.parts = parts);
@@ -197,7 +207,13 @@ fn part_row(
                 folded.insert(branch.path.clone());
             }
             let is_partly_shown = is_shown && branch.shown < branch.parts;
-            ui.add(egui::Checkbox::new(&mut is_shown, label).indeterminate(is_partly_shown)).on_hover_text(hover)
+            let switch = egui::Checkbox::new(&mut is_shown, label).indeterminate(is_partly_shown);
+            let switch = ui.add(switch).on_hover_text(hover);
+            let style = selected.style(&name(tree, branch));
+            if style != PartStyle::default() {
+                ui.weak(style.to_string()).on_hover_text("What it has of its own (--part).");
+            }
+            switch
         })
         .inner
     });
@@ -215,7 +231,7 @@ fn named_switch(ui: &mut egui::Ui, is_on: bool, text: &str, name: &str, hover: &
 }
 
 /// What can be done with a part or a group.
-fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize) -> Option<PartAction> {
+fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize, selected: &ShownParts) -> Option<PartAction> {
     let (branch, are_hidden) = (&tree[at], leaves(tree).any(|leaf| leaf.shown == 0));
     let (is_shown, what) = (branch.shown > 0, if branch.part.is_some() { "part" } else { "group" });
     let entries = [
@@ -229,9 +245,36 @@ fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize) -> Option<PartAct
     let chosen = |(action, label, is_possible): (_, String, bool)| {
         ui.add_enabled(is_possible, egui::Button::new(label)).clicked().then_some(action)
     };
-    let chosen = entries.into_iter().filter_map(chosen).last();
+    let mut chosen = entries.into_iter().filter_map(chosen).last();
+    if !is_material(&branch.path) {
+        let style = style_entries(ui, selected.style(&name(tree, branch)));
+        chosen = style.map(|style| PartAction::Style(at, style)).or(chosen);
+    }
     if chosen.is_some() {
         ui.close();
     }
+    chosen
+}
+
+/// The surfaces and details that a part may have of its own. Returns its style, if another is chosen.
+fn style_entries(ui: &mut egui::Ui, style: PartStyle) -> Option<PartStyle> {
+    let mut chosen = None;
+    let mut entry = |ui: &mut egui::Ui, own: PartStyle, label: &str, hover: &str| {
+        if ui.radio(own == style, label).on_hover_text(hover).clicked() {
+            chosen = Some(own);
+        }
+    };
+    ui.menu_button("Its surface", |ui| {
+        entry(ui, PartStyle { surface: None, ..style }, "As set for all", "The surface that the settings choose.");
+        for surface in Surface::ALL {
+            entry(ui, PartStyle { surface: Some(surface), ..style }, surface.label(), surface.text());
+        }
+    });
+    ui.menu_button("Its detail", |ui| {
+        for (detail, label) in DETAILS {
+            let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
+            entry(ui, PartStyle { detail, ..style }, label, hover);
+        }
+    });
     chosen
 }

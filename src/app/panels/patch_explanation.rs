@@ -33,7 +33,7 @@ impl SelectedPatch<'_> {
 
     /// Whether its factors are those of LOD by error.
     fn by_error(&self) -> bool {
-        self.lod.is_by_error() && self.given_by.is_none()
+        self.lod().is_by_error() && self.given_by.is_none()
     }
 
     /// An edge's factor as LOD computes it.

@@ -18,7 +18,6 @@ use geometry::tessellate::{
     weight_corner,
 };
 use inspect::measure::EdgeSide;
-use inspect::render::PickedTriangle;
 use inspect::render::layout::FACTOR_COLORS;
 use inspect::settings::Choice;
 
@@ -31,24 +30,20 @@ enum Wish {
 
 /// The selected triangle, its patch, and what is known about them.
 pub(super) struct SelectedPatch<'a> {
+    app: &'a App,
     mesh: &'a Mesh,
     pub topology: &'a Topology,
     triangle: u32,
     patch: u32,
     pub convention: Convention,
-    pub lod: Lod,
     /// What takes the place of LOD: a file of factors, or a shader.
     pub given_by: Option<&'static str>,
     /// Why it has its factors. None until that is found, and if nothing is emitted: the rows then have ellipses, so that they don't
     /// jump.
     pub explained: Option<&'a ExplainedPatch>,
-    selected_edge: Option<u32>,
     /// Known once measured. All are 0 if the patch emits nothing.
     pub factors: Option<PatchFactors>,
     sides: Option<[EdgeSide; 3]>,
-    hit: Option<PickedTriangle>,
-    /// Whether a clip plays, so that nothing is measured until it pauses.
-    is_playing: bool,
 }
 
 impl App {
@@ -72,19 +67,16 @@ impl App {
                 let convention =
                     results.map_or(self.convention(), |results| results.seen.inputs.tessellation.convention);
                 let shown = SelectedPatch {
+                    app: self,
                     mesh,
                     topology,
                     triangle,
                     patch,
                     convention,
-                    lod: self.settings.tessellation.used_lod(),
                     given_by,
                     explained: question.as_ref().and_then(|(question, _)| self.explained(question)),
-                    selected_edge: self.selected_edge(),
                     factors: found.map(|found| found.outlines.factors(patch)),
                     sides: found.and_then(|found| found.outlines.patch(topology, patch)),
-                    hit: self.hit().copied(),
-                    is_playing: self.is_playing(),
                 };
                 if let Some((part, document)) = self.picked_part().zip(self.document.as_ref()) {
                     let name = names::shown(&document.loaded.contents.parts[part].name);
@@ -185,7 +177,7 @@ impl SelectedPatch<'_> {
             let text = format!("{:<4}{:<4}{numbers}", format!("[{i}]"), ends_text(side));
             factor_row(ui, Some(FACTOR_COLORS[i as usize]), &text, false).on_hover_text(format!("TessFactor[{i}]"));
         }
-        let asked = match self.lod.is_by_error() {
+        let asked = match self.lod().is_by_error() {
             // LOD by error asks for a whole number and doesn't keep it, so the used factor is shown.
             true => self.factors.map(|factors| used(factors.inside) as f32),
             _ if self.factors.is_some_and(patch_has_rows) => self.factors.and_then(|f| self.asked(row_base(f))),
@@ -205,6 +197,10 @@ impl SelectedPatch<'_> {
         for text in (0..3).filter_map(|i| mistake(self.convention, i)) {
             ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
         }
+    }
+
+    pub(super) fn lod(&self) -> Lod {
+        self.app.settings.tessellation.used_lod()
     }
 
     /// The factor that LOD gave the edge whose factor the hull shader writes as factor `i`.
@@ -235,13 +231,13 @@ impl SelectedPatch<'_> {
         );
         let letters = [0, 1, 2].map(|i| format!("{} {}", weight_corner(self.convention, i), LETTERS[i as usize]));
         let empty = match self.factors {
-            None if self.is_playing => "measured when paused",
+            None if self.app.is_playing() => "measured when paused",
             None => "measuring…",
             Some(PatchFactors { inside: OUT_OF_VIEW, .. }) => "out of view, so nothing is emitted",
             Some(PatchFactors { inside: FACING_AWAY, .. }) => "facing away, so nothing is emitted",
             Some(_) => "a factor is 0 or less, so nothing is emitted",
         };
-        pattern_plot(ui, self.factors, self.hit.map(|hit| hit.number), letters, empty);
+        pattern_plot(ui, self.factors, self.app.hit().map(|hit| hit.number), letters, empty);
     }
 
     /// A row for each edge: its kind, and the triangles across it.
@@ -260,7 +256,7 @@ impl SelectedPatch<'_> {
                 let edge = &self.topology.edges[side.edge as usize];
                 swatch(ui, FACTOR_COLORS[i as usize]);
                 let text = dense(ends_text(k));
-                let response = ui.selectable_label(self.selected_edge == Some(side.edge), text);
+                let response = ui.selectable_label(self.app.selected_edge() == Some(side.edge), text);
                 let named = format!("Edge {} of the patch", ends_text(k));
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &named));
                 if response.on_hover_text(format!("Selects the edge, number {}.", side.edge)).clicked() {
@@ -324,7 +320,7 @@ impl SelectedPatch<'_> {
 
     /// The domain points of the emitted triangle that was clicked on.
     fn hit_rows(&self, ui: &mut Ui) {
-        let Some(hit) = &self.hit else { return };
+        let Some(hit) = self.app.hit() else { return };
         let hover = "The triangle's number in the patch, and its domain points in 16.16 fixed point and as decimals.";
         title(ui, &format!("Emitted triangle {}", hit.number), hover);
         ui.label(dense(format!("{:<5}{:>9}{:>9}{:>9}", "point", "u", "v", "w")).weak());

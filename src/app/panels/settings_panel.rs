@@ -6,7 +6,7 @@ use crate::app::jobs::companion_files::LeftMesh;
 use crate::app::jobs::job_list::Work;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
-use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, fixed, list_row};
+use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, file_row, fixed, list_row};
 use crate::commands::{
     Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
 };
@@ -75,12 +75,12 @@ impl App {
     /// Which mesh the left half shows.
     fn left_mesh_row(&mut self, ui: &mut egui::Ui) {
         let shown = self.left_mesh.as_ref().map_or_else(|| "The same".to_owned(), LeftMesh::title);
-        list_row(ui, "Left mesh", shown, &with_note(LEFT_MESH, "--split-with"), |ui| {
+        list_row(ui, "Left mesh", &with_note(LEFT_MESH, "--split-with"), &shown, |ui| {
             if ui.selectable_label(self.left_mesh.is_none(), "The same").clicked() {
                 self.close_companion(CompanionFile::LeftMesh);
             }
             let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
-            if has_before && ui.selectable_label(false, "Before the change on disk").clicked() {
+            if has_before && ui.selectable_label(self.shows_before(), "Before the change on disk").clicked() {
                 self.compare_with_before();
             }
             if ui.selectable_label(false, "Another file…").clicked() {
@@ -102,8 +102,8 @@ impl App {
         }
     }
 
-    /// A section of rows with a label and a control each.
-    fn section(&mut self, ui: &mut egui::Ui, section: Section, rows: impl FnOnce(&mut Self, &mut egui::Ui)) {
+    /// A section of rows with a label and a control or a number each.
+    pub(super) fn section(&mut self, ui: &mut egui::Ui, section: Section, rows: impl FnOnce(&mut Self, &mut egui::Ui)) {
         if self.panels.open.title(ui, section) {
             egui::Grid::new(section.title()).num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| rows(self, ui));
         }
@@ -141,10 +141,7 @@ impl App {
 
     fn lod_rows(&mut self, ui: &mut egui::Ui) {
         if let Some(given) = &self.given {
-            let hover = "These factors take the place of those of LOD.";
-            ui.label("Factors").on_hover_text(hover);
-            ui.add(egui::Label::new(given.name()).truncate()).on_hover_text(given.from.display().to_string());
-            ui.end_row();
+            file_row(ui, "Factors", "These factors take the place of those of LOD.", &given.from);
             if button_row(ui, "Close the file", "Closes the file of factors. LOD computes factors again.") {
                 self.forget_factors();
             }
@@ -241,7 +238,7 @@ impl App {
         let mut chosen = weld;
         let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances \
                      are relative to the bounding diagonal. The list says how many edges each would join.";
-        list_row(ui, "Weld", tolerance(weld), hover, |ui| {
+        list_row(ui, "Weld", hover, &tolerance(weld), |ui| {
             ui.selectable_value(&mut chosen, 0.0, "Exact").on_hover_text("Only exactly equal positions are one point.");
             match document.checks.joins.get() {
                 Some(all) => {

@@ -3,7 +3,7 @@
 use crate::app::App;
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::{grouped, part, short};
-use crate::app::widgets::{fact, marked, number, swatch};
+use crate::app::widgets::{fact, marked, number};
 use geometry::mesh::EdgeKind;
 use geometry::view::ulp;
 use inspect::measure::{Cracks, Culled, SeamTurns};
@@ -23,27 +23,21 @@ impl App {
             ui.push_id("given", |ui| self.given_section(ui));
             ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
-            if self.panels.open.title(ui, Section::Cracks) {
-                self.crack_facts(ui);
+            self.section(ui, Section::Cracks, |app, ui| app.crack_facts(ui));
+            if self.panels.open.has(Section::Cracks) {
                 self.worst_edges(ui);
                 self.leak_list(ui);
                 self.fold_list(ui);
                 self.t_junction_list(ui);
             }
             self.edge_details(ui);
-            if self.panels.open.title(ui, Section::Patches) {
-                self.patch_facts(ui);
+            self.section(ui, Section::Patches, |app, ui| app.patch_facts(ui));
+            self.section(ui, Section::Waste, |app, ui| app.waste_facts(ui));
+            self.section(ui, Section::Edges, |app, ui| app.edge_facts(ui));
+            self.section(ui, Section::Mesh, |app, ui| app.mesh_facts(ui));
+            if !self.viewport.picture.times.is_empty() {
+                self.section(ui, Section::Passes, |app, ui| app.pass_times(ui));
             }
-            if self.panels.open.title(ui, Section::Waste) {
-                self.waste_facts(ui);
-            }
-            if self.panels.open.title(ui, Section::Edges) {
-                self.edge_legend(ui);
-            }
-            if self.panels.open.title(ui, Section::Mesh) {
-                self.mesh_facts(ui);
-            }
-            self.pass_times(ui);
             // Only now, since lists would take it for theirs.
             if pushed != 0.0 {
                 ui.scroll_with_delta_animation(egui::vec2(0.0, -pushed), egui::style::ScrollAnimation::none());
@@ -51,18 +45,13 @@ impl App {
         });
     }
 
-    fn edge_legend(&self, ui: &mut egui::Ui) {
+    fn edge_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let edges = &document.edges;
         let counts = [edges.smooth, edges.split, edges.seam, edges.boundary, edges.non_manifold];
-        egui::Grid::new("edges").num_columns(3).min_col_width(14.0).show(ui, |ui| {
-            for (kind, count) in EdgeKind::ALL.into_iter().zip(counts) {
-                swatch(ui, edge_color(kind));
-                ui.label(kind.label()).on_hover_text(kind.text());
-                number(ui, &grouped(count as u64));
-                ui.end_row();
-            }
-        });
+        for (kind, count) in EdgeKind::ALL.into_iter().zip(counts) {
+            marked_fact(ui, edge_color(kind), kind.label(), &grouped(count as u64), kind.text());
+        }
         self.seam_facts(ui);
     }
 
@@ -72,16 +61,13 @@ impl App {
         let angle = |of: fn(&SeamTurns) -> f64| {
             seams.map_or_else(|| "…".into(), |seams| if seams.edges > 0 { degrees(of(&seams)) } else { "-".into() })
         };
-        egui::Grid::new("seams").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv \
-                         seam.";
-            fact(ui, "Angle at seams", &angle(|seams| seams.emitted.most), hover);
-            let hover = "The largest such angle between the mesh's own normals.";
-            fact(ui, "of the mesh", &angle(|seams| seams.source.most), hover);
-            let hover = "The most by which tessellation makes the angle at a point larger than the mesh has it there, right to \
-                         about 0.01°.";
-            fact(ui, "added", &angle(|seams| seams.most_added), hover);
-        });
+        let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv seam.";
+        fact(ui, "Angle at seams", &angle(|seams| seams.emitted.most), hover);
+        let hover = "The largest such angle between the mesh's own normals.";
+        fact(ui, "of the mesh", &angle(|seams| seams.source.most), hover);
+        let hover = "The most by which tessellation makes the angle at a point larger than the mesh has it there, right to \
+                     about 0.01°.";
+        fact(ui, "added", &angle(|seams| seams.most_added), hover);
     }
 
     fn crack_facts(&self, ui: &mut egui::Ui) {
@@ -94,29 +80,27 @@ impl App {
             cracks.map_or_else(|| format!("… {unit}"), |cracks| format!("{} {unit}", short(size(cracks))))
         };
         let ulp = ulp(&document.loaded.topology);
-        egui::Grid::new("cracks").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "Points of edges with several sides, counted once for each side after the first.";
-            fact(ui, "Points compared", &count(|cracks| cracks.edge_points), hover);
-            let hover = "Points that differ in at least one bit from the first side's.";
-            fact(ui, "Different", &count(|cracks| cracks.different_bits), hover);
-            let hover = "Edges whose sides were given factors that differ in at least one bit.";
-            fact(ui, "Factors differ", &count(|cracks| cracks.different_factors), hover);
-            let hover = "Points whose normals differ in at least one bit although the normals in the file agree.";
-            fact(ui, "Normals differ", &count(|cracks| cracks.different_normals), hover);
-            let hover = "Edges with a point that differs. The overlay Cracks shows them.";
-            let cracked = count(|cracks| cracks.cracked().len() as u64);
-            marked_fact(ui, CRACK_COLOR, "Cracked edges", &cracked, hover);
-            let hover = "The largest distance between two sides' positions of one point, in object units.";
-            fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
-            let hover = "The same in ULP of the mesh's largest coordinate.";
-            fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
-            let px = results.and_then(|results| results.widest_crack).map_or(0.0, |(_, px)| px);
-            let hover = "The gap that is the widest as the camera of LOD sees it.";
-            fact(ui, "", &gap(&|_| px, "px"), hover);
-            let hover = "Triangles that face away from the side that their patch faces.";
-            let folds = results.map_or_else(|| "…".into(), |results| grouped(results.found.folds));
-            marked_fact(ui, FOLD_COLOR, "Folds", &folds, hover);
-        });
+        let hover = "Points of edges with several sides, counted once for each side after the first.";
+        fact(ui, "Points compared", &count(|cracks| cracks.edge_points), hover);
+        let hover = "Points that differ in at least one bit from the first side's.";
+        fact(ui, "Different", &count(|cracks| cracks.different_bits), hover);
+        let hover = "Edges whose sides were given factors that differ in at least one bit.";
+        fact(ui, "Factors differ", &count(|cracks| cracks.different_factors), hover);
+        let hover = "Points whose normals differ in at least one bit although the normals in the file agree.";
+        fact(ui, "Normals differ", &count(|cracks| cracks.different_normals), hover);
+        let hover = "Edges with a point that differs. The overlay Cracks shows them.";
+        let cracked = count(|cracks| cracks.cracked().len() as u64);
+        marked_fact(ui, CRACK_COLOR, "Cracked edges", &cracked, hover);
+        let hover = "The largest distance between two sides' positions of one point, in object units.";
+        fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
+        let hover = "The same in ULP of the mesh's largest coordinate.";
+        fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
+        let px = results.and_then(|results| results.widest_crack).map_or(0.0, |(_, px)| px);
+        let hover = "The gap that is the widest as the camera of LOD sees it.";
+        fact(ui, "", &gap(&|_| px, "px"), hover);
+        let hover = "Triangles that face away from the side that their patch faces.";
+        let folds = results.map_or_else(|| "…".into(), |results| grouped(results.found.folds));
+        marked_fact(ui, FOLD_COLOR, "Folds", &folds, hover);
     }
 
     /// By how much the section of the patch, which begins at `top`, pushes down what the pointer is over, in points: the panel is
@@ -136,18 +120,16 @@ impl App {
         let culled = found.map(|found| found.culled);
         let count =
             |number: &dyn Fn(Culled) -> u64| culled.map_or_else(|| "…".into(), |culled| grouped(number(culled)));
-        egui::Grid::new("patches").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let drawn = count(&|culled| all - u64::from(culled.total()));
-            fact(ui, "Drawn", &drawn, "Patches that emit triangles.");
-            let hover = "Patches that clipping leaves out, because the LOD camera can't see them.";
-            fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
-            let hover = "Patches that are left out because the LOD camera sees only their backs.";
-            fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
-            let limit = found.map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
-            let hover = "Patches with a factor at the tessellator's maximum: 127 under rows, else 63 or 64. They may need more \
-                         segments, so LOD by error may miss its tolerance there.";
-            fact(ui, "At maximum factor", &limit, hover);
-        });
+        let drawn = count(&|culled| all - u64::from(culled.total()));
+        fact(ui, "Drawn", &drawn, "Patches that emit triangles.");
+        let hover = "Patches that clipping leaves out, because the LOD camera can't see them.";
+        fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
+        let hover = "Patches that are left out because the LOD camera sees only their backs.";
+        fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
+        let limit = found.map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
+        let hover = "Patches with a factor at the tessellator's maximum: 127 under rows, else 63 or 64. They may need more \
+                     segments, so LOD by error may miss its tolerance there.";
+        fact(ui, "At maximum factor", &limit, hover);
     }
 
     /// What is tessellated too finely or needlessly.
@@ -160,47 +142,38 @@ impl App {
         let results = self.results();
         let small = results.map_or_else(unknown, |results| part(results.sizes.small, results.sizes.in_view));
         let low = results.map_or_else(unknown, |results| part(results.found.patches_low.into(), patches));
-        egui::Grid::new("waste").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "Triangles in view with an area below 4.5 px, half of a square with sides of 3 px, and their share of all \
-                         triangles in view.";
-            marked_fact(ui, WASTE_COLOR, "Below 3 px", &small, hover);
-            let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \
-                         tessellation.";
-            marked_fact(ui, WASTE_COLOR, "Below factor 2", &low, hover);
-        });
+        let hover = "Triangles in view with an area below 4.5 px, half of a square with sides of 3 px, and their share of all \
+                     triangles in view.";
+        marked_fact(ui, WASTE_COLOR, "Below 3 px", &small, hover);
+        let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \
+                     tessellation.";
+        marked_fact(ui, WASTE_COLOR, "Below factor 2", &low, hover);
     }
 
     fn mesh_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let (mesh, topology) = (&document.loaded.mesh, &document.loaded.topology);
         let size = document.scene.bounds.max - document.scene.bounds.min;
-        egui::Grid::new("mesh").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            fact(ui, "Triangles", &grouped(mesh.triangles.len() as u64), "Triangles as loaded.");
-            fact(ui, "Patches", &grouped(topology.patches.len() as u64), "Triangles that are tessellated.");
-            let hover = "Triangles that are left out because two of their corners lie on one point.";
-            fact(ui, "Degenerate", &grouped(u64::from(topology.degenerate)), hover);
-            fact(ui, "Points", &grouped(topology.points.len() as u64), "Distinct positions, after welding.");
-            let hover = "Distinct combinations of position, normal and uv.";
-            fact(ui, "Corners", &grouped(mesh.corners.len() as u64), hover);
-            self.normal_facts(ui);
-            fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
-            let hover = "Extent of the mesh in object units; over the whole clip, if one is chosen.";
-            for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
-                fact(ui, axis, &format!("{} units", short(f64::from(length))), hover);
-            }
-        });
+        fact(ui, "Triangles", &grouped(mesh.triangles.len() as u64), "Triangles as loaded.");
+        fact(ui, "Patches", &grouped(topology.patches.len() as u64), "Triangles that are tessellated.");
+        let hover = "Triangles that are left out because two of their corners lie on one point.";
+        fact(ui, "Degenerate", &grouped(u64::from(topology.degenerate)), hover);
+        fact(ui, "Points", &grouped(topology.points.len() as u64), "Distinct positions, after welding.");
+        let hover = "Distinct combinations of position, normal and uv.";
+        fact(ui, "Corners", &grouped(mesh.corners.len() as u64), hover);
+        self.normal_facts(ui);
+        fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
+        let hover = "Extent of the mesh in object units; over the whole clip, if one is chosen.";
+        for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
+            fact(ui, axis, &format!("{} units", short(f64::from(length))), hover);
+        }
     }
 
-    fn pass_times(&mut self, ui: &mut egui::Ui) {
-        if self.viewport.picture.times.is_empty() || !self.panels.open.title(ui, Section::Passes) {
-            return;
+    fn pass_times(&self, ui: &mut egui::Ui) {
+        let hover = "The time of this pass's last run, by the GPU's clock.";
+        for time in &self.viewport.picture.times {
+            fact(ui, time.pass, &format!("{:.3} ms", time.ms), hover);
         }
-        egui::Grid::new("passes").num_columns(2).min_col_width(104.0).show(ui, |ui| {
-            let hover = "The time of this pass's last run, by the GPU's clock.";
-            for time in &self.viewport.picture.times {
-                fact(ui, time.pass, &format!("{:.3} ms", time.ms), hover);
-            }
-        });
     }
 
     /// Normals that are legal but suspicious.

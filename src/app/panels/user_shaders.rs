@@ -1,10 +1,8 @@
 //! The rows for functions of the user's own in place of LOD, and in place of the surface.
 
-use egui::RichText;
-
 use crate::app::App;
 use crate::app::jobs::user_shader_job::UserShaderSlot;
-use crate::app::widgets::button_row;
+use crate::app::widgets::{button_row, file_row, text_row};
 use crate::commands::{CLOSE_LOD_SHADER, CLOSE_SURFACE_SHADER};
 use gpu::{LodShader, SurfaceShader};
 
@@ -45,24 +43,17 @@ impl App {
     pub(super) fn surface_shader_rows(&mut self, ui: &mut egui::Ui) -> bool {
         self.shader_rows::<SurfaceShader>(ui, &OF_SURFACE);
         if let Some(said) = self.straight_sides_said() {
-            ui.label("");
-            ui.add(egui::Label::new(RichText::new(said).color(ui.visuals().warn_fg_color)).wrap());
-            ui.end_row();
+            text_row(ui, said, ui.visuals().warn_fg_color);
         }
         self.uses_surface_shader()
     }
 
     fn shader_rows<S: UserShaderSlot>(&mut self, ui: &mut egui::Ui, texts: &Texts) {
         let Some(open) = S::open_in(self) else { return };
-        ui.label(texts.label).on_hover_text(texts.hover);
-        ui.add(egui::Label::new(open.name()).truncate()).on_hover_text(open.path.display().to_string());
-        ui.end_row();
+        file_row(ui, texts.label, texts.hover, &open.path);
         if let Some(error) = &open.error {
             let stays = if open.is_used() { "The version before it stays." } else { texts.stays };
-            ui.label("");
-            let text = RichText::new(format!("{error}\n{stays}")).color(ui.visuals().error_fg_color);
-            ui.add(egui::Label::new(text).wrap());
-            ui.end_row();
+            text_row(ui, format!("{error}\n{stays}"), ui.visuals().error_fg_color);
         }
         if button_row(ui, texts.close, texts.close_hover) {
             self.forget_shader::<S>();

@@ -10,8 +10,8 @@ use tempfile::TempDir;
 use super::saved_state::{MAX_FILES, Placement, SavedCamera, SavedFile, SavedState, WindowGeometry};
 use super::{Persistence, state_file};
 use geometry::tessellate::{Surface, Tessellation};
+use inspect::for_tests::random::settings;
 use inspect::render::Camera;
-use inspect::settings::random::settings;
 use inspect::settings::{Overlays, Settings};
 use load::{Import, Source};
 

@@ -16,6 +16,7 @@ pub(super) mod pointer_value;
 pub(super) mod preview;
 mod preview_pace;
 mod ruler;
+mod section_arrow;
 pub(super) mod selection;
 pub(super) mod warm_up;
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use egui::{PointerButton, Sense};
-use glam::{Vec2, vec2};
+use glam::vec2;
 
 use super::axis_gizmo::axes_place;
 use super::picture::PictureRequest;
@@ -47,7 +47,7 @@ impl App {
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
         let points = vec2(rect.width(), rect.height());
-        self.move_camera(ui, &response, points);
+        self.move_camera(ui, &response, rect);
         let scale = ui.ctx().pixels_per_point();
         self.click(&response, scale);
         response.context_menu(|ui| self.part_menu(ui));
@@ -63,11 +63,11 @@ impl App {
         if framed {
             self.frame();
         }
-        // A picture that the device refused may be half drawn.
-        let is_whole = self.viewport.picture.drawn.is_some() || self.viewport.picture.cancelled.is_none();
         let generation = self.document.as_ref().map(|document| document.generation);
         let is_another = self.viewport.picture.shows.zip(generation).is_some_and(|(shown, own)| shown != own);
-        let is_whole = is_whole && !(is_another && self.viewport.picture.cancelled.is_some());
+        // A picture that the device refused may be half drawn.
+        let is_whole =
+            self.viewport.picture.cancelled.is_none() || (self.viewport.picture.drawn.is_some() && !is_another);
         let previewed = self.viewport.preview.shown(&self.viewport.picture).map(|(_, shape)| shape);
         let picture = match previewed {
             Some(_) => self.viewport.preview.picture(),
@@ -100,6 +100,7 @@ impl App {
     /// What lies over a picture, and explains it.
     fn over_picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
         self.divider(ui, rect);
+        self.section_arrow(ui, rect);
         self.patch_labels(ui, rect);
         self.greeting(ui, rect);
         self.corner_notes(ui, rect);
@@ -114,7 +115,10 @@ impl App {
         self.viewport.picture.fit(&self.painting, &self.engine, size)?;
         self.viewport.picture.land(&self.engine);
         self.keep_left(context)?;
-        self.pose()?;
+        // A picture that is under way is finished first, so that playing shows pictures even if each takes long.
+        if self.viewport.picture.is_free() {
+            self.pose_now()?;
+        }
         self.follow_file_camera();
         self.mark();
         let Some((wanted, is_whole)) = self.wanted(context, size)? else { return Ok(()) };
@@ -224,12 +228,6 @@ impl App {
         Ok(())
     }
 
-    /// Poses the scene for the wanted moment, unless a picture of another moment is under way. That one is finished first,
-    /// so that playing shows pictures even if each takes long.
-    fn pose(&mut self) -> Result<(), GpuError> {
-        if self.viewport.picture.is_free() { self.pose_now() } else { Ok(()) }
-    }
-
     /// Poses the scene for the wanted moment.
     ///
     /// # Errors
@@ -244,7 +242,9 @@ impl App {
         Ok(())
     }
 
-    fn move_camera(&mut self, ui: &egui::Ui, response: &egui::Response, points: Vec2) {
+    /// Moves the camera as the pointer does that drags, or scrolls over, the picture or what lies over it.
+    pub(super) fn move_camera(&mut self, ui: &egui::Ui, response: &egui::Response, picture: egui::Rect) {
+        let points = vec2(picture.width(), picture.height());
         let drag = vec2(response.drag_delta().x, response.drag_delta().y);
         let (shift, command) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
         let pans = response.dragged_by(PointerButton::Middle) || (response.dragged_by(PointerButton::Primary) && shift);
@@ -262,7 +262,7 @@ impl App {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             let ratio = (-scroll * RATIO_PER_POINT).exp() / pinch;
             if ratio != 1.0 {
-                let (pointer, scale) = (pointer - response.rect.min, ui.ctx().pixels_per_point());
+                let (pointer, scale) = (pointer - picture.min, ui.ctx().pixels_per_point());
                 let size = (points * scale).to_array().map(|side| side.round() as u32);
                 let (_, [x, _]) = half_at([(pointer.x * scale) as u32, 0], size, &self.settings);
                 self.viewport.camera.zoom(ratio, vec2(x as f32 / scale, pointer.y), points);
@@ -277,7 +277,7 @@ impl App {
         let is_whole = self.settings.shows_difference();
         let at = rect.left() + rect.width() * if is_whole { 0.5 } else { split };
         if !is_whole {
-            self.divider_handle(ui, rect, at);
+            self.divider_handle(ui, rect, split);
         }
         // The axes are in the right half's corner, or under the titles.
         let beside = axes_place(rect, Some(split)).filter(|axes| Some(*axes) == axes_place(rect, None));
@@ -289,30 +289,20 @@ impl App {
     }
 
     /// The line of the divider, and what drags it.
-    fn divider_handle(&mut self, ui: &mut egui::Ui, rect: egui::Rect, at: f32) {
-        let Some(split) = &mut self.settings.split else { return };
+    fn divider_handle(&mut self, ui: &mut egui::Ui, rect: egui::Rect, split: f32) {
+        let at = rect.left() + rect.width() * split;
         let reach = egui::Rect::from_x_y_ranges(at - DIVIDER_REACH..=at + DIVIDER_REACH, rect.y_range());
-        let response = ui.interact(reach, ui.scope_id().with("divider"), Sense::drag());
-        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, "Split divider"));
-        if let Some(percent) = spoken_percent(ui, response.id, 100.0 * *split) {
-            *split = percent / 100.0;
-            self.viewport.last_split = *split;
-        }
-        if response.dragged_by(PointerButton::Primary)
-            && let Some(pointer) = response.interact_pointer_pos()
-        {
-            *split = ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
-            self.viewport.last_split = *split;
-        } else if response.dragged_by(PointerButton::Middle) {
-            // The middle button pans, as it does beside the divider.
-            let drag = response.drag_delta();
-            self.viewport.camera.pan(vec2(drag.x, drag.y), vec2(rect.width(), rect.height()));
+        let (response, asked) = handle(ui, reach, "Split divider", split);
+        let pointer = response.interact_pointer_pos().filter(|_| response.dragged_by(PointerButton::Primary));
+        let dragged = pointer.map(|pointer| ((pointer.x - rect.left()) / rect.width()).clamp(0.0, 1.0));
+        match dragged.or(asked) {
+            Some(to) => (self.settings.split, self.viewport.last_split) = (Some(to), to),
+            None => self.move_camera(ui, &response, rect),
         }
         let response = response.on_hover_cursor(egui::CursorIcon::ResizeHorizontal);
-        // A light line in a dark one is seen on any background.
-        let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
-        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width + 2.0, egui::Color32::from_black_alpha(130)));
-        ui.painter().vline(at, rect.y_range(), egui::Stroke::new(width, egui::Color32::from_gray(gray)));
+        for stroke in handle_strokes(&response) {
+            ui.painter().vline(at, rect.y_range(), stroke);
+        }
     }
 
     /// The number of triangles of the wanted picture, as text.
@@ -421,23 +411,34 @@ impl App {
     }
 }
 
-/// Says a value from 0 to 100 to screen readers, and returns the one that they ask for.
-fn spoken_percent(ui: &egui::Ui, id: egui::Id, percent: f32) -> Option<f32> {
+/// What can be dragged in the picture, which `at`, from 0 to 1, follows. Screen readers say it in percent, and may ask for another
+/// one, which is returned.
+pub(super) fn handle(ui: &egui::Ui, reach: egui::Rect, name: &str, at: f32) -> (egui::Response, Option<f32>) {
     use egui::accesskit::{Action, ActionData};
-    ui.ctx().accesskit_node_builder(id, |node| {
+    let response = ui.interact(reach, ui.scope_id().with(name), Sense::drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Slider, true, name));
+    ui.ctx().accesskit_node_builder(response.id, |node| {
         node.set_min_numeric_value(0.0);
         node.set_max_numeric_value(100.0);
-        node.set_numeric_value(percent.into());
+        node.set_numeric_value(f64::from(100.0 * at));
         node.add_action(Action::SetValue);
     });
     let asked = ui.input(|input| {
-        let values = input.accesskit_action_requests(id, Action::SetValue).filter_map(|request| match request.data {
-            Some(ActionData::NumericValue(value)) => Some(value),
+        let requests = input.accesskit_action_requests(response.id, Action::SetValue);
+        let values = requests.filter_map(|request| match request.data {
+            Some(ActionData::NumericValue(percent)) => Some((percent / 100.0).clamp(0.0, 1.0) as f32),
             _ => None,
         });
         values.last()
     });
-    asked.map(|percent| percent.clamp(0.0, 100.0) as f32)
+    (response, asked)
+}
+
+/// The lines of what can be dragged: a light one in a dark one is seen on any background.
+pub(super) fn handle_strokes(response: &egui::Response) -> [egui::Stroke; 2] {
+    let (width, gray) = if response.hovered() || response.dragged() { (2.5, 255) } else { (1.5, 190) };
+    let dark = egui::Stroke::new(width + 2.0, egui::Color32::from_black_alpha(130));
+    [dark, egui::Stroke::new(width, egui::Color32::from_gray(gray))]
 }
 
 /// The place of the progress in a picture: below its middle, so that the picture can be seen.

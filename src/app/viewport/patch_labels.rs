@@ -9,7 +9,6 @@ use crate::app::text::factor;
 use crate::app::widgets::rgb;
 use geometry::tessellate::{factor_side, segments};
 use geometry::view::{ScreenView, project};
-use inspect::render::half_places;
 use inspect::render::layout::FACTOR_COLORS;
 use inspect::settings::SplitSide;
 
@@ -24,24 +23,17 @@ impl App {
     pub(in crate::app) fn patch_labels(&self, ui: &egui::Ui, rect: Rect) {
         let selected = self.selected_patch().filter(|_| !self.settings.shows_difference());
         let (Some(patch), Some(document)) = (selected, &self.document) else { return };
-        let Some(ScreenView { clip_from_object, viewport }) = self.shown_view() else { return };
+        let Some(ScreenView { clip_from_object, viewport }) = self.shown_view(rect) else { return };
         let Some((_, topology)) = &document.posed() else { return };
-        let [_, right] = half_places(viewport.to_array().map(|side| side as u32), &self.settings);
-        let at = |position| {
-            let px = project(clip_from_object, viewport, position)? + glam::vec2(right.shift as f32, 0.0);
-            Some(rect.min + Vec2::new(px.x / viewport.x * rect.width(), px.y / viewport.y * rect.height()))
-        };
+        let at = |position| project(clip_from_object, viewport, position).map(|at| rect.min + Vec2::new(at.x, at.y));
         let [Some(a), Some(b), Some(c)] = topology.patch_positions(patch).map(at) else { return };
         let extent = Rect::from_points(&[a, b, c]).size().max_elem();
         if extent < LEAST_EXTENT {
             return;
         }
         let middle = ((a.to_vec2() + b.to_vec2() + c.to_vec2()) / 3.0).to_pos2();
-        let corners = (0..).zip([a, b, c]).map(|(k, place)| {
-            let text = format!("{k} {}", letter(self.convention(), k));
-            (place, text, Color32::from_gray(235))
-        });
-        let corners: Vec<_> = corners.collect();
+        let corner = |(k, place)| (place, format!("{k} {}", letter(self.convention(), k)), Color32::from_gray(235));
+        let corners: Vec<_> = (0..).zip([a, b, c]).map(corner).collect();
         let edges = (0..).zip(self.patch_edges(topology, patch, SplitSide::Right)).filter_map(|(i, points)| {
             let [before, after] = [points.get((points.len() - 1) / 2)?, points.get(points.len() / 2)?];
             let place = at((*before + *after) / 2.0)?;

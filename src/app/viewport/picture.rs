@@ -227,10 +227,7 @@ impl Picture {
             return Ok(());
         }
         self.counting = None;
-        if self.drawn == Some(wanted) {
-            return Ok(());
-        }
-        if self.holds(scene, &wanted) {
+        if self.drawn == Some(wanted) || self.holds(scene, &wanted) {
             return Ok(());
         }
         let steps = Renderer::step_count(scene, &wanted.settings);

@@ -115,12 +115,15 @@ impl App {
                 Some(format!("{} px", short(size)))
             }
             Colors::Deviation => {
-                if self.settings.deviation_in == SurfaceUnit::Px {
-                    return None;
-                }
                 let reference = self.yardstick().1?;
                 let point = seen_on_plane(&view, middle, corners)?;
-                Some(format!("{} units", short(reference.closest(point.as_dvec3()).distance)))
+                let distance = reference.closest(point.as_dvec3()).distance;
+                let px_where_w_is_1 = self.viewport.picture.drawn?.camera.px_where_w_is_1(view.viewport.y);
+                let px = f64::from(px_where_w_is_1 / (clip_from_object * point.extend(1.0)).w);
+                Some(match self.settings.deviation_in {
+                    SurfaceUnit::Units => format!("{} units", short(distance)),
+                    SurfaceUnit::Px => format!("{} px", short(distance * px)),
+                })
             }
             Colors::Curvature => {
                 let domain = |vertex: &Vertex| vertex.domain().map(|weight| weight as f32);

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use glam::{Mat4, Vec3, vec2};
+
 use super::picture::{Picture, PictureRequest};
 use super::preview_pace::PreviewPace;
 use crate::app::jobs::job_list::Jobs;
@@ -14,7 +16,7 @@ use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::ScreenView;
 use gpu::{GpuError, Timing, submit_untimed};
 use inspect::engine::Engine;
-use inspect::render::{Camera, Scene, Target};
+use inspect::render::{Camera, Scene, Target, half_places};
 use inspect::settings::{ColorSource, Colors, Settings, SplitSide, SplitView};
 
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
@@ -29,8 +31,6 @@ const TRIANGLES: f32 = 2_000_000.0;
 /// As many triangles that don't depend on the camera are drawn as they are. With others in their place, they would have to be
 /// measured again.
 const KEPT_IN_SOFTWARE: f32 = 40_000.0;
-/// A mesh with more than so many times as many patches gets a mesh of that many triangles in its place.
-const LARGE: f32 = 1.0;
 /// The largest factor of a preview. More can't be seen at its resolution.
 const LARGEST_FACTOR: f32 = 8.0;
 /// The full picture has at most so many times as many px along each axis as a preview.
@@ -159,10 +159,7 @@ impl Preview {
         wanted: &PictureRequest,
         shape: Shape,
     ) -> Result<(), GpuError> {
-        if !count(scene, wanted)? || !self.pace.is_free() {
-            return Ok(());
-        }
-        if self.drawn == Some((*wanted, shape)) {
+        if !count(scene, wanted)? || !self.pace.is_free() || self.drawn == Some((*wanted, shape)) {
             return Ok(());
         }
         let Some((target, _)) = &self.target else { return Ok(()) };
@@ -225,11 +222,11 @@ fn shape_of(
         return Shape::Same;
     }
     // It stands for the mesh alone, not for another one beside it.
-    if patches > LARGE * most
+    if patches > most
         && document.moment.is_none()
         && (wanted.settings.split.is_none()
             || document.left_of == 0 && wanted.settings.split_view == SplitView::Divider)
-        && document.stand_in.is_made(jobs, context, engine, &document.loaded, (LARGE * most) as usize)
+        && document.stand_in.is_made(jobs, context, engine, &document.loaded, most as usize)
     {
         return Shape::StandIn;
     }
@@ -316,9 +313,15 @@ impl App {
         Some((PictureRequest { settings, inputs, ..*full }, shape))
     }
 
-    /// The view of what is shown: of a preview, or of the full picture.
-    pub(in crate::app) fn shown_view(&self) -> Option<ScreenView> {
+    /// The view of what is shown, of a preview or of the full picture, as the right half has it in an area of the window. Its
+    /// size is in points.
+    pub(super) fn shown_view(&self, area: egui::Rect) -> Option<ScreenView> {
         let picture = &self.viewport.picture;
-        self.viewport.preview.shown(picture).map(|(drawn, _)| drawn.view).or(picture.seen_from())
+        let drawn = self.viewport.preview.shown(picture).map(|(drawn, _)| drawn.view);
+        let ScreenView { clip_from_object, viewport } = drawn.or(picture.seen_from())?;
+        let [_, right] = half_places(viewport.to_array().map(|side| side as u32), &self.settings);
+        let shift = Mat4::from_translation(Vec3::X * (2.0 * right.shift as f32 / viewport.x));
+        let viewport = vec2(area.width(), area.height());
+        Some(ScreenView { clip_from_object: shift * clip_from_object, viewport })
     }
 }

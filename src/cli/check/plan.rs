@@ -189,7 +189,7 @@ fn job(
     // A reference surface that is a file may name other files, which aren't known here.
     let is_kept = matches!(source, Source::File(_))
         && of_views.is_none_or(|files| files.is_some())
-        && views.iter().all(|(_, options)| !matches!(options.reference_shape, Some(Source::File(_))));
+        && views.iter().all(|(_, options)| !matches!(options.reference.reference_shape, Some(Source::File(_))));
     let pictures = args.page.is_some();
     let configuration = format!("{gates:?} {views:?} {pictures} {golden:?} {:?}", args.adapter.adapter);
     Ok(Job { source, name, gates, views, read, hidden, golden, configuration, is_kept })

@@ -17,7 +17,7 @@ use inspect::render::layout::WORST_COLOR;
 use inspect::render::{Camera, LineSegment};
 use inspect::settings::{Colors, Overlays, Settings};
 use inspect::shot::legend::{Named, draw_key};
-use inspect::shot::{ReferenceSurface, Shot, ShotView, Subject, write_picture};
+use inspect::shot::{Shot, ShotView, Subject, write_picture};
 use lab::compare::{Comparison, ForeignMesh, OurTessellation, SideDifference};
 
 /// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
@@ -57,25 +57,27 @@ pub(super) fn draw(
     if let [(SIDE, _), (PATCH, _), ..] = names[..] {
         lines.swap(0, 1);
     }
+    let reference_shape = our_mesh(ours);
+    let is_compared = reference_shape.is_some();
     let subject = Subject {
-        reference_surface: our_mesh(ours)
-            .map(|reference_shape| ReferenceSurface::ReferenceShape("ours".to_owned(), Arc::new(reference_shape))),
+        reference_surface: reference_shape.map(|own| ("ours".to_owned(), Arc::new(own))),
         more_lines: [Vec::new(), lines.concat()],
         arena_bytes: args.surface.arena_bytes(),
-        ..Subject::new(shown, settings())
+        ..Subject::new(shown, settings(is_compared))
     };
     let scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
     let view =
         ShotView { camera: *camera, lod_camera: None, size: args.surface.size, transparent: false, legend: true };
-    names.extend(subject.reference_surface.is_some().then_some((WORST_COLOR, "largest distance from ours")));
+    names.extend(is_compared.then_some((WORST_COLOR, "largest distance from ours")));
     let mut picture = Shot::new(engine, scene, subject, view)?.picture(None, &Progress::new())?;
     draw_key(&mut picture, "What differs", &names)?;
     Ok(write_picture(path, &picture.into())?)
 }
 
-/// Their triangles as they are, in the colours of their distance from ours.
-fn settings() -> Settings {
-    let overlays = Overlays { colors: Colors::Deviation, wireframe: true, ..Overlays::default() };
+/// Their triangles as they are, in the colours of their distance from ours if that is known.
+fn settings(is_compared: bool) -> Settings {
+    let colors = if is_compared { Colors::Deviation } else { Colors::default() };
+    let overlays = Overlays { colors, wireframe: true, ..Overlays::default() };
     let tessellation = Tessellation { surface: Surface::Flat, factor: 1.0, ..Tessellation::default() };
     Settings { overlays, ..Settings::from(tessellation) }
 }

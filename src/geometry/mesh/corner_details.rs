@@ -1,9 +1,12 @@
 //! What some meshes' corners have beside position, normal and texture coordinates.
 
+use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 
-/// What a corner has beside the attributes of [`Corner`](super::Corner). Interpolated linearly over a patch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a corner has beside the attributes of [`Corner`](super::Corner), as passes and draws read it too. Interpolated linearly
+/// over a patch.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct CornerDetail {
     /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file, untransformed. Those that no map of the corner's material
     /// uses (see [`MapUv::Set`](super::MapUv::Set)) are zero.

@@ -45,6 +45,11 @@ impl DetailTable {
         self.details.get(number as usize).copied().unwrap_or_default()
     }
 
+    /// Returns the binding of a number; the number itself if there is no such pair.
+    pub fn binding(&self, number: u32) -> u32 {
+        self.bindings.get(number as usize).copied().unwrap_or(number)
+    }
+
     fn grow(&mut self, budget: &Budget) -> Result<(), MemoryRefused> {
         let (count, capacity) = (self.details.len(), self.details.capacity());
         let more = (count / 2).max(64);
@@ -79,9 +84,7 @@ fn key_of(details: &[CornerDetail], bindings: &[u32], id: u32) -> Key {
 
 /// Returns all bits of a corner's details, and its binding (-0 counts as 0).
 fn key(detail: &CornerDetail, binding: u32) -> Key {
-    let CornerDetail { uvs: [a, b], color, tangent, bitangent_sign } = *detail;
-    let numbers =
-        [a.x, a.y, b.x, b.y, color.x, color.y, color.z, color.w, tangent.x, tangent.y, tangent.z, bitangent_sign];
+    let numbers: [f32; 12] = bytemuck::cast(*detail);
     (numbers.map(|number| (number + 0.0).to_bits()), binding)
 }
 

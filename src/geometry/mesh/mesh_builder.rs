@@ -294,17 +294,8 @@ impl MeshBuilder {
     /// # Panics
     /// As [`triangle`](Self::triangle).
     pub fn stored_triangle(&mut self, material: usize, corners: [StoredCorner; 3]) {
-        let group = &mut self.groups[material];
-        if group.room() == 0 {
-            let count = group.next_run();
-            group.runs.push(Vec::with_capacity(count));
-        }
         corners.iter().for_each(|corner| corner.repairs.count(&mut self.repairs));
-        if let Some(run) = group.runs.last_mut() {
-            run.push(corners.map(|corner| corner.id));
-        }
-        group.count(1, self.part);
-        self.triangles += 1;
+        self.keep(material, &[corners.map(|corner| corner.id)]);
     }
 
     /// Adds triangles of stored corners as [`stored_triangle`](Self::stored_triangle) does: the corners' numbers, and the repairs of
@@ -312,8 +303,12 @@ impl MeshBuilder {
     ///
     /// # Panics
     /// As [`triangle`](Self::triangle).
-    pub fn stored_triangles(&mut self, material: usize, mut triangles: &[[u32; 3]], repairs: &Repairs) {
+    pub fn stored_triangles(&mut self, material: usize, triangles: &[[u32; 3]], repairs: &Repairs) {
         self.repairs.add(repairs);
+        self.keep(material, triangles);
+    }
+
+    fn keep(&mut self, material: usize, mut triangles: &[[u32; 3]]) {
         self.triangles += triangles.len();
         let group = &mut self.groups[material];
         group.count(triangles.len(), self.part);

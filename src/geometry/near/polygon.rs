@@ -8,8 +8,8 @@ const MANY: usize = 8;
 /// The most corners that a polygon has. A cut adds one, and some more if rounding has made a flat corner concave.
 const MOST: usize = 12;
 
-/// A flat convex polygon with 3 to [`MOST`] corners.
-#[derive(Clone, Copy, Debug)]
+/// A flat convex polygon with 3 to [`MOST`] corners, or with fewer while it is being made.
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Polygon {
     corners: [DVec3; MOST],
     count: u8,
@@ -17,9 +17,19 @@ pub(super) struct Polygon {
 
 impl Polygon {
     pub(super) fn new(triangle: [DVec3; 3]) -> Self {
-        let mut corners = [DVec3::ZERO; MOST];
-        corners[..3].copy_from_slice(&triangle);
-        Self { corners, count: 3 }
+        let mut polygon = Self::default();
+        triangle.into_iter().for_each(|corner| polygon.push(corner));
+        polygon
+    }
+
+    fn push(&mut self, corner: DVec3) {
+        self.corners[usize::from(self.count)] = corner;
+        self.count += 1;
+    }
+
+    /// None if it has too few corners.
+    fn made(self) -> Option<Self> {
+        (self.count >= 3).then_some(self)
     }
 
     pub(super) fn corners(&self) -> &[DVec3] {
@@ -62,7 +72,7 @@ impl Polygon {
         if usize::from(self.count) >= MANY {
             return self.split();
         }
-        let mut parts = [Part::default(), Part::default()];
+        let mut parts = [Self::default(); 2];
         for (i, (&corner, &height)) in self.corners().iter().zip(heights).enumerate() {
             if height <= 0.0 {
                 parts[0].push(corner);
@@ -76,36 +86,18 @@ impl Polygon {
                 parts.iter_mut().for_each(|part| part.push(end));
             }
         }
-        parts.map(Part::polygon)
+        parts.map(Self::made)
     }
 
     /// Cuts along the diagonal between the first corner and the one opposite to it.
     fn split(&self) -> [Option<Self>; 2] {
         let half = self.corners().len() / 2;
         let part = |corners: &mut dyn Iterator<Item = &DVec3>| {
-            let mut part = Part::default();
+            let mut part = Self::default();
             corners.for_each(|corner| part.push(*corner));
-            part.polygon()
+            part.made()
         };
         let corners = self.corners();
         [part(&mut corners[..=half].iter()), part(&mut corners[half..].iter().chain(&corners[..1]))]
-    }
-}
-
-/// A polygon with fewer corners so far.
-#[derive(Default)]
-struct Part {
-    corners: [DVec3; MOST],
-    count: u8,
-}
-
-impl Part {
-    fn push(&mut self, corner: DVec3) {
-        self.corners[usize::from(self.count)] = corner;
-        self.count += 1;
-    }
-
-    fn polygon(self) -> Option<Polygon> {
-        (self.count >= 3).then_some(Polygon { corners: self.corners, count: self.count })
     }
 }

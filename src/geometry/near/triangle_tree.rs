@@ -86,10 +86,7 @@ impl TriangleTree {
     /// Returns the nearest point, if one is nearer than `within`.
     pub fn closest(&self, p: DVec3, within: f64) -> Option<Closest> {
         let mut best = None;
-        self.search(p, within, 0.0, |closest| {
-            best = Some(closest);
-            false
-        });
+        self.search(p, within, 0.0, |closest| best = Some(closest));
         best
     }
 
@@ -139,18 +136,15 @@ impl TriangleTree {
     /// Returns the nearest points of all triangles that are at most `slack` farther away than the nearest triangle.
     pub fn all_closest(&self, p: DVec3, slack: f64) -> Vec<Closest> {
         let mut all: Vec<Closest> = Vec::new();
-        self.search(p, f64::INFINITY, slack, |closest| {
-            all.push(closest);
-            false
-        });
+        self.search(p, f64::INFINITY, slack, |closest| all.push(closest));
         let nearest = all.iter().map(|closest| closest.distance).fold(f64::INFINITY, f64::min);
         all.retain(|closest| closest.distance <= nearest + slack);
         all
     }
 
     /// Calls `take` with each nearest point of a triangle that is nearer than `within` and at most `slack` farther than
-    /// the nearest one so far, until `take` returns that this is enough.
-    fn search(&self, p: DVec3, within: f64, slack: f64, mut take: impl FnMut(Closest) -> bool) {
+    /// the nearest one so far.
+    fn search(&self, p: DVec3, within: f64, slack: f64, mut take: impl FnMut(Closest)) {
         let (p, slack) = (p * self.scale, slack * self.scale);
         let mut nearest = within * self.scale;
         self.visit(p, nearest + slack, |place| {
@@ -160,7 +154,8 @@ impl TriangleTree {
                 return None;
             }
             nearest = nearest.min(distance);
-            Some(if take(closest) { 0.0 } else { nearest + slack })
+            take(closest);
+            Some(nearest + slack)
         });
     }
 

@@ -4,11 +4,13 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+use crate::reference_shape::ReferenceShape;
 use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease_band};
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
 use load::heights::load_heights;
+use load::import::Subdivide;
 use load::part_tree::{self, Branch};
 use load::selection::Selection;
 use load::{Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings};
@@ -71,6 +73,35 @@ pub struct Preparation {
     pub limits: Limits,
 }
 
+impl Preparation {
+    /// What of the file is read, and how.
+    pub fn selection(&self) -> Selection<'_> {
+        Selection {
+            variant: self.variant.as_deref(),
+            scene: self.scene.as_deref(),
+            parts: Some(&self.parts),
+            import: self.import,
+        }
+    }
+}
+
+/// Loads the surface that a mesh is compared with: that of another source, at the mesh's place, or without one that of the mesh's
+/// own. `subdivide` says how its polygons are refined.
+///
+/// # Errors
+/// The same as [`ReferenceShape::load`]'s.
+pub fn load_reference(
+    from: Option<&Source>,
+    (mesh, preparation): (&Source, &Preparation),
+    subdivide: Subdivide,
+    progress: &Progress,
+) -> Result<ReferenceShape, LoadError> {
+    let another = Selection { import: preparation.import.placement(), ..Selection::default() };
+    let (source, selected) = from.map_or((mesh, preparation.selection()), |from| (from, another));
+    let selected = Selection { import: Import { subdivide, ..selected.import }, ..selected };
+    ReferenceShape::load(source, selected, &preparation.limits, progress)
+}
+
 /// Reads a mesh, prepares it, and builds its topology. Needs no device.
 ///
 /// # Errors
@@ -79,14 +110,8 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { 0.4 } else { 1.0 };
-    let selected = Selection {
-        variant: preparation.variant.as_deref(),
-        scene: preparation.scene.as_deref(),
-        parts: Some(&preparation.parts),
-        import: preparation.import,
-    };
     let LoadedMesh { mesh: mut read, mut warnings, contents, files, file_bytes, is_refined: _ } =
-        source.load_selected(selected, &preparation.limits, &progress.part(0.0, of_mesh))?;
+        source.load_selected(preparation.selection(), &preparation.limits, &progress.part(0.0, of_mesh))?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
     let too_large = |what| move |error| unfinished(source, what, error);

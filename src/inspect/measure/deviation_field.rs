@@ -23,24 +23,6 @@ pub enum DeviationTarget {
     Limit(Box<Inputs>),
 }
 
-impl DeviationTarget {
-    /// The surface for a mesh. A limit surface needs the mesh's control nets.
-    fn on<'a>(&'a self, mesh: &'a Mesh, topology: &'a Topology) -> TargetSurface<'a> {
-        match self {
-            Self::ReferenceShape(reference_shape) => TargetSurface::ReferenceShape(reference_shape),
-            Self::Limit(inputs) => TargetSurface::Limit(Box::new(LimitSurface::new(mesh, topology, inputs))),
-        }
-    }
-}
-
-/// A [`DeviationTarget`] for one mesh.
-enum TargetSurface<'a> {
-    /// Distances go to the nearest point of this surface.
-    ReferenceShape(&'a ReferenceShape),
-    /// Distances go to the point of the limit surface at the same place of the patch.
-    Limit(Box<LimitSurface<'a>>),
-}
-
 /// The numbers of segments that triangles' edges are cut into, finest first. With multiples of 3 there is a sample in the
 /// middle, where a flat triangle is mostly farthest from its surface. 0 means that sample alone.
 const STEPS: [u32; 5] = [24, 12, 6, 3, 0];
@@ -73,7 +55,9 @@ pub(super) fn samples_of(steps: u32) -> u32 {
 
 /// Measures a [`DeviationField`].
 pub struct DeviationMeasurement<'a> {
-    target: TargetSurface<'a>,
+    target: &'a DeviationTarget,
+    /// The target's limit surface on the mesh.
+    limit: Option<Box<LimitSurface<'a>>>,
     /// Shows how far the measurement is, and can cancel it.
     progress: &'a Progress,
     field: DeviationField,
@@ -95,9 +79,12 @@ impl<'a> DeviationMeasurement<'a> {
         triangles: u64,
         progress: &'a Progress,
     ) -> Self {
-        let (target, field) = (target.on(mesh, topology), DeviationField::unknown(triangles));
-        let emitted = Emitted::default();
-        Self { target, progress, field, emitted, triangles, room: MOST_TRIANGLES, cancelled: None }
+        let limit = match target {
+            DeviationTarget::ReferenceShape(_) => None,
+            DeviationTarget::Limit(inputs) => Some(Box::new(LimitSurface::new(mesh, topology, inputs))),
+        };
+        let (field, emitted) = (DeviationField::unknown(triangles), Emitted::default());
+        Self { target, limit, progress, field, emitted, triangles, room: MOST_TRIANGLES, cancelled: None }
     }
 
     /// The field, once all chunks are taken.
@@ -108,7 +95,7 @@ impl<'a> DeviationMeasurement<'a> {
         if let Some(cancelled) = self.cancelled {
             return Err(cancelled);
         }
-        if let TargetSurface::ReferenceShape(reference_shape) = self.target {
+        if let DeviationTarget::ReferenceShape(reference_shape) = self.target {
             let (emitted, farthest) = (&self.emitted, self.field.worst);
             let comparison = Comparison { reference_shape, emitted, narrow: Narrow::QUICK, farthest };
             if let Some(Largest { distance, place }) = comparison.to_reference(self.progress)? {
@@ -125,12 +112,12 @@ impl<'a> DeviationMeasurement<'a> {
         let threads = thread::available_parallelism().map_or(1, |cores| cores.get());
         let (steps, total) = (self.field.steps, self.triangles.clamp(1, MOST_TRIANGLES));
         let finished = AtomicU64::new(MOST_TRIANGLES - self.room - taken as u64);
-        let (target, progress) = (&self.target, self.progress);
+        let (this, progress) = (&*self, self.progress);
         let done = blocks(taken, threads, |range| {
             let (mut sums, count) = (Sums::default(), range.len() as u64);
             for triangle in &chunk.triangles[range] {
                 progress.check()?;
-                sums.take(target, triangle.map(|index| &chunk.vertices[index as usize]), steps);
+                sums.take(this, triangle.map(|index| &chunk.vertices[index as usize]), steps);
             }
             progress.set((finished.fetch_add(count, Ordering::Relaxed) + count) as f32 / total as f32);
             Ok(sums)
@@ -145,7 +132,7 @@ impl<'a> DeviationMeasurement<'a> {
             field.worst = field.worst.into_iter().chain(sums.worst).reduce(worse);
         }
         field.chunks.push(samples);
-        if matches!(self.target, TargetSurface::ReferenceShape(_)) {
+        if matches!(self.target, DeviationTarget::ReferenceShape(_)) {
             let is_finite = |index: &u32| chunk.vertices[*index as usize].position.iter().all(|x| x.is_finite());
             let finite = chunk.triangles[..taken].iter().filter(|triangle| triangle.iter().all(is_finite));
             self.emitted.add(chunk.vertices, &finite.copied().collect::<Vec<_>>());
@@ -205,7 +192,7 @@ struct Sums {
 }
 
 impl Sums {
-    fn take(&mut self, target: &TargetSurface, corners: [&Vertex; 3], steps: u32) {
+    fn take(&mut self, of: &DeviationMeasurement, corners: [&Vertex; 3], steps: u32) {
         let positions = corners.map(|vertex| DVec3::from(vertex.position.map(f64::from)));
         if !positions.iter().all(|position| position.is_finite()) {
             self.samples.extend(std::iter::repeat_n(f32::NAN, samples_of(steps) as usize));
@@ -213,20 +200,17 @@ impl Sums {
         }
         let [a, b, c] = positions;
         let area = (b - a).cross(c - a).length() / 2.0;
-        let net = match target {
-            TargetSurface::Limit(limit) => Some(limit.net(corners[0].patch())),
-            TargetSurface::ReferenceShape(_) => None,
-        };
+        let limit = of.limit.as_ref().map(|limit| (limit, limit.net(corners[0].patch())));
         let domains = corners.map(|vertex| vertex.exact_domain());
         for (weights, share) in grid(steps) {
             let emitted = (0..3).map(|k| positions[k] * weights[k]).sum();
-            let reference_shape = match (target, &net) {
-                (TargetSurface::Limit(limit), Some(net)) => {
+            let reference_shape = match (of.target, &limit) {
+                (DeviationTarget::Limit(_), Some((limit, net))) => {
                     let [u, v] = [0, 1].map(|i| (0..3).map(|k| weights[k] * domains[k][i]).sum());
                     limit.position(corners[0].patch(), net, u, v)
                 }
-                (TargetSurface::ReferenceShape(reference_shape), _) => reference_shape.closest(emitted).point,
-                (TargetSurface::Limit(_), None) => emitted,
+                (DeviationTarget::ReferenceShape(reference_shape), _) => reference_shape.closest(emitted).point,
+                (DeviationTarget::Limit(_), None) => emitted,
             };
             let value = emitted.distance(reference_shape);
             self.samples.push(value as f32);

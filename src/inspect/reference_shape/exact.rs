@@ -10,7 +10,7 @@ use super::revolved::{Profile, Torus};
 use super::saddle::Saddle;
 use super::spread::{Spread, radical_inverse};
 use super::surface::Surface;
-use super::{Facets, Nearest, Sample};
+use super::{EXACT, Facets, Known, Nearest, Sample};
 use geometry::mesh::Shape;
 use geometry::mesh::shapes::polyhedra::ELLIPSOID;
 use geometry::mesh::shapes::revolved::{HALF_HEIGHT, MAJOR, MINOR, RADIUS};
@@ -39,45 +39,25 @@ pub fn of_shape(shape: Shape) -> Option<Exact> {
         Shape::Saddle => Box::new(Saddle { half: SADDLE_HALF.into() }),
         Shape::Bicubic => Box::new(Patches::new(geometry::mesh::shapes::bicubic::patches())),
     };
-    Some(Exact::new(surface))
+    let spread = Spread::new(surface.charts(), |chart, s, t| surface.at(chart, s, t).1);
+    Some(Exact { spread, surface, facets: Mutex::default() })
 }
 
-impl Exact {
-    fn new(surface: Box<dyn Surface>) -> Self {
-        let spread = Spread::new(surface.charts(), |chart, s, t| surface.at(chart, s, t).1);
-        Self { spread, surface, facets: Mutex::default() }
-    }
-
-    /// Returns the nearest point of the surface.
-    pub fn closest(&self, p: DVec3) -> Nearest {
-        self.closest_facing(p, DVec3::ZERO)
-    }
-
-    pub(super) fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
+impl Known for Exact {
+    fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
         self.surface.closest(p, facing)
     }
 
-    /// Returns the least and the greatest coordinates.
-    pub fn extent(&self) -> [DVec3; 2] {
-        self.surface.extent()
+    fn proven(&self, p: DVec3) -> f64 {
+        (self.closest(p).distance - EXACT * self.diagonal()).max(0.0)
     }
 
-    /// Returns the area in square object units, to about 1e-3.
-    pub fn area(&self) -> f64 {
-        self.spread.area()
-    }
-
-    /// Returns `count` points, spread evenly by area: a Hammersley set.
-    pub fn samples(&self, count: usize) -> Vec<Sample> {
-        let sample = |i: usize| {
-            let (chart, s, t) = self.spread.place((i as f64 + 0.5) / count as f64, radical_inverse(2, i));
-            self.surface.at(chart, s, t).0
-        };
-        (0..count).map(sample).collect()
+    fn is_exact(&self) -> bool {
+        true
     }
 
     /// Triangles that are at most `sag` away, or somewhat less; or farther if they would be more than `most`.
-    pub(super) fn facets(&self, sag: f64, most: u64) -> Facets {
+    fn facets(&self, sag: f64, most: u64) -> Facets {
         // A comparison needs them twice.
         let sag = sag.log2().floor().exp2();
         let mut known = self.facets.lock().unwrap_or_else(PoisonError::into_inner);
@@ -89,5 +69,22 @@ impl Exact {
                 facets
             }
         }
+    }
+
+    /// A Hammersley set.
+    fn samples(&self, count: usize) -> Vec<Sample> {
+        let sample = |i: usize| {
+            let (chart, s, t) = self.spread.place((i as f64 + 0.5) / count as f64, radical_inverse(2, i));
+            self.surface.at(chart, s, t).0
+        };
+        (0..count).map(sample).collect()
+    }
+
+    fn area(&self) -> f64 {
+        self.spread.area()
+    }
+
+    fn extent(&self) -> [DVec3; 2] {
+        self.surface.extent()
     }
 }

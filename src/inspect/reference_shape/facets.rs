@@ -10,7 +10,7 @@ use geometry::near::{Soup, TriangleTree};
 
 /// Triangles that are a reference surface, or within a known distance of it.
 #[derive(Clone)]
-pub(crate) struct Facets {
+pub struct Facets {
     pub tree: Arc<TriangleTree>,
     positions: Arc<[Vec3]>,
     triangles: Arc<Vec<[u32; 3]>>,

@@ -14,19 +14,22 @@ mod saddle;
 mod spread;
 mod surface;
 
+use std::ops::Deref;
+
 use glam::DVec3;
 
 pub use exact::{Exact, of_shape};
-pub(crate) use facets::Facets;
+pub use facets::Facets;
 pub use reference::Reference;
 pub use spread::radical_inverse;
 
 use geometry::mesh::{Mesh, Shape};
+use geometry::near::{Goal, farthest};
 use geometry::progress::Progress;
 use load::files::Limits;
-use load::import::Subdivide;
+use load::mesh_file::NOT_REFINED;
 use load::selection::Selection;
-use load::{Import, LoadError, Source};
+use load::{Import, LoadError, NormalSource, Source};
 
 /// How often the cage of a reference surface is refined. Its points are then those of the limit surface.
 const LEVELS: f32 = 4.0;
@@ -48,119 +51,110 @@ pub struct Sample {
     pub normal: DVec3,
 }
 
+/// What is known about a reference surface.
+pub trait Known: Send + Sync {
+    /// Returns the nearest point of the surface. If it lies on a crease, where the surface has several normals, it has
+    /// the one that is nearest to `facing`.
+    fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest;
+
+    /// Returns the nearest point of the surface.
+    fn closest(&self, p: DVec3) -> Nearest {
+        self.closest_facing(p, DVec3::ZERO)
+    }
+
+    /// Returns the nearest point of the surface, and its distance. For a mesh this is faster than [`Self::closest`].
+    fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
+        let nearest = self.closest(p);
+        (nearest.point, nearest.distance)
+    }
+
+    /// Returns a distance that no point of the surface is nearer to p than for certain.
+    fn proven(&self, p: DVec3) -> f64;
+
+    fn is_exact(&self) -> bool {
+        false
+    }
+
+    /// Returns triangles that are the surface, or at most about `sag` away from it, in object units; or farther if they would
+    /// be more than `most`.
+    fn facets(&self, sag: f64, most: u64) -> Facets;
+
+    /// Returns `count` points, spread evenly by area. They are the same every time.
+    fn samples(&self, count: usize) -> Vec<Sample>;
+
+    /// Returns the area in square object units. That of exact surfaces is accurate to about 1e-3.
+    fn area(&self) -> f64;
+
+    /// Returns the least and the greatest coordinates.
+    fn extent(&self) -> [DVec3; 2];
+
+    /// Returns the length of the bounding box's diagonal in object units.
+    fn diagonal(&self) -> f64 {
+        let [min, max] = self.extent();
+        min.distance(max)
+    }
+}
+
 /// A reference surface: the surface that a tessellation should be.
-pub enum ReferenceShape {
-    Exact(Exact),
-    Mesh(Reference),
+pub struct ReferenceShape {
+    known: Box<dyn Known>,
+    /// How far a cage that was refined is at most from the same one refined once less, in object units. Each refinement moves it
+    /// about a quarter as far as the one before, so about a third of this is missing to the limit. `None` for other surfaces.
+    pub step: Option<f64>,
+}
+
+impl Deref for ReferenceShape {
+    type Target = dyn Known;
+
+    fn deref(&self) -> &Self::Target {
+        &*self.known
+    }
 }
 
 impl ReferenceShape {
     /// Returns the surface that a shape's corners are samples of, or `None` if the shape has none.
     pub fn from_shape(shape: Shape) -> Option<Self> {
-        of_shape(shape).map(Self::Exact)
+        of_shape(shape).map(|exact| Self { known: Box::new(exact), step: None })
     }
 
-    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, turned and scaled as
-    /// `import` says of the mesh that is compared with it, and refined as it says. `None` if that has no triangle.
+    /// Returns the reference surface of a source: the exact surface of a shape, or the mesh of a file, with its own normals and
+    /// refined four times where `selected` says that it is refined.
     ///
     /// # Errors
-    /// The file can't be read as a mesh, or is the cage of a subdivision surface and can't be refined, or `progress` was cancelled.
-    pub fn load(
-        source: &Source,
-        import: Import,
-        limits: &Limits,
-        progress: &Progress,
-    ) -> Result<Option<Self>, LoadError> {
-        let shape = source.shape();
-        if let Some(exact) = shape.and_then(Self::from_shape) {
-            return Ok(Some(exact));
+    /// The file can't be read as a mesh, is the cage of a subdivision surface and can't be refined, or has no triangle; or
+    /// `progress` was cancelled.
+    pub fn load(source: &Source, selected: Selection, limits: &Limits, progress: &Progress) -> Result<Self, LoadError> {
+        let (shape, refines_all) = (source.shape(), selected.import.refines_all());
+        if let Some(exact) = shape.and_then(Self::from_shape).filter(|_| !refines_all) {
+            return Ok(exact);
         }
-        let refined = Import { subdivide: import.subdivide, levels: Some(LEVELS), ..import.placement() };
-        let selected =
-            Selection { import: if shape.is_some() { Import::default() } else { refined }, ..Selection::default() };
-        let loaded = source.load_selected(selected, limits, progress)?;
-        if matches!(import.subdivide, Subdivide::CatmullClark | Subdivide::Loop) && !loaded.is_refined {
-            let reason = loaded.warnings.join(" ");
-            return Err(LoadError::Unrefined { file: source.to_string(), reason });
+        let refused = |reason: &str| LoadError::NoReference { file: source.to_string(), reason: reason.to_owned() };
+        let read = |levels, progress: &Progress| -> Result<(Reference, bool), LoadError> {
+            let import = Import { levels: Some(levels), normals: NormalSource::File, ..selected.import };
+            let import = if shape.is_some() { Import::default() } else { import };
+            let loaded = source.load_selected(Selection { import, ..selected }, limits, progress)?;
+            if refines_all && !loaded.is_refined {
+                let said = loaded.warnings.join(" ");
+                return Err(refused(if said.is_empty() { NOT_REFINED } else { &said }));
+            }
+            let read = Reference::new(&loaded.mesh).ok_or_else(|| refused("it has no triangles"))?;
+            Ok((read, loaded.is_refined))
+        };
+        let (fine, is_refined) = read(LEVELS, &progress.part(0.0, 0.8))?;
+        let mut step = None;
+        if is_refined {
+            let (coarse, _) = read(LEVELS - 1.0, &progress.part(0.8, 1.0))?;
+            let goal = Goal { relative: 0.05, absolute: 1e-7 * fine.diagonal(), searches: 1 << 18 };
+            let found = farthest(fine.facets.soup(), &coarse.facets.tree, &goal, progress)?;
+            step = found.map(|found| found.distance.at_most);
         }
-        Ok(Self::from_mesh(&loaded.mesh))
+        Ok(Self { known: Box::new(fine), step })
     }
 
     /// Returns a mesh as reference surface, with its interpolated normals, or `None` if it has no triangle. It needn't
     /// be closed or manifold.
     pub fn from_mesh(mesh: &Mesh) -> Option<Self> {
-        Reference::new(mesh).map(Self::Mesh)
-    }
-
-    /// Returns the nearest point of the surface.
-    pub fn closest(&self, p: DVec3) -> Nearest {
-        self.closest_facing(p, DVec3::ZERO)
-    }
-
-    /// Returns the nearest point of the surface. If it lies on a crease, where the surface has several normals, it has
-    /// the one that is nearest to `facing`.
-    pub fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
-        match self {
-            Self::Exact(exact) => exact.closest_facing(p, facing),
-            Self::Mesh(mesh) => mesh.closest_facing(p, facing),
-        }
-    }
-
-    /// Returns the nearest point of the surface, and its distance. For a mesh this is faster than [`Self::closest`].
-    pub(crate) fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
-        match self {
-            Self::Exact(exact) => {
-                let nearest = exact.closest(p);
-                (nearest.point, nearest.distance)
-            }
-            Self::Mesh(mesh) => mesh.closest_point(p),
-        }
-    }
-
-    pub(crate) fn is_exact(&self) -> bool {
-        matches!(self, Self::Exact(_))
-    }
-
-    /// Returns a distance that no point of the surface is nearer to p than for certain.
-    pub(crate) fn proven(&self, p: DVec3) -> f64 {
-        match self {
-            Self::Exact(exact) => (exact.closest(p).distance - EXACT * self.diagonal()).max(0.0),
-            Self::Mesh(mesh) => mesh.proven(p),
-        }
-    }
-
-    /// Returns triangles that are the surface, or at most about `sag` away from it, in object units; or farther if they would
-    /// be more than `most`.
-    pub(crate) fn facets(&self, sag: f64, most: u64) -> Facets {
-        match self {
-            Self::Exact(exact) => exact.facets(sag, most),
-            Self::Mesh(mesh) => mesh.facets(),
-        }
-    }
-
-    /// Returns `count` points, spread evenly by area. They are the same every time.
-    pub fn samples(&self, count: usize) -> Vec<Sample> {
-        match self {
-            Self::Exact(exact) => exact.samples(count),
-            Self::Mesh(mesh) => mesh.samples(count),
-        }
-    }
-
-    /// Returns the area in square object units. That of exact surfaces is accurate to about 1e-3.
-    pub fn area(&self) -> f64 {
-        match self {
-            Self::Exact(exact) => exact.area(),
-            Self::Mesh(mesh) => mesh.area(),
-        }
-    }
-
-    /// Returns the length of the bounding box's diagonal in object units.
-    pub fn diagonal(&self) -> f64 {
-        let [min, max] = match self {
-            Self::Exact(exact) => exact.extent(),
-            Self::Mesh(mesh) => mesh.extent(),
-        };
-        min.distance(max)
+        Reference::new(mesh).map(|mesh| Self { known: Box::new(mesh), step: None })
     }
 }
 

@@ -5,19 +5,18 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 
 use super::spread::{find, radical_inverse};
-use super::{Facets, Nearest, ON_CREASE, Sample};
+use super::{Facets, Known, Nearest, ON_CREASE, Sample};
 use geometry::mesh::{Corner, Mesh};
 use geometry::near::Closest;
 
 /// A mesh's flat triangles, with interpolated shading normals.
 pub struct Reference {
-    facets: Facets,
+    pub(super) facets: Facets,
     /// The mesh's corners; `faces` has the three of each triangle.
     corners: Vec<Corner>,
     faces: Arc<Vec<[u32; 3]>>,
     /// The sum of the areas of all triangles up to and including each one.
     areas: Vec<f64>,
-    diagonal: f64,
 }
 
 impl Reference {
@@ -30,36 +29,12 @@ impl Reference {
             *sum += cross(&of(triangle)).length() / 2.0;
             Some(*sum)
         });
-        let (areas, [min, max]) = (areas.collect(), facets.tree.extent());
-        Some(Self { facets, areas, diagonal: min.distance(max), corners, faces })
+        let areas = areas.collect();
+        Some(Self { facets, areas, corners, faces })
     }
 
     fn triangle(&self, index: usize) -> [Corner; 3] {
         self.faces[index].map(|corner| self.corners[corner as usize])
-    }
-
-    pub(super) fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
-        let nearest = |closest: &Closest| Nearest {
-            point: closest.point,
-            normal: self.normal(closest.triangle as usize, closest.weights),
-            distance: closest.distance,
-        };
-        let all = self.facets.tree.all_closest(p, ON_CREASE * self.diagonal);
-        // There is a nearest triangle, unless the place has a NaN coordinate.
-        let nowhere = Nearest { point: p, normal: DVec3::Y, distance: f64::NAN };
-        let Some(first) = all.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return nowhere };
-        let found = nearest(first);
-        let normals = all.iter().map(|closest| nearest(closest).normal);
-        let normal =
-            normals.fold(found.normal, |best, other| if other.dot(facing) > best.dot(facing) { other } else { best });
-        Nearest { normal, ..found }
-    }
-
-    /// Returns the nearest point and its distance.
-    pub(super) fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
-        let found = self.facets.tree.closest(p, f64::INFINITY);
-        // There is a nearest triangle, unless the place has a NaN coordinate.
-        found.map_or((p, f64::NAN), |closest| (closest.point, closest.distance))
     }
 
     /// Returns the unit shading normal, or the face's normal if that has no direction, or a corner's if the face has
@@ -72,9 +47,33 @@ impl Reference {
             .or_else(|| cross(&corners.map(|corner| corner.position)).try_normalize())
             .unwrap_or(normals[0])
     }
+}
 
-    /// Returns `count` points, spread evenly by area.
-    pub(super) fn samples(&self, count: usize) -> Vec<Sample> {
+impl Known for Reference {
+    fn closest_facing(&self, p: DVec3, facing: DVec3) -> Nearest {
+        let nearest = |closest: &Closest| Nearest {
+            point: closest.point,
+            normal: self.normal(closest.triangle as usize, closest.weights),
+            distance: closest.distance,
+        };
+        let all = self.facets.tree.all_closest(p, ON_CREASE * self.diagonal());
+        // There is a nearest triangle, unless the place has a NaN coordinate.
+        let nowhere = Nearest { point: p, normal: DVec3::Y, distance: f64::NAN };
+        let Some(first) = all.iter().min_by(|a, b| a.distance.total_cmp(&b.distance)) else { return nowhere };
+        let found = nearest(first);
+        let normals = all.iter().map(|closest| nearest(closest).normal);
+        let normal =
+            normals.fold(found.normal, |best, other| if other.dot(facing) > best.dot(facing) { other } else { best });
+        Nearest { normal, ..found }
+    }
+
+    fn closest_point(&self, p: DVec3) -> (DVec3, f64) {
+        let found = self.facets.tree.closest(p, f64::INFINITY);
+        // There is a nearest triangle, unless the place has a NaN coordinate.
+        found.map_or((p, f64::NAN), |closest| (closest.point, closest.distance))
+    }
+
+    fn samples(&self, count: usize) -> Vec<Sample> {
         let sample = |i: usize| {
             let (triangle, _) = find(&self.areas, (i as f64 + 0.5) / count as f64);
             // Fold the unit square onto the triangle, which keeps proportions of area.
@@ -88,20 +87,20 @@ impl Reference {
         (0..count).map(sample).collect()
     }
 
-    pub(super) fn proven(&self, p: DVec3) -> f64 {
+    fn proven(&self, p: DVec3) -> f64 {
         let tree = &self.facets.tree;
         tree.closest(p, f64::INFINITY).map_or(0.0, |closest| tree.proven(p, &closest))
     }
 
-    pub(super) fn facets(&self) -> Facets {
+    fn facets(&self, _: f64, _: u64) -> Facets {
         self.facets.clone()
     }
 
-    pub(super) fn area(&self) -> f64 {
+    fn area(&self) -> f64 {
         self.areas.last().copied().unwrap_or(0.0)
     }
 
-    pub(super) fn extent(&self) -> [DVec3; 2] {
+    fn extent(&self) -> [DVec3; 2] {
         self.facets.tree.extent()
     }
 }

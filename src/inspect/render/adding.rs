@@ -81,9 +81,9 @@ impl Added {
     /// Records drawing a chunk that was emitted; without one nothing is added. `constant` is that of the blend factor.
     pub(super) fn draw(&mut self, recorder: &mut Recorder, constant: wgpu::Color, chunk: Option<&ChunkBuffers>) {
         let view = whole(&self.texture);
-        let load = if self.is_cleared { wgpu::LoadOp::Load } else { wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT) };
+        let color = color_attachment(&view, (!self.is_cleared).then_some(wgpu::Color::TRANSPARENT));
         self.is_cleared = true;
-        recorder.render("adding", Some(color_attachment(&view, load)), None, |pass| {
+        recorder.render("adding", Some(color), None, |pass| {
             let Some(chunk) = chunk else { return };
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &self.group, &[]);

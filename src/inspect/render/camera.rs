@@ -167,6 +167,12 @@ impl Camera {
         2.0 * self.distance * (0.5 * self.field_of_view).to_radians().tan() / height.max(1.0)
     }
 
+    /// How many px an object unit across the view is where w is 1 in clip space, in a viewport that is `height` px high. In an
+    /// orthographic view w is 1 everywhere; in a perspective view it is the distance from the eye.
+    pub fn px_where_w_is_1(&self, height: f32) -> f32 {
+        (if self.orthographic { 1.0 } else { self.distance }) / self.units_per_pixel(height)
+    }
+
     /// The matrix from object units to clip space, for a viewport of `viewport` px. In an orthographic view, the depth range
     /// holds `bounds`.
     pub fn clip_from_object(&self, viewport: Vec2, bounds: &Bounds) -> Mat4 {

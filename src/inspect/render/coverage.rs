@@ -9,7 +9,7 @@ use geometry::tessellate::CoverageView;
 use gpu::layout::DrawArgs;
 use gpu::{
     ChunkBuffers, ComputePipeline, Gpu, GpuError, RecordPasses, Recorder, ShaderModule, WORKGROUP, empty, grid,
-    read_buffer, uniform_buffer,
+    uniform_buffer,
 };
 
 /// How many triangles each workgroup tests; `TILE` in `shaders/pass_coverage.wgsl`.
@@ -83,16 +83,6 @@ impl Coverage {
     /// The size of all buffers.
     pub(super) fn bytes(&self) -> u64 {
         [&self.marks, &self.tile_starts, &self.indices, &self.draw_args].iter().map(|buffer| buffer.size()).sum()
-    }
-
-    /// How many triangles were kept last time. Waits for the device.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub(super) fn kept(&self, gpu: &Gpu) -> Result<u64, GpuError> {
-        let bytes = read_buffer(gpu, &self.draw_args, 0, self.draw_args.size())?;
-        let draws: Vec<DrawArgs> = bytemuck::pod_collect_to_vec(&bytes);
-        Ok(draws.iter().map(|draw| u64::from(draw.index_count) / 3).sum())
     }
 
     /// Records the passes that keep the triangles of a chunk that may be seen. The chunk must fit: see [`Self::has_room`].

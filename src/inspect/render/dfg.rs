@@ -110,30 +110,3 @@ fn seen_facet(to_eye: Vec3, alpha: f32, [first, second]: [f32; 2]) -> Vec3 {
     let facet = across * x + up * y + stretched * (1.0 - x * x - y * y).max(0.0).sqrt();
     vec3(alpha * facet.x, alpha * facet.y, facet.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
 }
-
-/// Twin of `environment_dfg` in `shaders/environment.wgsl`.
-pub fn environment_dfg(facing: f32, roughness: f32) -> [f32; 2] {
-    let [first, second, ..] = dfg_texel(facing, roughness);
-    [first, second]
-}
-
-/// Twin of `environment_sheen`.
-pub fn environment_sheen(facing: f32, roughness: f32) -> f32 {
-    dfg_texel(facing, roughness)[2]
-}
-
-fn dfg_texel(facing: f32, roughness: f32) -> [f32; 4] {
-    let table = dfg_table();
-    let last = DFG_SIZE as usize - 1;
-    let split = |part: f32| {
-        let at = part.clamp(0.0, 1.0) * last as f32;
-        let low = (at as usize).min(last - 1);
-        (low, at - low as f32)
-    };
-    let ((x, right), (y, down)) = (split(facing), split(roughness));
-    std::array::from_fn(|factor| {
-        let entry = |x: usize, y: usize| table[y * (last + 1) + x][factor];
-        let row = |y: usize| entry(x, y) * (1.0 - right) + entry(x + 1, y) * right;
-        row(y) * (1.0 - down) + row(y + 1) * down
-    })
-}

@@ -18,23 +18,25 @@ impl DifferenceDrawer {
         Self { module: ShaderModule::new("draw_difference"), layout, pipeline: Lazy::default() }
     }
 
-    /// Replaces the target's picture by its difference from the one that was kept.
+    /// Draws the difference between the pictures that were kept under what the target shows.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn draw(&self, recorder: &mut Recorder, gpu: &Gpu, target: &Target) -> Result<(), GpuError> {
         let module = self.module.get(gpu)?;
         let pipeline = self.pipeline.get_or_make(gpu, || {
-            let parts =
-                PipelineParts::new(module, ["difference_vertex", "difference_fragment"], Some(SHOWN_FORMAT.into()));
+            let (under, over) = (wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One);
+            let blend = wgpu::BlendComponent { src_factor: under, dst_factor: over, ..Default::default() };
+            let blend = Some(wgpu::BlendState { color: blend, alpha: blend });
+            let shown = wgpu::ColorTargetState { blend, ..SHOWN_FORMAT.into() };
+            let parts = PipelineParts::new(module, ["difference_vertex", "difference_fragment"], Some(shown));
             PipelineParts { layouts: Some(vec![Some(&self.layout)]), ..parts }.pipeline(gpu)
         })?;
-        target.keep(recorder, gpu, 1)?;
         let views = target.kept(gpu)?.each_ref().map(whole);
         let bound = (0..).zip(views.each_ref().map(wgpu::BindingResource::TextureView));
         let group = bind_group(gpu, "difference", &self.layout, bound);
         let view = target.shown_view(false);
-        recorder.render("difference", Some(color_attachment(&view, wgpu::LoadOp::Load)), None, |pass| {
+        recorder.render("difference", Some(color_attachment(&view, None)), None, |pass| {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &group, &[]);
             pass.draw(0..3, 0..1);

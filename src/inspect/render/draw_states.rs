@@ -6,7 +6,7 @@ use super::render_pipeline::depth_state;
 use super::scene::LineSegment;
 use super::target::COLOR_FORMAT;
 use crate::settings::NormalsAt;
-use gpu::VERTEX_HALF;
+use gpu::embed::VERTEX_LAYOUTS;
 
 impl SurfaceDraw {
     fn vertex_entry(self) -> &'static str {
@@ -79,11 +79,9 @@ impl Draw {
     /// The vertex buffers that it reads.
     pub(super) fn vertex_buffers(self) -> Vec<Option<wgpu::VertexBufferLayout<'static>>> {
         match self {
-            Self::Surface(SurfaceDraw { shading: Shading::Plain, .. }) => {
-                vertex_halves(wgpu::VertexStepMode::Vertex)[..1].to_vec()
-            }
+            Self::Surface(SurfaceDraw { shading: Shading::Plain, .. }) => VERTEX_LAYOUTS[..1].to_vec(),
             Self::Surface(SurfaceDraw { triangles: Triangles::Bare | Triangles::Indexed, .. }) => {
-                vertex_halves(wgpu::VertexStepMode::Vertex).to_vec()
+                VERTEX_LAYOUTS.to_vec()
             }
             Self::Surface(_) | Self::Background | Self::Ground | Self::LayerClear { .. } => Vec::new(),
             Self::Lines(_) => vec![Some(wgpu::VertexBufferLayout {
@@ -91,7 +89,10 @@ impl Draw {
                 step_mode: wgpu::VertexStepMode::Instance,
                 attributes: &SEGMENT,
             })],
-            Self::Normals(_) => vertex_halves(wgpu::VertexStepMode::Instance).to_vec(),
+            Self::Normals(_) => {
+                let step_mode = wgpu::VertexStepMode::Instance;
+                VERTEX_LAYOUTS.map(|half| half.map(|half| wgpu::VertexBufferLayout { step_mode, ..half })).to_vec()
+            }
         }
     }
 
@@ -168,16 +169,6 @@ fn both(drawn: wgpu::BlendFactor, color: wgpu::BlendFactor, alpha: wgpu::BlendFa
     wgpu::BlendState { color: component(color), alpha: component(alpha) }
 }
 
-/// The attributes of an emitted vertex's first half: position and normal.
-const PLACE: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![0 => Float32x3, 1 => Uint32];
-/// The attributes of its second half: key and texture coordinates.
-const DETAIL: [wgpu::VertexAttribute; 2] = wgpu::vertex_attr_array![2 => Uint32x2, 3 => Float32x2];
 /// The attributes of a [`LineSegment`]: start, end, colour, half its width, and how many lie over each other.
 const SEGMENT: [wgpu::VertexAttribute; 5] =
     wgpu::vertex_attr_array![0 => Float32x3, 1 => Float32x3, 2 => Float32x3, 3 => Float32, 4 => Float32];
-
-/// The two halves of emitted vertices, as vertex buffers.
-fn vertex_halves(step_mode: wgpu::VertexStepMode) -> [Option<wgpu::VertexBufferLayout<'static>>; 2] {
-    let half = |attributes| wgpu::VertexBufferLayout { array_stride: VERTEX_HALF, step_mode, attributes };
-    [Some(half(&PLACE)), Some(half(&DETAIL))]
-}

@@ -12,6 +12,7 @@ use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, image};
 use super::irradiance::{Irradiance, irradiance};
 use super::prefilter_pass::{cube_view, prefilter};
 use super::studio::studio_light;
+use super::textures::linear_sampler;
 use crate::settings::ToneCurve;
 use gpu::{Gpu, GpuError, Lazy, WgslModule, filled_texture, flat_texture, uniform_buffer};
 use load::panorama::Panorama;
@@ -23,7 +24,7 @@ pub const ENVIRONMENT: WgslModule = WgslModule("environment");
 const SURROUNDINGS_BINDING: u32 = 19;
 
 /// Width of a face of the cube map's first level, in texels.
-const ENVIRONMENT_SIZE: u32 = 128;
+pub(crate) const ENVIRONMENT_SIZE: u32 = 128;
 
 /// Width and height of the studio's panorama, in px. Its soft boxes have edges that are five px wide.
 const STUDIO_SIZE: [u32; 2] = [512, 256];
@@ -88,14 +89,6 @@ impl Environment {
         Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, studio_light))
     }
 
-    /// The same light (linear RGB) from all sides, under which a white surface that absorbs nothing can't be seen.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
-        Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, |_| light.into()))
-    }
-
     /// The light of a panorama.
     ///
     /// # Errors
@@ -109,10 +102,11 @@ impl Environment {
         Ok(Self { backdrop, ..own })
     }
 
-    fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
+    pub(crate) fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
         let irradiance = irradiance(light);
+        let sampler = || linear_sampler(gpu, "environment");
         let (source, cube, dfg, sampler) =
-            gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), linear_sampler(gpu)))?;
+            gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), sampler()))?;
         prefilter(gpu, &source, &cube, &sampler)?;
         Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance, backdrop: Lazy::default() })
     }
@@ -185,17 +179,6 @@ fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
         tone_curve: view.tone_curve as u32,
         _pad: 0,
     }
-}
-
-/// A sampler that blends texels and levels, and goes on beyond the borders as on them.
-pub(super) fn linear_sampler(gpu: &Gpu) -> wgpu::Sampler {
-    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
-        label: Some("linear"),
-        mag_filter: wgpu::FilterMode::Linear,
-        min_filter: wgpu::FilterMode::Linear,
-        mipmap_filter: wgpu::MipmapFilterMode::Linear,
-        ..Default::default()
-    })
 }
 
 /// A cube map of half floats whose levels the prefilter will fill.

@@ -23,9 +23,6 @@ pub(super) fn frame(
     let [right, up, back] = camera.axes();
     let eye = if camera.orthographic { back.extend(0.0) } else { camera.eye().extend(1.0) };
     let scale = usual.scale(settings, scene.known_deviation().map(|known| known.scale));
-    // In clip space, w is 1 everywhere in an orthographic view, and the distance from the eye in a perspective view.
-    let px_where_w_is_1 =
-        (if camera.orthographic { 1.0 } else { camera.distance }) / camera.units_per_pixel(viewport.y);
     let is_of_texels = settings.overlays.colors == Colors::TexelDensity;
     let (sine, cosine) = settings.zebra_direction.to_radians().sin_cos();
     let in_px = settings.deviation_in == SurfaceUnit::Px;
@@ -40,7 +37,7 @@ pub(super) fn frame(
         convention: settings.tessellation.convention as u32,
         scale_least: scale.least,
         scale_most: scale.most,
-        px_per_unit: if in_px { px_where_w_is_1 } else { 0.0 },
+        px_per_unit: if in_px { camera.px_where_w_is_1(viewport.y) } else { 0.0 },
         ground: Ground::under(&scene.bounds).packed(),
         scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
         left: place.area[0] as f32,

@@ -2,10 +2,9 @@
 
 use glam::{Vec3, vec3};
 
-use super::environment::linear_sampler;
 use super::layout::{self, srgb};
 use super::materials::Materials;
-use super::textures::{ImageUse, upload};
+use super::textures::{ImageUse, linear_sampler, upload};
 use crate::settings::Matcap;
 use geometry::mesh::Texture;
 use geometry::mesh::mipmap::MipFilter;
@@ -42,7 +41,7 @@ pub struct MatcapPicture(pub(super) wgpu::BindGroup);
 pub(super) fn sphere_group(gpu: &Gpu, materials: &Materials, picture: &Texture) -> Result<wgpu::BindGroup, GpuError> {
     // Nothing of the material is seen.
     let constants = uniform_buffer(gpu, "matcap", &[0; size_of::<layout::Material>()]);
-    let sampler = linear_sampler(gpu);
+    let sampler = linear_sampler(gpu, "matcap");
     let view = upload(gpu, &materials.mipmaps, picture, ImageUse::new(MipFilter::Colors))?;
     let bound = [
         (0, constants.as_entire_binding()),

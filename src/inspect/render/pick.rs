@@ -175,7 +175,7 @@ impl<'a> Run<'a> {
     ) -> Result<(), GpuError> {
         let module = search.module.get(self.gpu)?;
         let draw = search.draw.get_or_make(self.gpu, || pipeline(self.gpu, module, search.vertex))?;
-        let color = color_attachment(&self.drawn, wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT));
+        let color = color_attachment(&self.drawn, Some(wgpu::Color::TRANSPARENT));
         let depth = depth_attachment(&self.depth, first.then_some(0.0));
         let resource = |name: &str| self.resource(scene, name);
         let group = search.module.bind(self.gpu, search.vertex, &draw.get_bind_group_layout(0), resource);

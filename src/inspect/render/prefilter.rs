@@ -22,7 +22,7 @@ pub(crate) fn hammersley(index: u32, count: u32) -> Vec2 {
 }
 
 /// Two directions that are orthogonal to a unit vector and to each other (Duff et al. 2017, listing 3).
-pub(crate) fn directions_across(normal: Vec3) -> [Vec3; 2] {
+pub fn directions_across(normal: Vec3) -> [Vec3; 2] {
     let side = if normal.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (side + normal.z);
     let b = normal.x * normal.y * a;
@@ -34,7 +34,7 @@ pub(crate) fn directions_across(normal: Vec3) -> [Vec3; 2] {
 
 /// A light's direction seen along the normal (z) of a GGX surface, by way of its microfacets (Walter et al. 2007, equations 35
 /// and 36), and the square root of its density times 4 (w).
-pub(crate) fn light_and_density(point: Vec2, alpha: f32) -> Vec4 {
+pub fn light_and_density(point: Vec2, alpha: f32) -> Vec4 {
     let square = alpha * alpha;
     let cosine_squared = (1.0 - point.x) / (1.0 + (square - 1.0) * point.x);
     let sine_squared = square * point.x / (1.0 + (square - 1.0) * point.x);
@@ -46,7 +46,7 @@ pub(crate) fn light_and_density(point: Vec2, alpha: f32) -> Vec4 {
 
 /// The level of the source whose texels are as large as a sample of that density, times 2 (Krivanek and Colbert 2008, section
 /// 3). `size` is the size of a face, in texels.
-pub(crate) fn sample_level(root_density: f32, count: u32, size: f32) -> f32 {
+pub fn sample_level(root_density: f32, count: u32, size: f32) -> f32 {
     let texels = (24.0 / PI).sqrt() * size / (root_density * (count as f32).sqrt());
     texels.log2().max(0.0)
 }

@@ -1,6 +1,8 @@
 //! Draws pictures, in the same way for the window, the commands and the tests.
 
 mod bind_groups;
+#[cfg(any(test, feature = "for_tests"))]
+mod for_tests;
 mod layer_passes;
 mod picture;
 mod preparation;
@@ -72,14 +74,6 @@ impl Renderer {
             peels_everywhere: false,
             sift_from: if gpu.is_software() { SIFT_FROM_IN_SOFTWARE } else { SIFT_FROM },
         }
-    }
-
-    /// The same, with another light in place of the studio's.
-    pub fn lit_by(gpu: &Gpu, environment: Environment) -> Self {
-        let renderer = Self::new(gpu);
-        // There is none yet, so that nothing fails.
-        let _ = renderer.studio.get_or_try_make(|| Ok(Arc::new(environment)));
-        renderer
     }
 
     /// Uploads a picture of a lit sphere, for [`Scene::matcap`].

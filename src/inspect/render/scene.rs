@@ -156,14 +156,6 @@ impl Scene {
         self.tessellator.work_bytes() + self.coverage.as_ref().map_or(0, Coverage::bytes)
     }
 
-    /// How many triangles of the last chunk were drawn, if those that cover no sample were removed; else `None`.
-    ///
-    /// # Errors
-    /// The device was lost.
-    pub fn covering_triangles(&self) -> Result<Option<u64>, GpuError> {
-        self.coverage.as_ref().map(|coverage| coverage.kept(self.tessellator.gpu())).transpose()
-    }
-
     /// The scene in a half of the picture; `None` on the left of a picture that isn't split.
     pub fn half(&self, half: SplitSide) -> Option<&Self> {
         match half {

@@ -28,6 +28,6 @@ pub(crate) fn charlie_lambda(cosine: f32, alpha: f32) -> f32 {
 }
 
 /// Only tests use it here.
-pub(crate) fn charlie_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
+pub fn charlie_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
     0.25 / (facing * (1.0 + charlie_lambda(facing, alpha) + charlie_lambda(lit, alpha)))
 }

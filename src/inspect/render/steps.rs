@@ -20,7 +20,7 @@ pub(super) enum Step {
     Normals(SplitSide, usize),
     /// Keeps the picture of the left half, which is whole, and begins another one.
     Keep,
-    /// Shows how that differs from the one that was kept.
+    /// Shows how that differs from the one that was kept, and what is drawn over surfaces.
     Difference,
 }
 

@@ -74,8 +74,9 @@ fn room(direction: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::super::cube_map::CubeMap;
-    use super::super::irradiance::{irradiance, irradiance_of};
+    use super::super::irradiance::irradiance;
     use super::*;
+    use crate::for_tests::environment::irradiance_of;
 
     #[test]
     fn the_light_is_positive_soft_and_nearly_grey() {

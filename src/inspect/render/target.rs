@@ -134,8 +134,7 @@ impl Target {
             None => (&self.resolved_srgb, None),
         };
         let background = if self.is_transparent { wgpu::Color::TRANSPARENT } else { background };
-        let load = if first { wgpu::LoadOp::Clear(background) } else { wgpu::LoadOp::Load };
-        wgpu::RenderPassColorAttachment { resolve_target, ..color_attachment(view, load) }
+        wgpu::RenderPassColorAttachment { resolve_target, ..color_attachment(view, first.then_some(background)) }
     }
 
     /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
@@ -236,11 +235,12 @@ fn depth_view(gpu: &Gpu, label: &str, size: [u32; 2]) -> wgpu::TextureView {
     whole(&gpu.device.create_texture(&wgpu::TextureDescriptor { sample_count: samples(gpu), ..descriptor }))
 }
 
-/// A colour attachment whose picture is stored.
+/// A colour attachment that is first cleared to a colour, or keeps what it has.
 pub(super) fn color_attachment(
     view: &wgpu::TextureView,
-    load: wgpu::LoadOp<wgpu::Color>,
+    clear: Option<wgpu::Color>,
 ) -> wgpu::RenderPassColorAttachment<'_> {
+    let load = clear.map_or(wgpu::LoadOp::Load, wgpu::LoadOp::Clear);
     let ops = wgpu::Operations { load, store: wgpu::StoreOp::Store };
     wgpu::RenderPassColorAttachment { view, depth_slice: None, resolve_target: None, ops }
 }

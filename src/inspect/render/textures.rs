@@ -127,6 +127,17 @@ fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
     })
 }
 
+/// A sampler that blends texels and levels.
+pub(super) fn linear_sampler(gpu: &Gpu, label: &str) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some(label),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    })
+}
+
 /// A white pixel, for what has no image.
 pub(super) fn white(gpu: &Gpu) -> wgpu::TextureView {
     let pixel = Texture { size: [1, 1], rgba: vec![255; 4] };

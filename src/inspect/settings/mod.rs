@@ -8,8 +8,6 @@ pub mod light;
 mod matcap;
 pub mod options;
 mod overlays;
-#[cfg(any(test, feature = "random"))]
-pub mod random;
 mod value;
 
 use glam::{Mat4, Vec2, Vec3};
@@ -122,7 +120,7 @@ choices! {
         Beside => "beside", "Side by side", "Each half shows the middle of the view, from the same camera.";
         Difference => "difference", "Difference",
             "How far the colours of both halves are apart at each pixel: black where they are equal, brighter where they differ \
-             by more steps. Without lines over the surface.";
+             by more steps. Lines over the surface are drawn over it.";
     }
 }
 

@@ -241,16 +241,11 @@ impl Kind {
     }
 
     fn expected(&self) -> String {
+        let names = || self.descriptions().iter().map(|value| value.name).collect::<Vec<_>>().join(", ");
         match self {
-            Self::Choice(_) | Self::Several(_) => {
-                let names: Vec<_> = self.descriptions().iter().map(|value| value.name).collect();
-                format!("expected {}", names.join(", "))
-            }
+            Self::Choice(_) | Self::Several(_) => format!("expected {}", names()),
             Self::Number(Range { least, most, .. }) => format!("expected a number from {least} to {most}"),
-            Self::NameOrNumber { range, .. } => {
-                let names: Vec<_> = self.descriptions().iter().map(|value| value.name).collect();
-                format!("expected {}, or a number: {range}", names.join(", "))
-            }
+            Self::NameOrNumber { range, .. } => format!("expected {}, or a number: {range}", names()),
             Self::Pair(range) => {
                 let Range { least, most, .. } = range;
                 let unit = range.unit_in_words();
@@ -379,9 +374,9 @@ impl<T: Field> Field for Option<T> {
     }
 }
 
-/// Fields that are a value's contents.
+/// Fields that hold a value as it is.
 macro_rules! plain_fields {
-    ($($type:ty => $kind:ident),+ $(,)?) => {
+    ($($type:ty: $kind:ident),+ $(,)?) => {
         $(impl Field for $type {
             fn value(&self) -> Value {
                 Value::$kind(*self)
@@ -394,7 +389,7 @@ macro_rules! plain_fields {
     };
 }
 
-plain_fields! { f32 => Number, bool => Switch, [u8; 3] => Color }
+plain_fields! { f32: Number, bool: Switch, [u8; 3]: Color }
 
 /// The names of the overlays that are on. Two that colour the surface are refused.
 impl Field for Overlays {

@@ -8,9 +8,10 @@ use std::path::Path;
 use super::turn::Turn;
 use crate::engine::Preparation;
 use crate::render::Camera;
-use crate::settings::{ColorSource, Declaration, Lighting, Settings, Value, options};
+use crate::settings::{Choice, ColorSource, Declaration, Lighting, Settings, Value, options};
 use geometry::tessellate::{Displacement, Tessellation};
 use load::files::Limits;
+use load::import::Subdivide;
 use load::{HeightSource, Source};
 
 /// What a window shows, and from where.
@@ -28,6 +29,8 @@ pub struct CopiedCommand<'a> {
     /// A clip's name, and the time in it in s.
     pub animation: Option<(&'a str, f64)>,
     pub reference_shape: Option<&'a Source>,
+    /// How the mesh's own cage is refined, if its limit is the reference surface.
+    pub reference_subdivide: Option<Subdivide>,
     /// The mesh left of the split, if it is another one.
     pub left_mesh: Option<&'a Source>,
     /// The file whose factors take the place of those of LOD.
@@ -174,8 +177,9 @@ impl CopiedCommand<'_> {
         if let Some(left) = self.left_mesh.filter(|_| self.settings.split.is_some()) {
             line.option("--split-with", named(left));
         }
-        if let (Some(reference_shape), None) = (self.reference_shape, self.animation) {
-            line.option("--reference-surface", named(reference_shape));
+        if self.animation.is_none() {
+            self.reference_shape.iter().for_each(|own| line.option("--reference-surface", named(own)));
+            self.reference_subdivide.iter().for_each(|own| line.option("--reference-subdivide", own.name()));
         }
         self.triangle.into_iter().for_each(|triangle| line.option("--select", triangle));
         if let Some((name, time)) = self.animation {

@@ -3,7 +3,6 @@
 use image::RgbaImage;
 use serde::{Deserialize, Serialize};
 
-use super::reference_surface::ReferenceSurface;
 use super::{Shot, ShotError};
 use crate::engine::Measurements;
 use crate::gates::{Deviation, Facts, Gate, GateKind, Judgement, Limit, Spot, Standpoints, judge};
@@ -96,8 +95,7 @@ impl Shot {
         progress: &Progress,
     ) -> Result<Result<Deviation, &'static str>, ShotError> {
         let Self { engine, scene, subject, .. } = self;
-        let reference_surface = subject.reference_surface.as_ref();
-        let Some((_, reference_shape)) = reference_surface.and_then(ReferenceSurface::reference_shape) else {
+        let Some((_, reference_shape)) = &subject.reference_surface else {
             return Ok(Err("the distance isn't known without a reference surface: give one with --reference-surface"));
         };
         if engine.measure(scene)?.culled.total() > 0 {
@@ -108,7 +106,7 @@ impl Shot {
         let mut deviation = Err("nothing was emitted that a distance could be measured from");
         for narrow in [Narrow::default(), Narrow { relative: 1e-5, absolute: 1e-9, ..Narrow::default() }] {
             let options = AccuracyOptions { narrow, ..AccuracyOptions::default() };
-            let accuracy = Some((reference_shape, &inputs.view, options));
+            let accuracy = Some((&**reference_shape, &inputs.view, options));
             let wanted = Measurements { accuracy, ..Measurements::default() };
             let accuracy = engine.measure_watched(scene, &wanted, progress)?.accuracy;
             progress.check()?;

@@ -33,7 +33,6 @@ pub(crate) use picture_comparison::DIFFERENCE_FLOOR;
 pub use picture_comparison::{CompareError, Comparison, compare};
 pub use picture_file::{png_bytes, write_drawn, write_picture};
 pub use reference::{BETWEEN_DRIVERS, Judged, Reference};
-pub use reference_surface::ReferenceSurface;
 pub use split_titles::{HalfFacts, half_title, surface_title};
 pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
@@ -47,7 +46,10 @@ use split_titles::draw_titles;
 
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, SilhouetteView};
 use crate::gates::Judgement;
-use crate::measure::{AccuracyOptions, DeviationField, ScreenError, Silhouette, patch_edges, patch_width};
+use crate::measure::{
+    AccuracyOptions, DeviationField, DeviationTarget, ScreenError, Silhouette, patch_edges, patch_width,
+};
+use crate::reference_shape::ReferenceShape;
 use crate::render::{
     Camera, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines, deviation_scale, lay_over,
     lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
@@ -77,7 +79,8 @@ pub struct Subject {
     /// The light of a file that is still to be uploaded, if the scene doesn't have it already.
     pub environment: Option<Panorama>,
     pub settings: Settings,
-    pub reference_surface: Option<ReferenceSurface>,
+    /// The surface that it is compared with, and its name. Without one, the deviation overlay takes the tessellation's limit surface.
+    pub reference_surface: Option<(String, Arc<ReferenceShape>)>,
     /// The patch that is outlined.
     pub selected: Option<u32>,
     /// Lines over each half besides those of the overlays. The outline of the patch is over them.
@@ -339,16 +342,15 @@ impl Shot {
     /// Measures each half with one walk over its output: what the overlays show, and what the stats say.
     fn measure(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<(), ShotError> {
         let (view, settings) = (self.view(), self.subject.settings);
-        let reference_surface = self.subject.reference_surface.as_ref();
+        let reference_surface = self.subject.reference_surface.as_ref().map(|(_, own)| own);
         let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
-        // Both halves are compared with the same surface.
-        let target = reference_surface.filter(|_| is_shown).zip(self.inputs(SplitSide::Right));
-        let target = target.map(|(reference_surface, inputs)| reference_surface.target(&inputs));
+        // Both halves are compared with the same surface. The CPU doesn't know the limit surface of a shader.
+        let limit = self.inputs(SplitSide::Right).filter(|_| self.subject.surface_shader.is_none());
+        let limit = limit.map(|inputs| DeviationTarget::Limit(Box::new(inputs)));
+        let target = reference_surface.cloned().map(DeviationTarget::ReferenceShape).or(limit).filter(|_| is_shown);
         for half in SplitSide::BOTH {
             let inputs = self.inputs(half);
             let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
-            let reference_shape =
-                reference_surface.and_then(ReferenceSurface::reference_shape).filter(|_| stats.is_some());
             let wanted = Measurements {
                 survey: settings.overlays.cracks || self.subject.selected.is_some() || stats.is_some(),
                 // The CPU doesn't know the surface of a shader.
@@ -357,8 +359,9 @@ impl Shot {
                     .is_some_and(|stats| stats.error)
                     .then_some(inputs),
                 deviation: target.as_ref(),
-                accuracy: reference_shape
-                    .map(|(_, reference_shape)| (reference_shape, &inputs.view, AccuracyOptions::default())),
+                accuracy: reference_surface
+                    .filter(|_| stats.is_some())
+                    .map(|reference_shape| (&**reference_shape, &inputs.view, AccuracyOptions::default())),
                 sizes: (stats.is_some() && half == SplitSide::Right).then_some(view),
             };
             self.results[half as usize] = Some(self.engine.measure_watched(scene, &wanted, progress)?);
@@ -446,10 +449,10 @@ impl Shot {
 
     /// The distance of a half from the reference surface, if it was measured.
     fn accuracy(&self, half: SplitSide) -> Option<AccuracyStats> {
-        let (name, _) = self.subject.reference_surface.as_ref().and_then(ReferenceSurface::reference_shape)?;
+        let (name, reference_shape) = self.subject.reference_surface.as_ref()?;
         let results = self.results(half)?;
         let is_whole = results.survey.as_ref()?.culled.total() == 0;
-        results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(name, accuracy, is_whole))
+        results.accuracy.as_ref().map(|accuracy| AccuracyStats::new(name, reference_shape, accuracy, is_whole))
     }
 
     /// The deviation that the overlay shows on a half, if the overlay is on.

@@ -1,40 +1,11 @@
-//! The surface that a picture is compared with, and the stats of the distance to it.
-
-use std::sync::Arc;
+//! The stats of the distance to the surface that a picture is compared with.
 
 use serde::Serialize;
 
-use crate::measure::{Accuracy, Angles, DeviationField, DeviationTarget, Distances, Rms, WorstPoint};
+use crate::measure::{Accuracy, Angles, DeviationField, Distances, Rms, WorstPoint};
 use crate::reference_shape::ReferenceShape;
 use crate::render::Scale;
 use geometry::near::Interval;
-use geometry::tessellate::Inputs;
-
-/// The surface that a picture is compared with.
-pub enum ReferenceSurface {
-    /// A given or exact surface, with its name.
-    ReferenceShape(String, Arc<ReferenceShape>),
-    /// The limit surface of the tessellation.
-    Limit,
-}
-
-impl ReferenceSurface {
-    /// The surface to compare with what was emitted with these inputs.
-    pub fn target(&self, inputs: &Inputs) -> DeviationTarget {
-        match self {
-            Self::ReferenceShape(_, reference_shape) => DeviationTarget::ReferenceShape(reference_shape.clone()),
-            Self::Limit => DeviationTarget::Limit(Box::new(*inputs)),
-        }
-    }
-
-    /// The given or exact surface and its name; none for the limit surface.
-    pub fn reference_shape(&self) -> Option<(&str, &ReferenceShape)> {
-        match self {
-            Self::ReferenceShape(name, reference_shape) => Some((name, reference_shape)),
-            Self::Limit => None,
-        }
-    }
-}
 
 /// The distance of everything that was emitted from the reference surface.
 #[derive(Debug, Serialize)]
@@ -42,6 +13,8 @@ pub(super) struct AccuracyStats {
     reference_surface: String,
     /// The diagonal of the reference surface's bounding box, in object units.
     diagonal: f64,
+    /// How far the last refinement moved a reference surface that is a refined cage at most, in object units; none for others.
+    reference_step: Option<f64>,
     /// From what was emitted to the nearest points of the reference surface.
     to_reference: DistanceStats,
     /// From the reference surface to the nearest points of what was emitted; none if patches were left out, or too many
@@ -69,7 +42,7 @@ struct DistanceStats {
 
 impl AccuracyStats {
     /// `is_whole` says that no patch was left out.
-    pub(super) fn new(reference_shape: &str, accuracy: &Accuracy, is_whole: bool) -> Self {
+    pub(super) fn new(name: &str, shape: &ReferenceShape, accuracy: &Accuracy, is_whole: bool) -> Self {
         let distances = |distances: Distances, worst: WorstPoint| {
             let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
@@ -77,8 +50,9 @@ impl AccuracyStats {
         };
         let from_reference = accuracy.from_reference.filter(|_| is_whole);
         Self {
-            reference_surface: reference_shape.to_owned(),
+            reference_surface: name.to_owned(),
             diagonal: accuracy.diagonal,
+            reference_step: shape.step,
             to_reference: distances(accuracy.to_reference, accuracy.worst_to_reference),
             from_reference: from_reference.map(|(from, worst)| distances(from, worst)),
             max_px: accuracy.worst_px.map(|worst| worst.value),

@@ -7,7 +7,7 @@ use super::convert::{vec2, vec4};
 use super::materials::{self, Materials, Resolved};
 use super::nodes::Placed;
 use super::skin::Skin;
-use super::vertices::Vertices;
+use super::vertices::{PosedCorner, Vertices};
 use crate::cage_faces::CageFaces;
 use crate::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner};
 use crate::import::{Subdivide, Subdivision};
@@ -135,7 +135,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         };
         let subdivision = reader.subdivision();
         self.without_normals += usize::from(is_without_normals && subdivision.is_none());
-        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import));
+        let moves = reader.binder.is_some();
+        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import, moves));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {
@@ -147,7 +148,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             reader.creases()?;
         }
         reader.faces.is_hole = false;
-        reader.faces.end_cage(reader.details, progress)
+        let rig = reader.binder.as_mut().map(|binder| &mut *binder.node.binder);
+        reader.faces.end_cage(reader.details, rig, progress)
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
@@ -178,7 +180,7 @@ struct MeshReader<'a, 'b, 'f> {
 }
 
 impl MeshReader<'_, '_, '_> {
-    /// How the mesh is refined. One that a clip may move isn't: its joints and blend shapes move the points of the cage.
+    /// How the mesh is refined. One that joints move in part isn't: the rest of it isn't in the same space.
     fn subdivision(&mut self) -> Option<Subdivision> {
         let (import, mesh) = (self.faces.import, self.mesh);
         let mode = mesh.subdivision_display_mode;
@@ -189,7 +191,7 @@ impl MeshReader<'_, '_, '_> {
             Subdivide::File => is_marked,
             Subdivide::CatmullClark | Subdivide::Loop => true,
         };
-        if !is_wanted || self.binder.is_some() {
+        if !is_wanted || self.moves_in_part() {
             if is_wanted || is_marked {
                 self.found.cages += 1;
                 self.faces.is_refined = Some(false);
@@ -204,6 +206,17 @@ impl MeshReader<'_, '_, '_> {
         Some(Subdivision { levels, boundary, ..import.subdivision().unwrap_or_default() })
     }
 
+    /// Whether clips move the mesh, and joints some of its vertices but not all.
+    fn moves_in_part(&mut self) -> bool {
+        let Some(skin) = self.vertices.skin.filter(|_| self.binder.is_some()) else { return false };
+        let mut is_moved = |vertex| {
+            skin.influences(vertex, &mut self.influences);
+            !self.influences.is_empty()
+        };
+        let moved = (0..self.mesh.vertices.len()).filter(|vertex| is_moved(*vertex)).count();
+        moved > 0 && moved < self.mesh.vertices.len()
+    }
+
     /// Tells which edges are creases, and which points are sharp. FBX files have a sharpness of 10 as 1.
     fn creases(&mut self) -> Result<(), ReadError> {
         let sharp = self.mesh.edges.iter().zip(self.mesh.edge_crease.iter()).filter(|(_, crease)| **crease > 0.0);
@@ -213,23 +226,13 @@ impl MeshReader<'_, '_, '_> {
             let crease = points.values.get(*index as usize).copied().unwrap_or_default();
             sharp.extend((crease > 0.0).then_some(([corner; 2], to_f32(10.0 * crease))));
         }
-        for (ends, sharpness) in sharp {
-            let mut positions = [Vec3::ZERO; 2];
-            for (position, corner) in positions.iter_mut().zip(ends) {
-                let vertex = self.vertices.vertex(corner as usize)?;
-                self.vertices.morphs.of(vertex, &mut self.deltas);
-                self.influences.clear();
-                if let Some(skin) = self.vertices.skin {
-                    skin.influences(vertex, &mut self.influences);
-                }
-                let posed = self.vertices.posed(corner as usize, vertex, &self.influences, &self.deltas);
-                *position = posed.corner.position;
-            }
-            if let Some(cage) = &mut self.faces.cage {
-                match ends {
-                    [a, b] if a == b => cage.sharpen(positions[0], sharpness),
-                    _ => cage.crease(positions, sharpness),
-                }
+        for ([a, b], sharpness) in sharp {
+            let places = [self.posed(a as usize)?, self.posed(b as usize)?];
+            let places = places.map(|(vertex, posed, _)| (posed.corner.position, vertex));
+            match &mut self.faces.cage {
+                Some(cage) if a == b => cage.sharpen(places[0], sharpness),
+                Some(cage) => cage.crease(places, sharpness),
+                None => {}
             }
         }
         Ok(())
@@ -274,15 +277,19 @@ impl MeshReader<'_, '_, '_> {
         Ok(resolved)
     }
 
-    /// Reads a corner. Also returns whether its transform mirrors.
-    fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
+    /// Puts a corner into its rest pose. Returns its vertex too, and whether more joints move it than are used.
+    fn posed(&mut self, corner: usize) -> Result<(u32, PosedCorner, bool), ReadError> {
         let vertex = self.vertices.vertex(corner)?;
         self.vertices.morphs.of(vertex, &mut self.deltas);
         self.influences.clear();
-        if let Some(skin) = self.vertices.skin {
-            self.found.many_joints += usize::from(skin.influences(vertex, &mut self.influences));
-        }
-        let mut posed = self.vertices.posed(corner, vertex, &self.influences, &self.deltas);
+        let has_more = self.vertices.skin.is_some_and(|skin| skin.influences(vertex, &mut self.influences));
+        Ok((to_u32(vertex), self.vertices.posed(corner, vertex, &self.influences, &self.deltas), has_more))
+    }
+
+    /// Reads a corner. Also returns whether its transform mirrors.
+    fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
+        let (vertex, mut posed, has_more) = self.posed(corner)?;
+        self.found.many_joints += usize::from(has_more);
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
@@ -296,7 +303,9 @@ impl MeshReader<'_, '_, '_> {
             number = table.number(detail, number, self.budget)?;
             self.details = Some(table);
         }
-        Ok((NumberedCorner { corner: posed.corner, number, vertex: None }, mirrors(&posed.linear)))
+        // Where it isn't refined, a vertex may have several corners.
+        let vertex = self.faces.cage.is_some().then_some([vertex, 0, 0]);
+        Ok((NumberedCorner { corner: posed.corner, number, vertex }, mirrors(&posed.linear)))
     }
 
     fn own_uv(&mut self, corner: usize, material: &Resolved) -> Vec2 {

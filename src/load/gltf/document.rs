@@ -75,6 +75,7 @@ pub(super) fn parse(
     let lights = lights::take(root, &notes);
     let cameras = cameras::take(root, &notes);
     let hiding = if selected.import.show_hidden { Vec::new() } else { extensions::hiding(root) };
+    let levels = extensions::levels(root);
     let rotations = repair::before_check(root, budget)?;
     // The `gltf` crate takes nothing for granted that this doesn't check.
     let faults = schema_check::check(root, schema::DOCUMENT)?;
@@ -90,7 +91,7 @@ pub(super) fn parse(
     if !requires_draco {
         extensions.leave_out_packed(&root);
     }
-    let levels = node_parts::place_levels(&mut root, &extensions.levels);
+    let levels = node_parts::place_levels(&mut root, &levels);
     let mut reach = Reach::new(&root, &faults, hiding);
     let parts = node_parts::take(&mut root, &extensions.instances, &reach, &levels, &selected, budget)?;
     if parts.is_cut {

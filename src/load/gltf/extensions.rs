@@ -22,8 +22,6 @@ pub(crate) struct Extensions {
     pub packed: Vec<Vec<Option<DracoExtension>>>,
     /// By node, the instances of its mesh.
     pub instances: HashMap<usize, InstancingExtension>,
-    /// The nodes that have further levels of detail, with the nodes that are these.
-    pub levels: Vec<(usize, Vec<usize>)>,
 }
 
 /// `EXT_mesh_gpu_instancing` of a node: the accessors of its instances' transforms.
@@ -97,13 +95,11 @@ impl Extensions {
             mesh.get("primitives").and_then(Value::as_array).into_iter().flatten().map(packed).collect()
         };
         let instances = |(i, node): (usize, &Value)| Some((i, read(extension(node, INSTANCING)?.get("attributes")?)?));
-        let levels = |(i, node): (usize, &Value)| Some((i, read(extension(node, LOD)?.get("ids")?)?));
         Self {
             compressed: list(root, "bufferViews").iter().map(compressed).collect(),
             fallback: list(root, "buffers").iter().map(|buffer| fallback(buffer).unwrap_or(false)).collect(),
             packed: list(root, "meshes").iter().map(primitives).collect(),
             instances: list(root, "nodes").iter().enumerate().filter_map(instances).collect(),
-            levels: list(root, "nodes").iter().enumerate().filter_map(levels).collect(),
         }
     }
 
@@ -120,6 +116,12 @@ impl Extensions {
 pub(super) fn hiding(root: &Map<String, Value>) -> Vec<bool> {
     let is_visible = |node| extension(node, VISIBILITY).and_then(|own| own.get("visible"));
     list(root, "nodes").iter().map(|node| is_visible(node) == Some(&Value::Bool(false))).collect()
+}
+
+/// The nodes that have further levels of detail, with the nodes that are these.
+pub(super) fn levels(root: &Map<String, Value>) -> Vec<(usize, Vec<usize>)> {
+    let levels = |(i, node): (usize, &Value)| Some((i, read(extension(node, LOD)?.get("ids")?)?));
+    list(root, "nodes").iter().enumerate().filter_map(levels).collect()
 }
 
 /// The extension that compresses a buffer view, or that is about such views on a buffer, with its name.

@@ -11,13 +11,9 @@ use crate::casts::to_u32;
 ///
 /// Edges and points that are still sharp on the finest level count as infinitely sharp, and where a single sharp edge ends the
 /// limit is that of a smooth point: both as in OpenSubdiv's `PrimvarRefiner::Limit`.
-pub struct Limit<'a, T>(Values<'a, T>);
+pub struct Limit<'a, T>(pub(super) Values<'a, T>);
 
-impl<'a, T: Linear> Limit<'a, T> {
-    pub(super) fn new(values: Values<'a, T>) -> Self {
-        Self(values)
-    }
-
+impl<T: Linear> Limit<'_, T> {
     /// Returns the value at each point.
     pub fn values(&self) -> Vec<T> {
         self.0.limit()

@@ -22,6 +22,7 @@ mod tangents;
 mod tests;
 mod values;
 
+use std::collections::BTreeSet;
 use std::ops::{Add, Mul, Range};
 
 pub use cage::{Cage, CageError, INFINITELY_SHARP};
@@ -136,7 +137,26 @@ impl Refinement {
     /// If there isn't a value for each refined point.
     pub fn limit<'a, T: Linear>(&'a self, refined: &'a [T]) -> Limit<'a, T> {
         assert_eq!(refined.len(), self.points(), "a value for each refined point");
-        Limit::new(Values::new(self.finest(), self.scheme, refined))
+        Limit(Values::new(self.finest(), self.scheme, refined))
+    }
+
+    /// The limit of values that only some points of the cage have, each under a number, such as weights of joints: what isn't zero at
+    /// each refined point, by growing numbers.
+    ///
+    /// # Panics
+    /// If there isn't a list for each point of the cage.
+    pub fn limit_of_some<T: Linear + PartialEq>(&self, values: &[Vec<(u32, T)>]) -> Vec<Vec<(u32, T)>> {
+        let numbers: BTreeSet<u32> = values.iter().flatten().map(|(number, _)| *number).collect();
+        let mut refined = vec![Vec::new(); self.points()];
+        for number in numbers {
+            let own =
+                |list: &Vec<(u32, T)>| list.iter().find(|own| own.0 == number).map_or_else(T::default, |own| own.1);
+            let points = self.refine(&values.iter().map(own).collect::<Vec<T>>());
+            for (list, value) in refined.iter_mut().zip(self.limit(&points).values()) {
+                list.extend((value != T::default()).then_some((number, value)));
+            }
+        }
+        refined
     }
 
     /// The face of the cage that a refined face is a part of.

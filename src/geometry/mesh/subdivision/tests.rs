@@ -418,6 +418,24 @@ fn parts_know_their_face_and_holes_are_left_out() {
 }
 
 #[test]
+fn values_of_some_points_are_refined_as_those_of_all_are() {
+    for shape in varied() {
+        let (refinement, _) = shape.refined(2);
+        // Number 7 is at every point, number 3 at every third one, and number 5 counts for nothing.
+        let of_third = |point: usize| if point.is_multiple_of(3) { 2.0 } else { 0.0 };
+        let list = |point: usize| [(7, 1.0), (5, 0.0), (3, of_third(point))].to_vec();
+        let refined = refinement.limit_of_some(&(0..shape.positions.len()).map(list).collect::<Vec<_>>());
+        let thirds = refinement.refine(&(0..shape.positions.len()).map(of_third).collect::<Vec<f64>>());
+        assert_eq!(refined.len(), refinement.points());
+        for (list, third) in refined.iter().zip(refinement.limit(&thirds).values()) {
+            let value = |number: u32| list.iter().find(|own| own.0 == number).map(|own| own.1);
+            assert_eq!((value(3).unwrap_or(0.0), value(5)), (third, None));
+            assert!((value(7).unwrap() - 1.0).abs() < 1e-12 && list.is_sorted_by_key(|own| own.0));
+        }
+    }
+}
+
+#[test]
 fn values_at_corners_are_refined_within_their_face() {
     let square = grid(1);
     let uvs = [DVec2::ZERO, DVec2::X, DVec2::ONE, DVec2::Y];

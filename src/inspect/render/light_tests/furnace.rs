@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{cosines, roughnesses, white_light};
-use crate::render::reflectance::{LookAt, reflect_ambient};
+use crate::for_tests::reflectance::{LookAt, reflect_ambient};
 
 /// What a material shows in a room that is 1 on all sides.
 fn seen(look: &LookAt, facing: f32) -> Vec3 {

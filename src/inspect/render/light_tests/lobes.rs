@@ -5,11 +5,11 @@ use std::f32::consts::PI;
 use glam::{DVec3, Vec2, Vec3, vec2, vec3};
 
 use super::{cosines, dfg, eye_at, facets, roughnesses, white_light};
-use crate::render::prefilter::hammersley;
-use crate::render::reflectance::{
+use crate::for_tests::reflectance::{
     LookAt, albedo_at_once, direct_lobe, direct_reflection, fifth_power, ggx_distribution, mean_roughness,
     reflect_ambient, stretched_alphas,
 };
+use crate::render::prefilter::hammersley;
 
 /// An integral over all directions above the surface, from microfacets: what the lobe gives, and Schlick's part of it. With an
 /// estimate of its error.
@@ -183,7 +183,7 @@ fn long_highlights_reflect_about_what_the_table_says_and_no_more_than_they_get()
                 let summed = reflected_of_all(&look, to_eye).x;
                 let table = dfg(cosine, mean_roughness(&look));
                 let table = table.x + table.y;
-                assert!(summed < 1.005 && (summed - table).abs() < 0.09, "{look:?} {to_eye}: {summed} {table}");
+                assert!(summed < 1.005 && (summed - table).abs() < 0.12, "{look:?} {to_eye}: {summed} {table}");
             }
         }
     }

@@ -7,9 +7,9 @@ mod split_sum;
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
-use super::dfg::environment_dfg;
 use super::prefilter::{directions_across, hammersley};
-use super::reflectance::AmbientLight;
+use crate::for_tests::environment::environment_dfg;
+use crate::for_tests::reflectance::AmbientLight;
 
 /// The cosines 0.05 to 1 at which eyes look, and the roughnesses 0 to 1.
 fn cosines() -> impl Iterator<Item = f32> {

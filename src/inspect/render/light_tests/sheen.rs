@@ -7,10 +7,9 @@ use glam::{Vec3, vec3};
 use super::lobes::hemisphere;
 use super::split_sum::{Studio, normals};
 use super::{cosines, eye_at, roughnesses, white_light};
+use crate::for_tests::environment::{environment_sheen, irradiance_of};
+use crate::for_tests::reflectance::{LookAt, direct_reflection, direct_sheen, reflect_ambient, sheen_direction};
 use crate::render::cube_map::CubeMap;
-use crate::render::dfg::environment_sheen;
-use crate::render::irradiance::irradiance_of;
-use crate::render::reflectance::{LookAt, direct_reflection, direct_sheen, reflect_ambient, sheen_direction};
 use crate::render::studio::studio_light;
 
 /// A material with that sheen, seen by an eye at that cosine from the normal.

@@ -3,14 +3,15 @@
 use glam::{Vec2, Vec3, Vec4, vec2, vec3};
 
 use super::{dfg, facets};
-use crate::render::blur_levels::{level_of_roughness, prefiltered};
-use crate::render::cube_map::CubeMap;
-use crate::render::irradiance::{Irradiance, irradiance, irradiance_of};
-use crate::render::prefilter::sample_level;
-use crate::render::reflectance::{
+use crate::for_tests::environment::{irradiance_of, level_of_roughness};
+use crate::for_tests::prefiltered::prefiltered;
+use crate::for_tests::reflectance::{
     AmbientLight, LookAt, direct_lobe, dominant_direction, ggx_distribution, mean_roughness, reflect_ambient,
     stretched_alphas, unoccluded_reflection,
 };
+use crate::render::cube_map::CubeMap;
+use crate::render::irradiance::{Irradiance, irradiance};
+use crate::render::prefilter::sample_level;
 use crate::render::studio::studio_light;
 
 /// The studio as the CPU's twins make it.

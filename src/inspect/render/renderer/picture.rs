@@ -110,7 +110,7 @@ impl Renderer {
         match step {
             Step::Layer(_) if picture.layer_areas.iter().all(|place| is_empty(place.area)) => return Ok(()),
             Step::Keep => return target.keep(recorder, &self.gpu, 0),
-            Step::Difference => return self.difference.draw(recorder, &self.gpu, target),
+            Step::Difference => target.keep(recorder, &self.gpu, 1)?,
             Step::Over | Step::Surface(..) | Step::Layer(_) | Step::Normals(..) => {}
         }
         let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
@@ -136,7 +136,7 @@ impl Renderer {
         }
         let beside = self.beside(scene, picture, index)?;
         self.record_step(recorder, scene, picture, index, &surfaces, &beside);
-        Ok(())
+        if step == Step::Difference { self.difference.draw(recorder, &self.gpu, target) } else { Ok(()) }
     }
 
     /// Records the draws of a step that draws no layers.
@@ -163,7 +163,11 @@ impl Renderer {
             Some((own, self.scene_group(own, frame), &places[half as usize]))
         });
         let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
-        let color = target.color(linear_color(picture.settings.background_color()), is_first, is_last);
+        // The difference comes under lines over nothing.
+        let is_alone = step == Step::Difference;
+        let own = linear_color(picture.settings.background_color());
+        let background = if is_alone { wgpu::Color::TRANSPARENT } else { own };
+        let color = target.color(background, is_first || is_alone, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, group, &[]);
             if let Some((pipeline, light)) = picture.background.as_ref().filter(|_| is_first) {

@@ -4,6 +4,8 @@
 use std::collections::BTreeMap;
 
 use super::modules;
+use crate::for_tests::reflectance::{COAT_F0, LEAST_ALPHA};
+use crate::for_tests::tone::{COMPRESSION_START, DESATURATION};
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::camera::FIELD_OF_VIEW;
 use crate::render::coverage::TILE;
@@ -17,10 +19,8 @@ use crate::render::layout::{
 use crate::render::matcap::MATCAP_REACH;
 use crate::render::mipmap_pass::ALPHAS;
 use crate::render::needs::BEHIND;
-use crate::render::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::render::scale::Scale;
 use crate::render::sheen::LEAST_SHEEN_ALPHA;
-use crate::render::tone::{COMPRESSION_START, DESATURATION};
 use crate::settings::{Colors, Overlays, ToneCurve};
 use crate::shot::DIFFERENCE_FLOOR;
 use geometry::mesh::{EdgeKind, MAX_MAPS, MOST_LIGHTS, PartStyle, RELIEF_STEPS, Slot};

@@ -3,13 +3,13 @@
 use std::mem::{offset_of, size_of};
 
 use super::modules;
+use crate::for_tests::reflectance::LookAt;
 use crate::render::coverage::Sieve;
 use crate::render::environment::Surroundings;
 use crate::render::layout::{Frame, MapPlace, Material, Pick};
 use crate::render::mipmap_pass::MipParams;
 use crate::render::prefilter_pass::PrefilterParams;
 use crate::render::punctual::PunctualLight;
-use crate::render::reflectance::LookAt;
 use geometry::tessellate::CoverageView;
 use gpu::DomainParams;
 use gpu::layout::{

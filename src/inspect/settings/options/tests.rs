@@ -3,7 +3,8 @@ use std::collections::BTreeSet;
 use proptest::prelude::*;
 
 use super::*;
-use crate::settings::{Colors, random};
+use crate::for_tests::random;
+use crate::settings::Colors;
 use load::Import;
 
 /// Every field with its value. Patterns have no `..`, so a new field must be named here and then reached by a declaration.

@@ -60,6 +60,84 @@ fn shapes_in_between_bend_the_path_of_a_vertex() {
     }
 }
 
+/// The mesh of a document.
+fn mesh_of(entries: &mut [Entry]) -> &mut Entry {
+    let objects = entries.iter_mut().find(|entry| entry.name == "Objects").expect("objects");
+    objects.children.iter_mut().find(|entry| entry.name == "Geometry").expect("a mesh")
+}
+
+/// What marks a mesh as a subdivision surface that is refined twice.
+fn marks() -> [Entry; 2] {
+    [one("Smoothness", 2), one("PreviewDivisionLevels", 2)]
+}
+
+#[test]
+fn a_skin_bends_a_cage_that_is_refined() {
+    let mut entries = skinned_strip();
+    mesh_of(&mut entries).children.extend(marks());
+    let loaded = loaded(&entries);
+    assert_eq!((loaded.triangles.len(), loaded.is_refined), (4 * 16 * 2, true), "{:?}", loaded.warnings);
+    for (rest, posed) in at(&loaded, 0.0) {
+        assert_near(posed, rest, "at rest");
+    }
+    // Turned by 90 degrees about (2, 0, 0), as much as `tip` weighs there.
+    let mut weights: Vec<(f32, f32)> = Vec::new();
+    for (rest, posed) in at(&loaded, 1.0) {
+        let turned = Vec3::new(2.0 - rest.y, rest.x - 2.0, 0.0);
+        let way = turned - rest;
+        if way.length() > 0.5 {
+            let weight = (posed - rest).dot(way) / way.length_squared();
+            assert_near(posed, rest + weight * way, &format!("{rest} lies on the way"));
+            weights.push((rest.x, weight));
+        }
+    }
+    weights.sort_by(|a, b| a.0.total_cmp(&b.0));
+    assert!(weights.array_windows().all(|[a, b]| a.1 < b.1 + 1e-5), "{weights:?}");
+    // The weights of the cage, 0, 0, 1/2, 1 and 1, are smoothed as its points are, by (1, 4, 1) / 6 between its ends.
+    for (x, expected) in [(0.0, 0.0), (1.0, 1.0 / 12.0), (2.0, 0.5), (3.0, 11.0 / 12.0), (4.0, 1.0)] {
+        let found: Vec<f32> = weights.iter().filter(|own| (own.0 - x).abs() < 1e-5).map(|own| own.1).collect();
+        assert!(!found.is_empty() && found.iter().all(|own| (own - expected).abs() < 1e-5), "{x}: {found:?}");
+    }
+}
+
+#[test]
+fn shapes_move_a_cage_that_is_refined_and_what_only_touches_at_rest_comes_apart() {
+    // Between the corners of one quadrilateral that stay, all is bilinear.
+    let mut entries = morphed_square();
+    mesh_of(&mut entries).children.extend(marks());
+    let mesh = loaded(&entries);
+    assert_eq!((mesh.triangles.len(), mesh.is_refined), (16 * 2, true), "{:?}", mesh.warnings);
+    for (time, height) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0), (1.5, 2.5), (2.0, 4.0)] {
+        for (rest, posed) in at(&mesh, time) {
+            assert_near(posed, rest + height * rest.x * rest.y * Vec3::Z, &format!("{rest} at {time} s"));
+        }
+    }
+    // A second square beside it has vertices of its own.
+    let both = [[0, 0], [1, 0], [1, 1], [0, 1], [1, 0], [2, 0], [2, 1], [1, 1]];
+    let both: Vec<f64> = both.into_iter().flat_map(|[x, y]| [x, y, 0]).map(f64::from).collect();
+    *mesh_of(&mut entries) = geometry(10, &both, &[&[0, 1, 2, 3], &[4, 5, 6, 7]], marks().into());
+    let mesh = loaded(&entries);
+    assert_eq!(mesh.triangles.len(), 2 * 16 * 2);
+    let risen: Vec<(Vec3, f32)> = at(&mesh, 2.0).into_iter().map(|(rest, posed)| (rest, posed.z)).collect();
+    assert!(risen.iter().all(|(rest, z)| *z < 1e-5 || rest.x < 1.0 + 1e-5), "{risen:?}");
+    let at_corner =
+        |is_risen: bool| risen.iter().any(|(rest, z)| *rest == Vec3::new(1.0, 1.0, 0.0) && (*z > 3.0) == is_risen);
+    assert!(at_corner(true) && at_corner(false), "{risen:?}");
+}
+
+#[test]
+fn a_cage_that_joints_move_in_part_stays_and_this_is_said() {
+    let mut entries = skinned_strip();
+    let vertices: Vec<f64> = (0..=5).flat_map(|x| [[x, 0, 0], [x, 1, 0]]).flatten().map(f64::from).collect();
+    let polygons: Vec<Vec<i32>> = (0..5).map(|i| vec![2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1]).collect();
+    let polygons: Vec<&[i32]> = polygons.iter().map(|polygon| &polygon[..]).collect();
+    *mesh_of(&mut entries) = geometry(10, &vertices, &polygons, marks().into());
+    let loaded = loaded(&entries);
+    assert_eq!((loaded.triangles.len(), loaded.is_refined), (5 * 2, false));
+    let said = loaded.warnings.iter().any(|warning| warning.contains("shown as their control cage: 1."));
+    assert!(said, "{:?}", loaded.warnings);
+}
+
 #[test]
 fn chosen_weights_of_shapes_are_those_at_rest() {
     let progress = Progress::new();

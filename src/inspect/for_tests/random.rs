@@ -1,9 +1,9 @@
-//! Settings at random, for tests.
+//! Settings at random.
 
 use proptest::prelude::*;
 use proptest::sample::{select, subsequence};
 
-use super::{Declaration, Description, Kind, Range, Settings, Value, options};
+use crate::settings::{Declaration, Description, Kind, Range, Settings, Value, options};
 
 /// Settings with a random value for every option.
 pub fn settings() -> impl Strategy<Value = Settings> {

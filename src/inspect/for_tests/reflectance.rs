@@ -1,12 +1,11 @@
-//! How surfaces reflect light: twin of `shaders/reflectance.wgsl`, which explains it. Draws compute this at pixels, so only
-//! tests use it here.
+//! How surfaces reflect light: twin of `shaders/reflectance.wgsl`, which explains it.
 
 use std::f32::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, vec2};
 
-use super::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_visibility};
+use crate::render::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_visibility};
 
 /// How much a clear coat reflects head-on.
 pub(crate) const COAT_F0: f32 = 0.04;
