@@ -104,7 +104,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::Corner;
+    use crate::mesh::{Corner, HeightAmount, HeightMap};
 
     const ALL: [UpAxis; 6] = [UpAxis::X, UpAxis::Y, UpAxis::Z, UpAxis::NegX, UpAxis::NegY, UpAxis::NegZ];
 
@@ -137,6 +137,8 @@ mod tests {
     fn what_is_in_a_body_is_scaled_with_it() {
         let mut material = crate::mesh::Material::plain("body", [1.0; 4]);
         material.look.thickness = 4.0;
+        let image = HeightMap::new([1, 1], vec![0.5]);
+        material.height = Some(image.with_amount(HeightAmount::from_factor(4.0, -2.0)));
         let mut mesh = Mesh { materials: vec![material], ..Mesh::default() };
         for distance in [2.0, f32::INFINITY] {
             mesh.materials[0].look.attenuation_distance = distance;
@@ -144,6 +146,8 @@ mod tests {
             assert_eq!(mesh.materials[0].look.attenuation_distance, 0.5 * distance);
         }
         assert_eq!(mesh.materials[0].look.thickness, 1.0);
+        let amount = mesh.materials[0].height.as_ref().and_then(|map| map.amount);
+        assert_eq!(amount, HeightAmount::from_factor(1.0, -0.5));
     }
 
     proptest! {
