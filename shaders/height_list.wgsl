@@ -4,7 +4,6 @@
 const HEIGHTS_ACROSS: u32 = 4096u;
 
 @group(0) @binding(20) var heights: texture_2d<f32>;
-@group(0) @binding(21) var<uniform> maps: array<HeightMap, MAX_MAPS>;
 
 // Returns where the px of a mip level are: the index of its first height in the map's list, and its width.
 fn level_place(map: HeightMap, level: u32) -> vec2<u32> {

@@ -106,7 +106,8 @@ fn offset_at(at: Lookup) -> f32 {
     let uv = linear_uv(patch_uvs(at.patch_index), at.u, at.v);
     // LOD by error bounds the distance from what level 0 has.
     let level = select(lookup_level(own, at), 0.0, params.lod == LOD_ERROR);
-    return params.height_scale * (height_at(own, level, uv) - params.midlevel);
+    let midlevel = select(params.midlevel, own.midlevel, own.has_amount != 0u);
+    return map_scale(own) * (height_at(own, level, uv) - midlevel);
 }
 
 // The gradient of the height in object space, from the gradients of texture coordinates at the patch's corners.
@@ -117,7 +118,7 @@ fn uphill_at(at: Lookup) -> vec3<f32> {
     }
     let own = maps[map - 1u];
     let uv = linear_uv(patch_uvs(at.patch_index), at.u, at.v);
-    let rises = height_slopes(own, lookup_level(own, at), uv) * params.height_scale;
+    let rises = height_slopes(own, lookup_level(own, at), uv) * map_scale(own);
     let at_corners = patches[at.patch_index].corners;
     let x = f32(at.u) * UNIT;
     let y = f32(at.v) * UNIT;
@@ -153,7 +154,7 @@ fn rise_at(at: Lookup, offset: f32) -> Rise {
     if map > 0u {
         let own = maps[map - 1u];
         let uv = linear_uv(uvs, at.u, at.v);
-        let rises = height_slopes(own, lookup_level(own, at), uv) * params.height_scale;
+        let rises = height_slopes(own, lookup_level(own, at), uv) * map_scale(own);
         rise.slopes = vec2<f32>(dot(rises, uvs[0] - uvs[2]), dot(rises, uvs[1] - uvs[2]));
     }
     return rise;

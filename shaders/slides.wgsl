@@ -22,7 +22,9 @@ fn load_seen(patch_index: u32) -> SeenPatch {
             corner_direction(patch_index, 1u),
             corner_direction(patch_index, 2u),
         );
-        seen.relief = seen_relief(view, seen.scale, directions, params.height_scale, reliefs[patch_index]);
+        // Where no image displaces a patch, its relief says so.
+        let height_scale = map_scale(maps[max(map_of(patch_index), 1u) - 1u]);
+        seen.relief = seen_relief(view, seen.scale, directions, height_scale, reliefs[patch_index]);
     }
     return seen;
 }

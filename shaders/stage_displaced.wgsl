@@ -44,7 +44,7 @@ struct StageRelief {
 
 // Returns the height image as the functions that read it take it.
 fn height_map(constants: HeightConstants) -> HeightMap {
-    return HeightMap(constants.size, constants.levels, 0u, constants.repeats);
+    return HeightMap(constants.size, constants.levels, 0u, constants.repeats, 1u, constants.scale, constants.midlevel);
 }
 
 // Returns the mip level on an edge to which LOD gives `factor`, and whose dominant side has these texture coordinates at its ends.

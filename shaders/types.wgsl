@@ -25,7 +25,7 @@ struct Params {
     alpha: f32,
     normals: u32,
     displacement: u32,
-    // In object units: how far white is above black.
+    // In object units: how far white is above black in images that don't say it.
     height_scale: f32,
     midlevel: f32,
     // That of parts which have none of their own.
@@ -128,6 +128,10 @@ struct HeightMap {
     start: u32,
     // 1 if it repeats, 0 if the px at its border go on for ever.
     repeats: u32,
+    // 1 if it has a scale and a midlevel of its own, 0 if those of Params hold.
+    has_amount: u32,
+    scale: f32,
+    midlevel: f32,
 }
 
 // A vertex as it is drawn: position, a normal packed in 32 bits, patch and domain coordinates packed in 64 (the key), and

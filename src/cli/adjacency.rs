@@ -2,10 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
-
 use super::{
-    CliError, WeldOption, file_of, file_of_heights, keep_apart, load_apart, note, options, read_bytes, refuse,
+    CliError, WeldOption, file_of, files_of_heights, keep_apart, load_apart, note, options, read_bytes, refuse,
     write_bytes,
 };
 use geometry::mesh::adjacency::{Layout, Part};
@@ -41,8 +39,8 @@ pub struct Args {
     /// the gradients of both texture coordinates, and the length of the point's shortest edge in px of the height image
     #[arg(long, value_name = "OUT.bin", requires = "height")]
     pub corners: Option<PathBuf>,
-    /// The height image of --corners: a PNG, JPEG or WebP image over all materials, or `material`, the materials' base colour image
-    #[arg(long, value_name = "IMAGE|material", requires = "corners", value_parser = OsStringValueParser::new().map(HeightSource::from))]
+    /// The height image of --corners: a PNG, JPEG, WebP, TIFF or EXR image over all materials, or `material`, the materials' base colour image
+    #[arg(long, value_name = "IMAGE|material", requires = "corners", value_parser = options::heights())]
     pub height: Option<HeightSource>,
 }
 
@@ -55,8 +53,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         "give -o to write a file, --against to compare one with the mesh, or --corners for what displacement needs",
     )?;
     let written = [args.output.as_deref(), args.corners.as_deref()];
-    let read_files = [file_of(&args.file), args.against.as_deref(), file_of_heights(args.height.as_ref())];
-    keep_apart(read_files, written)?;
+    let read_files = [file_of(&args.file), args.against.as_deref()].into_iter();
+    keep_apart(read_files.chain(files_of_heights(args.height.as_slice())), written)?;
     let given = args.against.as_deref().map(read_bytes).transpose()?;
     let preparation = Preparation { heights: args.height.clone(), ..args.weld.preparation() };
     let loaded = load_apart(&args.file, &preparation, &written)?;

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::posed::Posed;
 use super::{
-    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, file_of_heights, keep_apart, options, refuse,
+    AdapterOption, CliError, FactorsOption, SurfaceOptions, file_of, files_of_heights, keep_apart, options, refuse,
     to_json, warn, write_text,
 };
 use geometry::names::shown_path;
@@ -96,9 +96,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let is_csv = matches!(ending(&args.theirs).as_str(), "csv" | "tsv");
     let has_no_columns = args.position_column.is_some() && !is_csv;
     refuse(has_no_columns, "--position-column names a column of a .csv file, which THEIRS isn't")?;
-    let heights = file_of_heights(args.surface.height.as_ref());
-    let read = [Some(&*args.theirs), file_of(&args.mesh), heights, args.given.given.as_deref()];
-    keep_apart(read, [args.output.as_deref()])?;
+    let read = [Some(&*args.theirs), file_of(&args.mesh), args.given.given.as_deref()];
+    keep_apart(read.into_iter().chain(files_of_heights(&args.surface.height)), [args.output.as_deref()])?;
     let own = Posed::load(&args.surface, &args.mesh, &[args.output.as_deref()])?;
     let Loaded { mesh, topology, .. } = &own.posed;
     if topology.patches.is_empty() {

@@ -7,7 +7,7 @@ use super::posed::Posed;
 use super::tessellate::Device;
 use super::view_files::{View, ViewFiles};
 use super::{
-    AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, file_of_heights, keep_apart, write_text,
+    AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, files_of_heights, keep_apart, write_text,
 };
 use geometry::tessellate::{HullFactors, LodView, hull_factors};
 use gpu::Given;
@@ -46,9 +46,9 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let several = "--cameras writes several files: name a folder with -o, or put {} where the views' names go";
     let views = files.views(&args.cameras, &args.surface, several)?;
     let written = files.checked(&views);
-    let heights = file_of_heights(args.surface.height.as_ref());
     let shader = args.user_lod.lod_shader.as_deref();
-    keep_apart([file_of(&args.file), heights, shader, args.cameras.file()], written.iter().copied())?;
+    let read = [file_of(&args.file), shader, args.cameras.file()].into_iter();
+    keep_apart(read.chain(files_of_heights(&args.surface.height)), written.iter().copied())?;
     let user_lod = args.user_lod.read(&args.surface.tessellation())?;
     let mesh = Posed::load(&args.surface, &args.file, &written)?;
     let topology = &mesh.posed.topology;

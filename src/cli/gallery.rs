@@ -2,8 +2,6 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
-
 use super::{AdapterOption, CliError, ProgressPrinter, WeldOption, make_folder, options, refuse, warn, write_text};
 use inspect::engine::{Engine, Preparation};
 use inspect::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
@@ -23,7 +21,7 @@ pub struct Args {
     #[command(flatten)]
     pub weld: WeldOption,
     /// Height map of the displacement exhibit: an image, or `material`; by default waves made in code
-    #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
+    #[arg(long, value_name = "IMAGE|material", value_parser = options::heights())]
     pub height: Option<HeightSource>,
     /// How far white lies above black in that exhibit, in bounding radii, -1 to 1
     #[arg(long, value_name = "S", default_value_t = 0.15, value_parser = options::number_of(&HEIGHT_SCALE), allow_hyphen_values = true)]

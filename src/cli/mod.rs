@@ -39,7 +39,7 @@ use clap::{Parser, Subcommand};
 use thiserror::Error;
 
 pub(crate) use adapters::AdapterOption;
-use output_guard::{file_of, file_of_heights, keep_apart};
+use output_guard::{file_of, files_of_heights, keep_apart};
 
 pub(crate) use options::{LimitOption, OpeningOptions, SurfaceOptions, WeldOption};
 pub(crate) use own_factors_and_surface::{FactorsOption, LodShaderOption, SurfaceShaderOption};
@@ -283,6 +283,9 @@ fn make_folder(folder: &Path) -> Result<(), CliError> {
 fn load(source: &Source, preparation: &Preparation) -> Result<Loaded, CliError> {
     let loaded = inspect::engine::load(source, preparation, &Progress::default())?;
     warn(&loaded.warnings);
+    if preparation.heights.is_none() && loaded.mesh.heights.is_some() {
+        note("the file has height images; --displacement on displaces by them");
+    }
     Ok(loaded)
 }
 

@@ -7,7 +7,6 @@ mod values;
 mod view;
 
 use clap::Args;
-use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::Vec2;
 
 use super::{CliError, note, refuse};
@@ -34,7 +33,7 @@ pub(crate) use declared::{
 };
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
-    CameraOption, ending_in, model, picture, picture_or_page, size, source, whole, whole_from, within,
+    CameraOption, ending_in, heights, model, picture, picture_or_page, size, source, whole, whole_from, within,
 };
 pub(crate) use view::{LodCameraOption, MeshAt, ViewOptions};
 
@@ -49,10 +48,11 @@ pub struct SurfaceOptions {
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = whole_from(1_u64))]
     pub max_triangles: Option<u64>,
-    /// Height map that displaces the surface: a PNG, JPEG or WebP image over all materials, its brightness as stored from 0 (black)
-    /// to 1 (white); or `material`, the brightness of each material's base colour image
-    #[arg(long, value_name = "IMAGE|material", value_parser = OsStringValueParser::new().map(HeightSource::from))]
-    pub height: Option<HeightSource>,
+    /// Height map that displaces the surface: a PNG, JPEG, WebP, TIFF or EXR image over all materials, its stored brightness from
+    /// 0 (black) to 1 (white); `material`, the brightness of each material's base colour image; or `file`, the images that the file
+    /// gives its materials, of which MATERIAL=IMAGE,scale=S,midlevel=H replaces one (S in object units)
+    #[arg(long, value_name = "IMAGE|material|file|MATERIAL=IMAGE", value_parser = heights())]
+    pub height: Vec<HeightSource>,
     /// Memory for output on the device, in MiB, 1 to 65536; output that doesn't fit is made in chunks
     #[arg(long, value_name = "MIB", default_value_t = ARENA_BYTES >> 20, value_parser = whole(1..=65_536_u64))]
     pub arena: u64,
@@ -109,7 +109,12 @@ impl SurfaceOptions {
             "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
         )?;
         let usual = Tessellation::default();
-        let takes_heights = self.height.is_some() || own.displacement.is_on();
+        let is_of_material = |own: &HeightSource| matches!(own, HeightSource::Each(_));
+        refuse(
+            self.height.len() > 1 && !self.height.iter().all(is_of_material),
+            "--height can be given several times only as MATERIAL=IMAGE",
+        )?;
+        let takes_heights = !self.height.is_empty() || own.displacement.is_on();
         let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);
         refuse(is_lost, "--height-scale and --midlevel need --height, or --displacement")?;
         let has_strength = own.surface.is_phong() || other.is_some_and(Surface::is_phong);
@@ -119,17 +124,17 @@ impl SurfaceOptions {
         refuse(is_lost, "--max-triangles needs --lod error, whose tolerance it raises")
     }
 
-    /// What is done to the mesh after it was read. Displacement without an image uses the materials' images.
+    /// What is done to the mesh after it was read. Displacement without an image uses those of the file.
     pub fn preparation(&self) -> Preparation {
-        let wanted = (self.tessellation().displacement.is_on()).then_some(HeightSource::Materials);
-        Preparation { heights: self.height.clone().or(wanted), ..self.weld.preparation() }
+        let wanted = (self.tessellation().displacement.is_on()).then_some(HeightSource::Model);
+        Preparation { heights: HeightSource::joined(&self.height).or(wanted), ..self.weld.preparation() }
     }
 
     /// How the mesh is tessellated.
     pub fn tessellation(&self) -> Tessellation {
         let GivenTessellation { tessellation, displacement } = self.tessellation.0;
         Tessellation {
-            displacement: displacement.unwrap_or(Displacement::usual(self.height.is_some())),
+            displacement: displacement.unwrap_or(Displacement::usual(!self.height.is_empty())),
             // A pose may turn a part inside out, and its back is then seen.
             cull_back_faces: tessellation.cull_back_faces && self.animation.is_none(),
             ..tessellation

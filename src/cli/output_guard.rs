@@ -39,12 +39,9 @@ pub(super) fn file_of(source: &Source) -> Option<&Path> {
     }
 }
 
-/// The file of a height map that has one.
-pub(super) fn file_of_heights(heights: Option<&HeightSource>) -> Option<&Path> {
-    match heights? {
-        HeightSource::File(path) => Some(path),
-        HeightSource::Materials => None,
-    }
+/// The files of height maps.
+pub(super) fn files_of_heights(heights: &[HeightSource]) -> impl Iterator<Item = Option<&Path>> {
+    heights.iter().flat_map(HeightSource::files).map(Some)
 }
 
 /// Returns the canonical path of a file, even if it doesn't exist yet. Returns none for `-` and for devices.

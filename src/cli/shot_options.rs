@@ -7,7 +7,7 @@ use glam::Vec2;
 
 use super::options::{LodCameraOption, PictureOptions, ReferenceOption, whole_from};
 use super::{
-    CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of, file_of_heights,
+    CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of, files_of_heights,
     keep_apart, load, load_apart, note, options, refuse, warn,
 };
 use geometry::mesh::Moment;
@@ -87,11 +87,11 @@ impl ShotOptions {
         refuse(is_hidden, "--split-with needs --split, which shows it")?;
         let reference_shape = self.reference.reference_shape.as_ref().and_then(file_of);
         let left = self.split_with.as_ref().and_then(file_of);
-        let heights = file_of_heights(self.surface.height.as_ref());
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
         let shaders = [self.user_lod.lod_shader.as_deref(), self.user_surface.surface_shader.as_deref()];
-        let own = [file_of(file), reference_shape, left, heights, factors, matcap, self.environment.as_deref()];
-        keep_apart(own.into_iter().chain(shaders).chain(read.iter().copied()), written.iter().copied())
+        let own = [file_of(file), reference_shape, left, factors, matcap, self.environment.as_deref()];
+        let own = own.into_iter().chain(files_of_heights(&self.surface.height));
+        keep_apart(own.chain(shaders).chain(read.iter().copied()), written.iter().copied())
     }
 
     /// Width and height in px of the middle of the picture that shows all of the mesh.

@@ -11,7 +11,7 @@ use super::posed::Posed;
 use super::view_files::{View, ViewFiles};
 use super::{
     AdapterOption, CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of,
-    file_of_heights, keep_apart, options, refuse, warn,
+    files_of_heights, keep_apart, options, refuse, warn,
 };
 use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
@@ -71,11 +71,10 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
     let several = "--cameras writes several meshes: put {} into the name of -o where the views' names go";
     let views = files.views(&args.cameras, &args.surface, several)?;
     let written = files.checked(&views);
-    let heights = file_of_heights(args.surface.height.as_ref());
     let factors = args.given.given.as_deref();
     let shaders = [args.user_lod.lod_shader.as_deref(), args.user_surface.surface_shader.as_deref()];
-    let read = [file_of(&args.file), heights, factors, args.cameras.file()].into_iter().chain(shaders);
-    keep_apart(read, written.iter().copied())?;
+    let read = [file_of(&args.file), factors, args.cameras.file()].into_iter().chain(shaders);
+    keep_apart(read.chain(files_of_heights(&args.surface.height)), written.iter().copied())?;
     let user_lod = args.user_lod.read(&args.surface.tessellation())?;
     let surface_shader = args.user_surface.read()?;
     let ready = Ready { args, mesh: Posed::load(&args.surface, &args.file, &written)? };

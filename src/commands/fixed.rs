@@ -11,7 +11,7 @@ use inspect::render::Standpoint;
 use inspect::settings::Choice;
 
 pub(crate) const HEIGHT_IMAGE: &str =
-    "Displaces the mesh by the brightness of a PNG, JPEG or WebP image, which covers all materials.";
+    "Displaces the mesh by the brightness of a PNG, JPEG, WebP, TIFF or EXR image, which covers all materials.";
 
 /// All of them, in the order of the menus.
 pub(super) fn commands() -> Vec<Command> {

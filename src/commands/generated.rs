@@ -144,7 +144,8 @@ fn mesh() -> Vec<Command> {
     all.extend(declared! {
         "Crease band: On" needs Document => Preparing::CreaseBand(CREASE_BAND), on;
         "Crease band: Off" needs Document => Preparing::CreaseBand(0.0), "Leaves creases as the mesh has them.";
-        "Height map: None" needs Document => Preparing::NoHeights, "Removes the height map.";
+        "Height map: None" needs Document => Preparing::NoHeights,
+            "Removes the height map; those of the file stay.";
         "Height map: Material" needs Document => Preparing::HeightsFromMaterials,
             "Displaces the mesh by the brightness of each material's base colour image.";
     });

@@ -3,6 +3,7 @@
 pub mod casts;
 pub mod choice;
 pub mod cores;
+pub mod defaults;
 pub mod groups;
 pub mod mesh;
 pub mod names;

@@ -80,6 +80,11 @@ impl Progress {
         Self { shared: self.shared.clone(), part: [start, end].map(|at| self.part[0] + length * at) }
     }
 
+    /// Returns a handle on the same job that reports nothing, for work that doesn't count.
+    pub fn quiet(&self) -> Self {
+        Self { shared: self.shared.clone(), part: [self.fraction(); 2] }
+    }
+
     /// Reports which part of a load is running from now on.
     pub fn enter(&self, stage: Stage) {
         self.shared.stage.store(stage as u8, Ordering::Relaxed);
@@ -116,6 +121,10 @@ mod tests {
 
     #[test]
     fn fractions_stay_in_range() {
+        let progress = Progress::new().part(0.5, 1.0);
+        progress.set(0.5);
+        progress.quiet().set(1.0);
+        assert_eq!(progress.fraction(), 0.75);
         let progress = Progress::new();
         for (given, kept) in [(2.0, 1.0), (-1.0, 0.0), (f32::NAN, 0.0), (0.5, 0.5)] {
             progress.set(given);

@@ -51,7 +51,7 @@ pub struct Params {
     pub alpha: f32,
     pub normals: u32,
     pub displacement: u32,
-    /// In object units: how far white is above black.
+    /// In object units: how far white is above black in images that don't say it.
     pub height_scale: f32,
     pub midlevel: f32,
     /// The surface of parts which have none of their own.
@@ -129,7 +129,10 @@ pub struct HeightMap {
     pub start: u32,
     /// 1 if it repeats, 0 if the px at its border go on for ever.
     pub repeats: u32,
-    pub _pad: [u32; 3],
+    /// 1 if it has a scale and a midlevel of its own, 0 if those of [`Params`] hold.
+    pub has_amount: u32,
+    pub scale: f32,
+    pub midlevel: f32,
 }
 
 /// Patches that go through the arena together. `first_vertex` and `first_triangle` count from the slab's start.

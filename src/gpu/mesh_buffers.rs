@@ -2,9 +2,9 @@
 
 use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
-use super::relief_buffers::{ReliefBuffers, shares};
+use super::relief_buffers::{height_maps, relief_buffers};
 use super::{Gpu, GpuError};
-use geometry::mesh::{CurveItems, CurveStyle, Curves, Dominance, Mesh, PartStyle, Sharing, Topology, patch_reliefs};
+use geometry::mesh::{CurveItems, CurveStyle, Curves, Dominance, Mesh, PartStyle, Sharing, Topology};
 use geometry::tessellate::Surface;
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
@@ -29,12 +29,12 @@ pub struct MeshBuffers {
     pub edge_factors: wgpu::Buffer,
     /// The workgroups of the searches of LOD by error on a software driver, as indirect arguments: see `shaders/pass_requests.wgsl`.
     pub search_workgroups: wgpu::Buffer,
-    /// What patches share where displacement must not tear them apart: see [`super::layout::Share`]. Empty without heights.
-    pub shares: wgpu::Buffer,
-    /// What LOD by error knows of the heights over each patch: a [`super::layout::PatchRelief`]. Empty without heights.
-    pub reliefs: wgpu::Buffer,
-    /// None without heights.
-    pub relief: Option<ReliefBuffers>,
+    /// What is known of every height image beside its pixels: a [`super::layout::HeightMap`].
+    pub maps: wgpu::Buffer,
+    /// See [`relief_buffers`].
+    pub relief: Vec<(&'static str, wgpu::Buffer)>,
+    /// How many corners there are, if heights displace the mesh.
+    pub displaced_corners: Option<u32>,
     pub grouping: Grouping,
     pub point_count: u32,
     pub patch_count: u32,
@@ -85,9 +85,6 @@ impl MeshBuffers {
         let material_patches: Vec<[u32; 2]> = topology.material_patches.iter().map(|r| [r.start, r.end]).collect();
         let dominance = heights.zip(grouped.lists);
         let dominance = dominance.map(|(heights, lists)| Dominance::new(topology, lists, &heights.angles));
-        let relief =
-            dominance.as_ref().map(|dominance| ReliefBuffers::new(gpu, mesh, topology, dominance)).transpose()?;
-        let all_shares = dominance.as_ref().map(|dominance| shares(mesh, dominance)).unwrap_or_default();
         let factor_count = grouped.factor_count() as usize;
         let factor_room = 2 * factor_count + 7 * topology.patches.len() + SEARCH_COUNTERS as usize;
         Ok(Self {
@@ -105,9 +102,9 @@ impl MeshBuffers {
             },
             edge_factors: empty::<f32>(gpu, "edge factors", factor_room)?,
             search_workgroups: empty::<[u32; 3]>(gpu, "search workgroups", 1)?,
-            shares: filled(gpu, "shares", &all_shares)?,
-            reliefs: filled(gpu, "reliefs", &patch_reliefs(heights, mesh, topology))?,
-            relief,
+            maps: height_maps(gpu, heights),
+            relief: relief_buffers(gpu, mesh, topology, dominance.as_ref())?,
+            displaced_corners: heights.map(|_| mesh.corners.len() as u32),
             grouping,
             point_count: topology.points.len() as u32,
             patch_count: topology.patches.len() as u32,
@@ -121,11 +118,9 @@ impl MeshBuffers {
     pub fn bytes(&self) -> u64 {
         let topology = [&self.patches, &self.curves, &self.curve_sides, &self.factor_curves, &self.material_patches];
         let computed = [&self.curve_nets, &self.edge_factors];
-        let attributes = [&self.points, &self.corners, &self.corner_details, &self.shares, &self.reliefs];
-        bytes_of(topology)
-            + bytes_of(computed)
-            + bytes_of(attributes)
-            + self.relief.as_ref().map_or(0, ReliefBuffers::bytes)
+        let attributes = [&self.points, &self.corners, &self.corner_details];
+        let relief = self.relief.iter().map(|(_, buffer)| buffer);
+        bytes_of(topology) + bytes_of(computed) + bytes_of(attributes) + bytes_of(relief)
     }
 }
 

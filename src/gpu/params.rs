@@ -28,6 +28,8 @@ pub(super) fn params_of(
         radius: inputs.view.radius,
     };
     let heights = tessellate::displacing_heights(mesh, inputs);
+    let amount =
+        heights.filter(|heights| heights.follow_settings()).map(|heights| tessellate::usual_amount(heights, inputs));
     let surface = inputs.tessellation.surface;
     Params {
         view: if looks { view } else { bytemuck::Zeroable::zeroed() },
@@ -50,8 +52,8 @@ pub(super) fn params_of(
         alpha: if mesh.surfaces(surface).any(Surface::is_phong) { inputs.tessellation.alpha } else { 0.0 },
         normals: inputs.tessellation.normals as u32,
         displacement: heights.map_or(0, |_| inputs.tessellation.displacement as u32),
-        height_scale: heights.map_or(0.0, |heights| tessellate::height_units(heights, inputs)),
-        midlevel: heights.map_or(0.0, |_| inputs.tessellation.midlevel),
+        height_scale: amount.map_or(0.0, |amount| amount.scale),
+        midlevel: amount.map_or(0.0, |amount| amount.midlevel),
         chosen_surface: surface as u32,
         _pad: [0; 2],
     }

@@ -82,7 +82,7 @@ impl<'a> PassInputs<'a> {
         if let Some((_, own)) = self.own.iter().find(|(own, _)| *own == name) {
             return Some(own);
         }
-        let (mesh, relief, slab) = (self.mesh, self.mesh.relief.as_ref(), self.slab);
+        let (mesh, slab) = (self.mesh, self.slab);
         Some(match name {
             "params" => self.params,
             "given_factors" | "user_factors" => self.given,
@@ -97,15 +97,7 @@ impl<'a> PassInputs<'a> {
             "edge_factors" => &mesh.edge_factors,
             "material_patches" => &mesh.material_patches,
             "search_workgroups" => &mesh.search_workgroups,
-            "shares" => &mesh.shares,
-            "reliefs" => &mesh.reliefs,
-            "maps" => &self.images?.maps,
-            "part_starts" => &relief?.part_starts,
-            "parts" => &relief?.parts,
-            "factor_starts" => &relief?.factor_starts,
-            "point_factors" => &relief?.factors,
-            "corner_ranges" => &relief?.corner_ranges,
-            "corner_patches" => &relief?.corner_patches,
+            "maps" => &mesh.maps,
             "slab" => &slab?.uniform,
             "patch_factors" => &slab?.patch_factors,
             "offsets" => &slab?.offsets,
@@ -114,7 +106,7 @@ impl<'a> PassInputs<'a> {
             "draw_args" => &slab?.draw_args,
             "vertex_halves" => &self.arena.vertices,
             "indices" => &self.arena.indices,
-            _ => return None,
+            name => &mesh.relief.iter().find(|(own, _)| *own == name)?.1,
         })
     }
 }

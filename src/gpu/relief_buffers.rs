@@ -1,10 +1,10 @@
 //! What displacement needs in device memory: height images, and what patches share where they meet.
 
-use super::buffer::{bytes_of, filled, filled_texture, uniform_buffer};
+use super::buffer::{filled, filled_texture, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
 use geometry::groups::in_groups;
-use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology};
+use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology, patch_reliefs};
 
 /// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
 pub const HEIGHTS_ACROSS: u32 = 4096;
@@ -12,16 +12,14 @@ pub const HEIGHTS_ACROSS: u32 = 4096;
 /// A mesh's height images, all mip levels of all of them one after another in the rows of one texture.
 pub(crate) struct HeightImages {
     pub view: wgpu::TextureView,
-    /// A [`HeightMap`] for each image.
-    pub maps: wgpu::Buffer,
     /// Bytes that this value uploaded; 0 if it shares another's.
-    bytes: u64,
+    pub bytes: u64,
 }
 
 impl HeightImages {
     /// The same images for another tessellator; nothing is uploaded again.
     pub(crate) fn shared(&self) -> Self {
-        Self { view: self.view.clone(), maps: self.maps.clone(), bytes: 0 }
+        Self { view: self.view.clone(), bytes: 0 }
     }
 
     /// # Errors
@@ -35,13 +33,8 @@ impl HeightImages {
             return Err(GpuError::TooLarge { what: "height images", bytes: 4 * texels, limit });
         }
         let rows = rows as u32;
-        let mut table = [HeightMap { size: [1, 1], levels: 1, ..bytemuck::Zeroable::zeroed() }; MAX_MAPS];
         let mut all: Vec<f32> = Vec::with_capacity((rows * HEIGHTS_ACROSS) as usize);
-        for (entry, map) in table.iter_mut().zip(&heights.maps) {
-            let (start, repeats) = (all.len() as u32, u32::from(map.repeats));
-            *entry = HeightMap { size: map.size, levels: map.levels, start, repeats, ..*entry };
-            all.extend_from_slice(&map.heights);
-        }
+        heights.maps.iter().for_each(|map| all.extend_from_slice(&map.heights));
         all.resize((rows * HEIGHTS_ACROSS) as usize, 0.0);
         Ok(Self {
             view: filled_texture(
@@ -51,54 +44,59 @@ impl HeightImages {
                 wgpu::TextureFormat::R32Float,
                 bytemuck::cast_slice(&all),
             ),
-            maps: uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table)),
             bytes: 4 * all.len() as u64,
         })
     }
-
-    pub(crate) fn bytes(&self) -> u64 {
-        self.bytes
-    }
 }
 
-/// Which corners, edges and patches meet where, for a mesh whose sides are grouped into curves by a [`Sharing`](geometry::mesh::Sharing).
-/// Lists of varying length lie one after another in one buffer; `starts` holds where each begins, and then where the last
-/// ends.
-pub struct ReliefBuffers {
-    pub part_starts: wgpu::Buffer,
-    /// For each point, its corners, each with the bits of its weight in the point's direction.
-    pub parts: wgpu::Buffer,
-    pub factor_starts: wgpu::Buffer,
-    /// For each point, the factors of its edges.
-    pub factors: wgpu::Buffer,
-    pub corner_ranges: wgpu::Buffer,
-    /// For each corner, its patches.
-    pub corner_patches: wgpu::Buffer,
-    pub corner_count: u32,
+/// A [`HeightMap`] for each image.
+pub(crate) fn height_maps(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
+    let mut table = [HeightMap { size: [1, 1], levels: 1, ..bytemuck::Zeroable::zeroed() }; MAX_MAPS];
+    let mut start = 0;
+    for (entry, map) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.maps)) {
+        let (scale, midlevel) = map.amount.map_or((0.0, 0.0), |amount| (amount.scale, amount.midlevel));
+        let (repeats, has_amount) = (u32::from(map.repeats), u32::from(map.amount.is_some()));
+        *entry = HeightMap { size: map.size, levels: map.levels, start, repeats, has_amount, scale, midlevel };
+        start += map.heights.len() as u32;
+    }
+    uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table))
 }
 
-impl ReliefBuffers {
-    /// # Errors
-    /// A buffer would be larger than the adapter binds.
-    pub fn new(gpu: &Gpu, mesh: &Mesh, topology: &Topology, dominance: &Dominance) -> Result<Self, GpuError> {
-        let (corner_ranges, corner_patches) = patches_of_corners(mesh, topology);
-        let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
-        Ok(Self {
-            part_starts: filled(gpu, "part starts", &dominance.part_starts)?,
-            parts: filled(gpu, "parts", &parts)?,
-            factor_starts: filled(gpu, "factor starts", &dominance.factor_starts)?,
-            factors: filled(gpu, "point factors", &dominance.factors)?,
-            corner_ranges: filled(gpu, "corner ranges", &corner_ranges)?,
-            corner_patches: filled(gpu, "corner patches", &corner_patches)?,
-            corner_count: mesh.corners.len() as u32,
-        })
-    }
-
-    pub fn bytes(&self) -> u64 {
-        let corners = [&self.corner_ranges, &self.corner_patches];
-        let points = [&self.part_starts, &self.parts, &self.factor_starts, &self.factors];
-        bytes_of(corners) + bytes_of(points)
-    }
+/// What passes know of a mesh that heights displace, by the names in WGSL. Without heights there are only the lists that passes
+/// are bound to in any case, and they are empty. Lists of varying length lie one after another in one buffer; `starts` holds where
+/// each begins, and then where the last ends.
+///
+/// # Errors
+/// A buffer would be larger than the adapter binds.
+pub(crate) fn relief_buffers(
+    gpu: &Gpu,
+    mesh: &Mesh,
+    topology: &Topology,
+    dominance: Option<&Dominance>,
+) -> Result<Vec<(&'static str, wgpu::Buffer)>, GpuError> {
+    let shares = dominance.map(|dominance| shares(mesh, dominance)).unwrap_or_default();
+    let reliefs = patch_reliefs(mesh.heights.as_deref(), mesh, topology);
+    let mut buffers = vec![
+        // What patches share where displacement must not tear them apart.
+        ("shares", filled(gpu, "shares", &shares)?),
+        // What LOD by error knows of the heights over each patch.
+        ("reliefs", filled(gpu, "reliefs", &reliefs)?),
+    ];
+    let Some(dominance) = dominance else { return Ok(buffers) };
+    let (corner_ranges, corner_patches) = patches_of_corners(mesh, topology);
+    let parts: Vec<[u32; 2]> = dominance.parts.iter().map(|&(corner, part)| [corner, part.to_bits()]).collect();
+    buffers.extend([
+        // The corners of each point, each with the bits of its weight in the point's direction.
+        ("part_starts", filled(gpu, "part starts", &dominance.part_starts)?),
+        ("parts", filled(gpu, "parts", &parts)?),
+        // The factors of its edges.
+        ("factor_starts", filled(gpu, "factor starts", &dominance.factor_starts)?),
+        ("point_factors", filled(gpu, "point factors", &dominance.factors)?),
+        // The patches of each corner.
+        ("corner_ranges", filled(gpu, "corner ranges", &corner_ranges)?),
+        ("corner_patches", filled(gpu, "corner patches", &corner_patches)?),
+    ]);
+    Ok(buffers)
 }
 
 /// The [`Share`]s of a mesh, filled in as far as they depend on the mesh alone. In this order:
@@ -106,7 +104,7 @@ impl ReliefBuffers {
 /// - one for each point,
 /// - one for each factor,
 /// - two for each corner.
-pub fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
+fn shares(mesh: &Mesh, dominance: &Dominance) -> Vec<Share> {
     let share = |&dominant: &u32| Share { dominant, ..bytemuck::Zeroable::zeroed() };
     let shared = dominance.corners.iter().chain(&dominance.sides).map(share);
     shared.chain(std::iter::repeat_n(share(&0), 2 * mesh.corners.len())).collect()

@@ -390,7 +390,7 @@ impl Tessellator {
 
     /// Bytes of height images, counts, scans and indirect arguments, and of what a pose is made from.
     pub fn work_bytes(&self) -> u64 {
-        let images = self.images.as_ref().map_or(0, HeightImages::bytes);
+        let images = self.images.as_ref().map_or(0, |images| images.bytes);
         let rig = self.rig.as_ref().map_or(0, RigBuffers::bytes);
         let least = self.minimum.as_ref().map_or(0, Minimum::bytes);
         images + rig + least + self.slabs.iter().map(SlabBuffers::bytes).sum::<u64>()

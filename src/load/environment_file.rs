@@ -161,11 +161,16 @@ fn pixels(bytes: &[u8], budget: &Budget, progress: Progress) -> Result<([u32; 2]
         let decoder = HdrDecoder::with_strictness(reader, !bytes.starts_with(OLD_RADIANCE)).map_err(undecoded)?;
         return decode(decoder, budget, |_| 0);
     }
-    let headers = MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
-    let block = headers.iter().map(block_bytes).max().unwrap_or(0);
+    let unpacking = unpacking_bytes(bytes)?;
     let decoder = OpenExrDecoder::with_alpha_preference(reader, Some(false)).map_err(undecoded)?;
-    // The decoder has a copy of the pixels, and of a block about three while it is unpacked.
-    decode(decoder, budget, |whole| whole.saturating_add(block.saturating_mul(3)))
+    // The decoder has a copy of the pixels.
+    decode(decoder, budget, |whole| whole.saturating_add(unpacking))
+}
+
+/// What unpacking an OpenEXR file takes beside its pixels, in bytes: of a block there are about three copies.
+pub(super) fn unpacking_bytes(bytes: &[u8]) -> Result<u64, EnvironmentFault> {
+    let headers = MetaData::read_from_buffered(bytes, false).map_err(|error| because(&error.to_string()))?.headers;
+    Ok(headers.iter().map(block_bytes).max().unwrap_or(0).saturating_mul(3))
 }
 
 /// The size of a decompressed block of an OpenEXR layer, in bytes.

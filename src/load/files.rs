@@ -9,22 +9,19 @@ use std::time::SystemTime;
 
 use tempfile::{Builder, NamedTempFile, TempDir};
 
+use geometry::defaults::with_defaults;
 use geometry::names::shown_path;
 use geometry::progress::{Cancelled, Progress};
 
-/// Limits on what a load may read and how much memory it may take.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Limits {
-    /// The size of the largest file that is read, in bytes. It applies to the model's file and to each file that it
-    /// names.
-    pub file: u64,
-    /// How much memory a load may take, in bytes, beyond four times the size of all its files.
-    pub memory: u64,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Self { file: 2 << 30, memory: 512 << 20 }
+with_defaults! {
+    /// Limits on what a load may read and how much memory it may take.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Limits {
+        /// The size of the largest file that is read, in bytes. It applies to the model's file and to each file that it
+        /// names.
+        pub file: u64 = 2 << 30,
+        /// How much memory a load may take, in bytes, beyond four times the size of all its files.
+        pub memory: u64 = 512 << 20,
     }
 }
 

@@ -114,7 +114,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let is_detailed = needs_details(document, &placed, &materials);
     let check = |moves| scene_size::check(document, &placed, &extensions.instances, &accessors, moves, is_detailed);
     let needs = afforded(check, &mut binder, moves_meshes, notes)?;
-    materials.read_images(needs.bytes, progress)?;
+    materials.read_images(needs.bytes)?;
     let mut scene = Scene {
         document,
         global: grown.as_deref().unwrap_or(&placed.global),

@@ -1,24 +1,26 @@
-//! Height maps for displacement, from an image file or from the materials' base colour images.
+//! Height maps for displacement: those that a model's file gives its materials, image files, or the base colour images.
 
 mod reading;
+mod texts;
 
-use std::ffi::OsString;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::hash::Hash;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::ColorType;
 
 use super::memory_budget::Budget;
-use geometry::casts::to_u32;
-use geometry::mesh::build_limits::MemoryRefused;
-use geometry::mesh::heights::{HeightMap, Heights, MAX_KEPT, MAX_MAPS, bytes_beside_maps};
-use geometry::mesh::{Mesh, Texture};
-use geometry::names::shown_path;
+use super::uri::Files;
+use super::warnings::untextured_warning;
+use geometry::mesh::build_limits::{MemoryRefused, borrowing};
+use geometry::mesh::heights::{HeightMap, Heights, MAX_MAPS, bytes_beside_maps};
+use geometry::mesh::{HeightAmount, Material, Mesh};
+use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
-use reading::{map_of_px, read_map};
-
-/// The greatest width and height of an image that is read, in px.
-const MAX_SIZE: u32 = 16384;
+use reading::{map_of_bytes, map_of_px, read_map};
 
 /// Why heights could not be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -27,22 +29,9 @@ pub enum HeightError {
     /// The load was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// The image can't be read.
+    /// The image can't be read, or is too large.
     #[error("{} can't be read as a height image: {reason}", shown_path(path))]
     Image { path: PathBuf, reason: String },
-    /// The image is wider or higher than is read.
-    #[error(
-        "{} has {} x {} px, but at most {MAX_SIZE} px a side are read; scale it to {MAX_KEPT} px a side or less",
-        shown_path(path), size[0], size[1]
-    )]
-    TooLarge { path: PathBuf, size: [u32; 2] },
-    /// The image would take too much memory.
-    #[error(
-        "{} has {} x {} px and {reason}; scale it to {MAX_KEPT} px a side or less, or save it as a PNG that isn't \
-         interlaced",
-        shown_path(path), size[0], size[1]
-    )]
-    TooMuch { path: PathBuf, size: [u32; 2], reason: String },
     /// No material has an image that can be read.
     #[error(
         "{name} has no image to displace by: no material has a base colour image that can be read{why}; name a height image"
@@ -54,15 +43,33 @@ pub enum HeightError {
     /// The materials' images would take too much memory together.
     #[error("the heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
     TooMuchOfMaterials { name: String, count: usize, reason: String },
+    /// An image is named for a material that isn't there.
+    #[error("{name} has no material \"{material}\" to displace; it has {known}")]
+    NoMaterial { name: String, material: String, known: String },
 }
 
-/// The source of height maps. Its text form is `material`, or a path.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// An image for the materials of one name, in place of what the model's file gives them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedImage {
+    /// The name of the materials.
+    pub material: String,
+    /// The image file.
+    pub path: PathBuf,
+    /// How far it moves the surface; none if the settings say so.
+    pub amount: Option<HeightAmount>,
+}
+
+/// The source of height maps.
+#[derive(Clone, Debug, PartialEq)]
 pub enum HeightSource {
+    /// The images that the model's file gives its materials, or the base colour images if it gives none.
+    Model,
     /// The brightness of each material's base colour image.
     Materials,
     /// One image for all materials.
     File(PathBuf),
+    /// An image for each of these materials. Others have what the model's file gives them.
+    Each(Vec<NamedImage>),
 }
 
 impl HeightSource {
@@ -79,105 +86,256 @@ impl HeightSource {
         progress: &Progress,
     ) -> Result<Heights, HeightError> {
         progress.set(0.0);
-        let heights = match self {
-            Self::Materials => from_materials(mesh, warnings, budget, progress)?,
-            Self::File(path) => from_file(path, mesh, budget, progress)?,
+        let images = progress.part(0.0, 0.7);
+        let own = match self {
+            Self::Materials => Vec::new(),
+            Self::File(path) => vec![Some(read_map(path, budget, &images)?); mesh.materials.len()],
+            Self::Model | Self::Each(_) => of_model(self.images(), mesh, budget, &images)?,
         };
+        let are_of_colors = own.iter().all(Option::is_none);
+        let own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
+        let too_much = |refused| too_much(mesh, own.iter().flatten().count(), refused);
+        budget.hold(bytes_beside_maps(mesh)).map_err(too_much)?;
+        let heights = Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))?;
+        let count = heights.maps.len();
+        if count > MAX_MAPS {
+            return Err(HeightError::TooMany { name: mesh.name.clone(), count });
+        }
         progress.set(1.0);
-        Ok(heights)
+        Ok(Heights { are_of_colors, ..heights })
+    }
+
+    fn images(&self) -> &[NamedImage] {
+        if let Self::Each(images) = self { images } else { &[] }
+    }
+
+    /// Returns the image files.
+    pub fn files(&self) -> Vec<&Path> {
+        let own = if let Self::File(path) = self { Some(&**path) } else { None };
+        own.into_iter().chain(self.images().iter().map(|image| &*image.path)).collect()
+    }
+
+    /// Makes the paths of its files absolute, so that they are valid in every folder.
+    pub fn make_absolute(&mut self) {
+        let paths: Vec<&mut PathBuf> = match self {
+            Self::Model | Self::Materials => Vec::new(),
+            Self::File(path) => vec![path],
+            Self::Each(images) => images.iter_mut().map(|image| &mut image.path).collect(),
+        };
+        paths.into_iter().for_each(|path| *path = std::path::absolute(&*path).unwrap_or_else(|_| path.clone()));
     }
 
     /// Returns a name for the window: the file's name without its folder.
     pub fn title(&self) -> String {
         match self {
+            Self::Model => "As the file says".to_owned(),
+            Self::Each(_) => "Images of materials".to_owned(),
             Self::Materials => "Base colour brightness".to_owned(),
             Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         }
     }
 }
 
-impl From<OsString> for HeightSource {
-    fn from(text: OsString) -> Self {
-        if text == "material" { Self::Materials } else { Self::File(text.into()) }
+/// Loads the heights of a source; without one those that the model's file gives its materials, in which a flaw costs a warning.
+///
+/// # Errors
+/// [`HeightError`].
+pub fn load_heights(
+    source: Option<&HeightSource>,
+    mesh: &Mesh,
+    warnings: &mut Vec<String>,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Option<Heights>, HeightError> {
+    if source.is_none() && mesh.materials.iter().all(|material| material.height.is_none()) {
+        return Ok(None);
+    }
+    match source.unwrap_or(&HeightSource::Model).load(mesh, warnings, budget, progress) {
+        Err(error) if source.is_none() && !matches!(error, HeightError::Cancelled(_)) => {
+            warnings.push(format!("its height images are left out: {error}."));
+            Ok(None)
+        }
+        heights => {
+            let heights = heights?;
+            warnings.extend(untextured_warning(&heights, mesh));
+            Ok(Some(heights))
+        }
     }
 }
 
-/// Loads a PNG, JPEG or WebP image as the height map of all materials.
-fn from_file(path: &Path, mesh: &Mesh, budget: &Budget, progress: &Progress) -> Result<Heights, HeightError> {
-    let map = read_map(path, bytes_beside_maps(mesh), budget, &progress.part(0.0, 0.8))?;
-    Ok(Heights::all_over(mesh, map, &progress.part(0.8, 1.0))?)
+/// The maps of materials: those that the model's file gives them, or these in place of some.
+fn of_model(
+    images: &[NamedImage],
+    mesh: &Mesh,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Vec<Option<HeightMap>>, HeightError> {
+    let mut own: Vec<_> = mesh.materials.iter().map(|material| material.height.clone()).collect();
+    let part = |index: usize| index as f32 / images.len() as f32;
+    for (index, NamedImage { material, path, amount }) in images.iter().enumerate() {
+        if mesh.materials.iter().all(|known| known.name != *material) {
+            let known: Vec<_> = mesh.materials.iter().map(|known| format!("\"{}\"", shown(&known.name))).collect();
+            let (name, known) = (mesh.name.clone(), known.join(", "));
+            return Err(HeightError::NoMaterial { name, material: shown(material), known });
+        }
+        let map = read_map(path, budget, &progress.part(part(index), part(index + 1)))?.with_amount(*amount);
+        let users = mesh.materials.iter().zip(&mut own).filter(|(known, _)| known.name == *material);
+        users.for_each(|(_, own)| *own = Some(map.clone()));
+    }
+    Ok(own)
 }
 
-/// Computes the brightness of every material's base colour image. Materials that share an image share its map.
-///
-/// # Errors
-/// [`HeightError::NoImage`], [`HeightError::TooMany`] and [`HeightError::TooMuchOfMaterials`].
-fn from_materials(
+/// The height images that a model's file gives its materials, each read once; `K` tells them apart.
+pub(super) struct ModelImages<'a, K> {
+    files: &'a Files<'a>,
+    known: HashMap<K, Option<HeightMap>>,
+    /// The memory that the rest of the load takes, in bytes.
+    pub reserved: u64,
+    /// What was left out.
+    pub warnings: Vec<String>,
+}
+
+impl<'a, K: Eq + Hash> ModelImages<'a, K> {
+    pub(super) fn new(files: &'a Files<'a>) -> Self {
+        Self { files, known: HashMap::new(), reserved: 0, warnings: Vec::new() }
+    }
+
+    /// Returns an image of a material. One that can't be read causes a warning, which names the first material that has it, and so does
+    /// one that is elsewhere than the texture coordinates that corners have themselves.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn read<'b>(
+        &mut self,
+        key: K,
+        [image, material]: [&str; 2],
+        is_elsewhere: bool,
+        bytes: impl FnOnce() -> Result<Cow<'b, [u8]>, String>,
+    ) -> Result<Option<HeightMap>, Cancelled> {
+        let Files { budget, progress, .. } = self.files;
+        let decode = || {
+            let bytes = bytes().map_err(|reason| HeightError::Image { path: image.into(), reason })?;
+            map_of_bytes(Path::new(image), &bytes, self.reserved, budget, &progress.quiet())
+        };
+        let map = match self.known.get(&key) {
+            Some(known) => known.clone(),
+            None => match borrowing(budget, decode) {
+                Err(HeightError::Cancelled(cancelled)) => return Err(cancelled),
+                Err(error) => {
+                    self.warnings.push(format!("the height image of material \"{material}\" is left out: {error}."));
+                    None
+                }
+                Ok(map) => Some(map),
+            },
+        };
+        if is_elsewhere {
+            let said = "lies elsewhere than its base colour, whose texture coordinates are used";
+            self.warnings.push(format!("the height image of material \"{material}\" {said}."));
+        }
+        self.known.insert(key, map.clone());
+        Ok(map)
+    }
+}
+
+fn too_much(mesh: &Mesh, count: usize, refused: MemoryRefused) -> HeightError {
+    HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason: refused.to_string() }
+}
+
+/// The brightness of every material's base colour image. Materials that share an image share its pixels.
+fn of_colors(
     mesh: &Mesh,
     warnings: &[String],
     budget: &Budget,
     progress: &Progress,
-) -> Result<Heights, HeightError> {
-    let mut known: Vec<&Texture> = Vec::new();
-    let of_material = mesh.materials.iter().map(|material| {
-        let texture = material.texture.as_deref()?;
-        let index = known.iter().position(|&known| std::ptr::eq(known, texture)).unwrap_or_else(|| {
-            known.push(texture);
-            known.len() - 1
-        });
-        Some(to_u32(index))
-    });
-    let of_material = of_material.collect();
-    let count = known.len();
+) -> Result<Vec<Option<HeightMap>>, HeightError> {
+    let of = |material: &Material| material.texture.as_ref().map(|texture| (Arc::as_ptr(texture), texture.clone()));
+    let textures: HashMap<_, _> = mesh.materials.iter().filter_map(of).collect();
+    let count = textures.len();
     if count == 0 {
         let left_out = warnings.iter().find(|warning| warning.starts_with("the texture of "));
         let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
     }
-    if count > MAX_MAPS {
-        return Err(HeightError::TooMany { name: mesh.name.clone(), count });
+    let kept = textures.values().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
+    budget.hold(kept).map_err(|refused| too_much(mesh, count, refused))?;
+    let mut maps = HashMap::new();
+    for (index, (key, texture)) in textures.iter().enumerate() {
+        let progress = progress.part(index as f32 / count as f32, (index + 1) as f32 / count as f32);
+        maps.insert(key, map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)?);
     }
-    let kept = known.iter().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
-    let too_much = |refused: MemoryRefused| {
-        let reason = refused.to_string();
-        HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason }
-    };
-    budget.hold(bytes_beside_maps(mesh)).and_then(|()| budget.hold(kept)).map_err(too_much)?;
-    let part = |index: usize| 0.7 * index as f32 / count as f32;
-    let of = |(index, texture): (usize, &&Texture)| {
-        let progress = progress.part(part(index), part(index + 1));
-        map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)
-    };
-    let maps = known.iter().enumerate().map(of).collect::<Result<_, _>>()?;
-    let heights = Heights::new(mesh, maps, of_material, &progress.part(0.7, 1.0))?;
-    Ok(Heights { are_of_colors: true, ..heights })
+    Ok(mesh.materials.iter().map(|material| maps.get(&of(material)?.0).cloned()).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use geometry::mesh::Shape;
+    use geometry::mesh::Texture;
 
     #[test]
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
-        assert!(matches!(
-            from_materials(&mesh, &[], &Budget::unlimited(), &Progress::new()),
-            Err(HeightError::NoImage { .. })
-        ));
+        let of_colors = |mesh: &Mesh| HeightSource::Materials.load(mesh, &[], &Budget::unlimited(), &Progress::new());
+        assert!(matches!(of_colors(&mesh), Err(HeightError::NoImage { .. })));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = geometry::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
-        let heights = from_materials(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("an image");
+        let heights = of_colors(&mesh).expect("an image");
         assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
+        assert!(heights.are_of_colors);
+    }
+
+    #[test]
+    fn materials_have_the_files_images_or_those_that_are_named() {
+        let mut mesh = Shape::Torus.build();
+        let map = HeightMap::new([2, 2], vec![0.5; 4]).with_amount(HeightAmount::from_factor(0.1, 0.0));
+        let named = |name: &str, height| geometry::mesh::Material {
+            name: name.to_owned(),
+            height,
+            ..mesh.materials[0].clone()
+        };
+        mesh.materials = vec![named("wall", Some(map.clone())), named("roof", None), named("door", None)];
+        let of = |images: &[NamedImage], mesh: &Mesh| {
+            let source = HeightSource::Each(images.to_vec());
+            source.load(mesh, &[], &Budget::unlimited(), &Progress::new()).map_err(|error| error.to_string())
+        };
+        let heights = of(&[], &mesh).expect("an image");
+        assert_eq!((heights.maps[0].amount, &heights.of_material[..]), (map.amount, &[Some(0), None, None][..]));
+        let path = assets::path("waves.png");
+        let image = |material: &str| NamedImage { material: material.to_owned(), path: path.clone(), amount: None };
+        let heights = of(&[image("roof")], &mesh).expect("two images");
+        assert_eq!(heights.of_material, [Some(0), Some(1), None]);
+        assert!(heights.follow_settings() && heights.maps[0].size == [2, 2] && !heights.are_of_colors);
+        let heights = of(&[image("wall")], &mesh).expect("an image");
+        assert_eq!((heights.of_material, heights.maps[0].amount), (vec![Some(0), None, None], None));
+        let said = of(&[image("floor")], &mesh).expect_err("no such material");
+        assert!(said.ends_with("has no material \"floor\" to displace; it has \"wall\", \"roof\", \"door\""), "{said}");
+        mesh.materials[0].height = None;
+        assert!(of(&[], &mesh).expect_err("no image").contains("no material has a base colour image"));
+    }
+
+    #[test]
+    fn flaws_in_the_files_own_images_cost_a_warning_unless_they_are_asked_for() {
+        let mut mesh = Shape::Torus.build();
+        let map = HeightMap::new([2, 2], vec![0.5; 4]);
+        let small = Budget::new(0, 1);
+        let mut warnings = Vec::new();
+        let mut load = |source: Option<&HeightSource>, mesh: &Mesh| {
+            load_heights(source, mesh, &mut warnings, &small, &Progress::new())
+        };
+        assert!(load(None, &mesh).is_ok_and(|heights| heights.is_none()), "it has none");
+        mesh.materials[0].height = Some(map);
+        assert!(load(Some(&HeightSource::Model), &mesh).is_err());
+        assert!(load(None, &mesh).is_ok_and(|heights| heights.is_none()));
+        assert!(warnings.len() == 1 && warnings[0].starts_with("its height images are left out: "), "{warnings:?}");
     }
 
     #[test]
     fn a_file_that_is_not_an_image_is_refused() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
-        let error = from_file(path, &Mesh::default(), &Budget::unlimited(), &Progress::new())
-            .expect_err("no image")
-            .to_string();
+        let source = HeightSource::File(path.to_owned());
+        let error = source.load(&Mesh::default(), &[], &Budget::unlimited(), &Progress::new());
+        let error = error.expect_err("no image").to_string();
         assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
     }
 }

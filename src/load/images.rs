@@ -12,8 +12,8 @@ use geometry::mesh::Texture;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::mipmap::{MipFilter, RowHalver, halved, level_size};
 
-/// The greatest width and height of a texture that is read, in px.
-const MAX_SIZE: u32 = 16384;
+/// The greatest width and height of an image that is read, in px.
+pub(super) const MAX_SIZE: u32 = 16384;
 
 /// The greatest amount of memory for an image's colour profile and text, in bytes.
 const MAX_METADATA: u64 = 16 << 20;
@@ -32,13 +32,13 @@ pub(super) fn metadata_limits(budget: &Budget) -> Limits {
 /// is read.
 pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
     if ktx2::is_ktx2(bytes) {
-        return Ktx2::read(bytes).ok().map(|file| file.size).filter(|size| check_size(*size).is_ok());
+        return Ktx2::read(bytes).ok().map(|file| file.size).filter(|size| check_size("", *size).is_ok());
     }
     let size = match png_header(bytes) {
         Some((size, _)) => size,
         None => reader(bytes).ok()?.into_dimensions().ok()?.into(),
     };
-    check_size(size).is_ok().then_some(size)
+    check_size("", size).is_ok().then_some(size)
 }
 
 /// Decodes a PNG, JPEG, WebP, TGA, BMP or KTX2 image (its first bytes tell which) to RGBA, unless its header says that it is too
@@ -98,7 +98,7 @@ fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     }
     let mut decoder = reader.into_decoder().map_err(undecoded)?;
     let size = decoder.dimensions().into();
-    check_size(size)?;
+    check_size("its image", size)?;
     let has_rows = png_header(bytes).is_some_and(|(_, is_interlaced)| !is_interlaced);
     let room = budget.borrow(decoding_bytes(&decoder));
     if has_rows && (halvings > 0 || room.is_err()) {
@@ -127,7 +127,7 @@ fn decode_rows(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) 
     decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(undecoded)?;
     let size = reader.info().size().into();
-    check_size(size)?;
+    check_size("its image", size)?;
     let (color, depth) = reader.output_color_type();
     let line = reader.output_line_size(size[0]).ok_or("its rows are too long")?;
     let made = level_size(size, halvings);
@@ -168,7 +168,7 @@ fn rgba_row(line: &[u8], color: png::ColorType, is_wide: bool) -> Vec<u8> {
 /// Decodes a level of a KTX2 image, and halves it if the file doesn't have the one that is needed. All memory is borrowed.
 fn decode_ktx2(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let file = Ktx2::read(bytes)?;
-    check_size(file.size)?;
+    check_size("its image", file.size)?;
     let level = halvings.min(file.level_count().saturating_sub(1));
     let size = level_size(file.size, level);
     let needed = file.working_bytes(level).saturating_add(decoded_bytes(size));
@@ -186,12 +186,11 @@ pub(super) fn png_header(bytes: &[u8]) -> Option<([u32; 2], bool)> {
     Some(([side(0), side(4)], header[12] != 0))
 }
 
-fn check_size([width, height]: [u32; 2]) -> Result<(), String> {
+/// Says what is wrong with an image of this size in px, as a clause that begins with its name.
+pub(super) fn check_size(name: &str, [width, height]: [u32; 2]) -> Result<(), String> {
     let advice = "scale it to 4096 px a side or less";
     match width.max(height) > MAX_SIZE {
-        true => {
-            Err(format!("its image has {width} x {height} px, but at most {MAX_SIZE} px a side are read; {advice}"))
-        }
+        true => Err(format!("{name} has {width} x {height} px, but at most {MAX_SIZE} px a side are read; {advice}")),
         false => Ok(()),
     }
 }

@@ -2,6 +2,7 @@
 
 use geometry::casts::to_byte;
 use geometry::choice::choices;
+use geometry::defaults::with_defaults;
 use geometry::mesh::normals::CREASE_ANGLE;
 use geometry::mesh::orientation::reorient;
 use geometry::mesh::subdivision::{Boundary, Scheme};
@@ -98,34 +99,22 @@ impl FileUnit {
     }
 }
 
-/// How the geometry of a file is taken.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Import {
-    pub normals: NormalSource,
-    /// The angle up to which faces are smooth where normals are made, in degrees from 0 to 180.
-    pub crease_angle: f32,
-    /// The axis of the file's coordinates that points up; none for that which the file or its format says, or else Y.
-    pub up: Option<UpAxis>,
-    /// The unit of the file's coordinates; none for that which the file or its format says, or else the metre.
-    pub unit: Option<FileUnit>,
-    /// Whether what the file hides is loaded too.
-    pub show_hidden: bool,
-    pub subdivide: Subdivide,
-    /// How often cages are refined, a whole number up to [`MOST_LEVELS`]; none for as often as the file says, or else twice.
-    pub levels: Option<f32>,
-}
-
-impl Default for Import {
-    fn default() -> Self {
-        Self {
-            normals: NormalSource::File,
-            crease_angle: CREASE_ANGLE,
-            up: None,
-            unit: None,
-            show_hidden: false,
-            subdivide: Subdivide::File,
-            levels: None,
-        }
+with_defaults! {
+    /// How the geometry of a file is taken.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Import {
+        pub normals: NormalSource = NormalSource::File,
+        /// The angle up to which faces are smooth where normals are made, in degrees from 0 to 180.
+        pub crease_angle: f32 = CREASE_ANGLE,
+        /// The axis of the file's coordinates that points up; none for that which the file or its format says, or else Y.
+        pub up: Option<UpAxis> = None,
+        /// The unit of the file's coordinates; none for that which the file or its format says, or else the metre.
+        pub unit: Option<FileUnit> = None,
+        /// Whether what the file hides is loaded too.
+        pub show_hidden: bool = false,
+        pub subdivide: Subdivide = Subdivide::File,
+        /// How often cages are refined, a whole number up to [`MOST_LEVELS`]; none for as often as the file says, or else twice.
+        pub levels: Option<f32> = None,
     }
 }
 

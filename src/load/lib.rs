@@ -65,4 +65,4 @@ pub use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
 pub use memory_budget::Budget;
 pub use selection::{MorphWeights, ShownParts};
 pub use source::Source;
-pub use warnings::{crease_band_warnings, untextured_warning};
+pub use warnings::crease_band_warnings;

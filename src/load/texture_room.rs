@@ -1,6 +1,7 @@
 //! How small a mesh's textures must be, so that all of them fit the memory that they may take.
 
 use std::borrow::Cow;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::sync::Arc;
 
@@ -15,7 +16,7 @@ pub(super) const MOST_SIDE: u32 = 8192;
 
 /// The memory that textures may take, in bytes.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TextureRoom {
+struct TextureRoom {
     /// Decoded.
     host: u64,
     /// On the graphics card, with all mip levels.
@@ -24,20 +25,23 @@ pub(super) struct TextureRoom {
     used: u64,
 }
 
+/// How what is said of an image begins that can't be read.
+pub(super) const LEFT_OUT: &str = "is left out";
+
 /// How often a texture is halved, and why; the reason is empty if it isn't.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Scaling {
-    pub halvings: u32,
-    pub reason: String,
+struct Scaling {
+    halvings: u32,
+    reason: String,
 }
 
 impl Scaling {
     /// What is said of a texture of a size in px after its name: that it is left out, if it can't be read, or to which size it is scaled
     /// down. None if it isn't.
-    pub(super) fn said(&self, [a, b]: [u32; 2], read: Result<[u32; 2], &String>) -> Option<String> {
+    fn said(&self, [a, b]: [u32; 2], read: Result<[u32; 2], &String>) -> Option<String> {
         let Self { halvings, reason } = self;
         match read {
-            Err(reason) => Some(format!("is left out: {reason}.")),
+            Err(reason) => Some(format!("{LEFT_OUT}: {reason}.")),
             Ok([c, d]) => {
                 (*halvings > 0).then(|| format!("is scaled down from {a} x {b} px to {c} x {d} px: {reason}."))
             }
@@ -64,28 +68,31 @@ pub(super) fn read_images<'b, I: Copy>(
     let size = |image: &I| borrowing(budget, || bytes(*image).ok().and_then(|(bytes, _)| texture_size(&bytes)));
     let sizes: Vec<_> = images.iter().map(|image| size(image).unwrap_or_default()).collect();
     let scalings = TextureRoom::new(budget, reserved).scalings(&sizes);
-    let all = images.iter().zip(sizes).zip(scalings);
-    let read = all.map(|((image, size), scaling)| {
+    let mut order: Vec<_> = (0..images.len()).collect();
+    // What takes most memory while it is decoded comes first, while the others don't take any yet.
+    order.sort_by_key(|i| Reverse(decoded_bytes(sizes[*i])));
+    let mut read = vec![ReadImage::default(); images.len()];
+    for i in order {
         progress.check()?;
-        let decode = |(bytes, filter): (Cow<[u8]>, _)| decode_halved(&bytes, scaling.halvings, filter, budget);
-        let texture = borrowing(budget, || bytes(*image).and_then(decode));
-        let said = scaling.said(size, texture.as_ref().map(|texture| texture.size));
-        Ok(ReadImage { texture: texture.ok().map(Arc::new), said })
-    });
-    read.collect()
+        let decode = |(bytes, filter): (Cow<[u8]>, _)| decode_halved(&bytes, scalings[i].halvings, filter, budget);
+        let texture = borrowing(budget, || bytes(images[i]).and_then(decode));
+        let said = scalings[i].said(sizes[i], texture.as_ref().map(|texture| texture.size));
+        read[i] = ReadImage { texture: texture.ok().map(Arc::new), said };
+    }
+    Ok(read)
 }
 
 impl TextureRoom {
     /// The room in a budget of which `reserved` bytes are left for the rest of the load. On the graphics card, textures may take as
     /// much as the whole load.
-    pub(super) fn new(budget: &Budget, reserved: u64) -> Self {
+    fn new(budget: &Budget, reserved: u64) -> Self {
         let host = budget.left().saturating_sub(reserved);
         let device = budget.allowed();
         Self { host, device, used: device.saturating_sub(host) }
     }
 
     /// Halves the largest of these sizes, in px, until all textures fit, the first of several of one size first.
-    pub(super) fn scalings(&self, sizes: &[[u32; 2]]) -> Vec<Scaling> {
+    fn scalings(&self, sizes: &[[u32; 2]]) -> Vec<Scaling> {
         let mut halvings: Vec<u32> = sizes.iter().map(|size| within_most_side(*size)).collect();
         let too_wide = halvings.clone();
         let [mut host, mut device] = [0_u64; 2];

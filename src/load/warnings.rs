@@ -34,7 +34,7 @@ pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
 
 /// Returns a warning about triangles whose corners all have the same texture coordinates: displacement moves such a
 /// triangle as a whole.
-pub fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
+pub(super) fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
     let mut count = 0;
     for (material, _) in mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some()) {
         let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];

@@ -85,6 +85,52 @@ fn both_devices_write_the_same_displaced_mesh() {
     assert!(gpu.iter().zip(&cpu).map(apart).fold(0.0, f64::max) < 2e-5);
 }
 
+/// Two triangles of a material each, of which the first has a height image in its file.
+fn two_materials(folder: &Folder) -> String {
+    folder.write("two.mtl", "newmtl wall\ndisp -mm 0 0.25 white.png\nnewmtl roof\n");
+    let white = image::GrayImage::from_pixel(2, 2, image::Luma([255]));
+    white.save(folder.path("white.png")).expect("a folder of our own");
+    let start = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0.5 0.5\nvn 0 0 1\n";
+    let faces = "usemtl wall\nf 1/1/1 2/1/1 3/1/1\nusemtl roof\nf 3/1/1 2/1/1 4/1/1\n";
+    folder.write("two.obj", &format!("{start}{faces}"))
+}
+
+/// The lowest and the highest z of a mesh as it is tessellated.
+fn heights_of(folder: &Folder, mesh: &str, options: &[&str]) -> [f64; 2] {
+    let path = folder.path("out.obj");
+    let usual = ["tessellate", mesh, "-o", &path, "--lod", "uniform", "--factor", "2", "--device", "cpu"];
+    output(&[&usual[..], options].concat());
+    let text = std::fs::read_to_string(&path).expect("what was just written");
+    let z = |line: &str| line.strip_prefix("v ")?.split(' ').nth(2)?.parse::<f64>().ok();
+    text.lines().filter_map(z).fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], z| [a.min(z), b.max(z)])
+}
+
+#[test]
+fn materials_are_displaced_as_the_file_and_the_options_say() {
+    let folder = Folder::new();
+    let mesh = two_materials(&folder);
+    let white = folder.path("white.png");
+    let roof = |amount: &str| format!("roof={white}{amount}");
+    let [up, down, usual, wall] =
+        [roof(",scale=0.5,midlevel=0"), roof(",scale=-0.5,midlevel=0.5"), roof(""), format!("wall={white},scale=1")];
+    let on = ["--displacement", "on"];
+    assert_eq!(heights_of(&folder, &mesh, &[]), [0.0, 0.0], "only if it is asked for");
+    assert_eq!(heights_of(&folder, &mesh, &on), [0.0, 0.25]);
+    assert_eq!(heights_of(&folder, &mesh, &["--height", "file"]), [0.0, 0.25]);
+    assert_eq!(heights_of(&folder, &mesh, &["--height", &up]), [0.25, 0.5]);
+    assert_eq!(heights_of(&folder, &mesh, &["--height", &down]), [-0.25, 0.25]);
+    assert_eq!(heights_of(&folder, &mesh, &["--height", &up, "--height", &wall]), [0.5, 0.5]);
+    // The bounding radius is half of the square root of 2.
+    let [low, high] = heights_of(&folder, &mesh, &["--height", &usual, "--height-scale", "1", "--midlevel", "0"]);
+    assert!(low == 0.25 && (high - 0.5_f64.sqrt()).abs() < 1e-6, "{low} {high}");
+    let render = ["render", &mesh, "-o", "unused.png", "--height"];
+    let with = |more: &[&'static str]| [&render[..], more].concat();
+    sentence(&with(&["floor=a.png"]), &["no material \"floor\"", "\"wall\", \"roof\""]);
+    for wrong in [&["wall=a.png,scale=x"][..], &["=a.png"], &["wall=a.png", "--height", "b.png"]] {
+        failure(&with(wrong), 2);
+    }
+}
+
 #[test]
 fn bad_height_images_are_named_and_wrong_options_are_usage_errors() {
     let folder = Folder::new();

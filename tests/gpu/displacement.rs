@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use geometry::mesh::{Corner, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
+use geometry::mesh::{Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Tessellation, Vertex,
@@ -349,6 +349,77 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
         HeightSource::Materials.load(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("images"),
     ));
     on_device(Shape::Torus, mesh)
+}
+
+/// A torus in two halves of a material each, with images of their own or none.
+fn halves_under(own: &[Option<HeightMap>; 2]) -> (Loaded, Scene) {
+    let mut mesh = Shape::Torus.build();
+    let count = mesh.triangles.len() as u32;
+    let half = |triangles| Material { triangles, ..mesh.materials[0].clone() };
+    mesh.materials = vec![half(0..count / 2), half(count / 2..count)];
+    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, own, &Progress::new()).expect("not cancelled")));
+    on_device(Shape::Torus, mesh)
+}
+
+#[test]
+fn materials_with_images_of_their_own_meet_without_cracks() {
+    let amount = HeightAmount::from_factor(0.15, -0.05);
+    let [deep, usual] = [waves(16).with_amount(amount), waves(64)];
+    let same_pixels = usual.with_amount(amount);
+    for own in [
+        [Some(deep.clone()), Some(usual.clone())],
+        [Some(usual.clone()), Some(same_pixels)],
+        [Some(deep.clone()), None],
+        [None, Some(usual)],
+        [None, Some(deep)],
+    ] {
+        let (loaded, mut scene) = halves_under(&own);
+        let size = loaded.mesh.bounds().radius();
+        for (lod, normals) in
+            [(Lod::Uniform, Normals::Linear), (Lod::EdgeLength, Normals::Surface), (Lod::Error, Normals::Quadratic)]
+        {
+            let settings = Settings::from(Tessellation {
+                displacement: Displacement::On,
+                height_scale: 0.1,
+                factor: 5.3,
+                lod,
+                normals,
+                ..Tessellation::default()
+            });
+            let inputs = inputs(&loaded, &settings);
+            let gpu = on_gpu(&mut scene, &inputs);
+            let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+            let amounts = own.each_ref().map(|map| map.as_ref().map(|map| map.amount));
+            let what = format!("{amounts:?} {lod:?} {normals:?}");
+            assert!(gpu.patch_factors == cpu.patch_factors && gpu.vertices.len() == cpu.vertices.len(), "{what}");
+            for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
+                let [p, q] = [a.position, b.position].map(glam::Vec3::from);
+                assert!(p.distance(q) <= 1e-5 * size, "{what}: {p} {q}");
+            }
+            let measured = measured(&mut scene, &loaded, &settings);
+            assert_eq!((measured.cracks.different_bits, measured.not_finite), (0, 0), "{what}");
+        }
+    }
+}
+
+#[test]
+fn an_amount_of_an_image_counts_as_that_of_the_settings_does() {
+    let radius = Shape::Torus.build().bounds().radius();
+    let own = waves(32).with_amount(Some(HeightAmount { scale: 0.05 * radius, midlevel: 0.25 }));
+    let (said, mut of_settings) = halves_under(&[Some(waves(32)), Some(waves(32))]);
+    let (_, mut of_image) = halves_under(&[Some(own.clone()), Some(own)]);
+    for lod in [Lod::Uniform, Lod::Error] {
+        let tessellation = |height_scale, midlevel| {
+            let displacement = Displacement::On;
+            let own = Tessellation { displacement, height_scale, midlevel, lod, ..Tessellation::default() };
+            inputs(&said, &Settings::from(own))
+        };
+        let expected = on_gpu(&mut of_settings, &tessellation(0.05, 0.25));
+        let made = on_gpu(&mut of_image, &tessellation(-0.7, 0.9));
+        assert!(expected.patch_factors == made.patch_factors, "{lod:?}");
+        let bits = |vertex: &Vertex| vertex.position.map(f32::to_bits);
+        assert!(expected.vertices.iter().map(bits).eq(made.vertices.iter().map(bits)), "{lod:?}");
+    }
 }
 
 #[test]

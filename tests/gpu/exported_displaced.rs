@@ -5,7 +5,7 @@ use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     Clip, Convention, Displacement, Edges, Inputs, Lod, LodView, Normals, Partitioning, PatchFactors, Tessellation,
-    Vertex, corner_weights, displaced_corners, displacement_reach, height_units, tessellate, unpack_normal,
+    Vertex, corner_weights, displaced_corners, displacement_reach, tessellate, unpack_normal, usual_amount,
 };
 use gpu::read_buffer;
 use inspect::shader_files::{Language, shader_files};
@@ -110,10 +110,10 @@ impl Passes {
     /// Uploads a mesh, as it is seen.
     pub(super) fn new(mesh: &Mesh, topology: &Topology, own: &Tessellation, view: LodView) -> Self {
         let heights = mesh.heights.as_deref().expect("heights");
-        let map = &heights.maps()[0];
+        let map = &heights.maps[0];
         let inputs = Inputs::new(own, view);
         let view = view.with_reach(displacement_reach(mesh, &inputs));
-        let scale = height_units(heights, &inputs).to_bits();
+        let scale = usual_amount(heights, &inputs).scale.to_bits();
         let [width, height] = map.size;
         let height_constants = [width, height, map.levels, u32::from(map.repeats), scale, own.midlevel.to_bits(), 0, 0];
         let corners = exported_corners(mesh, topology);

@@ -1,8 +1,11 @@
 //! Parts with surfaces and details of their own: what they share is still computed once.
 
-use geometry::mesh::{Mesh, PartRange, PartStyle, Shape};
+use std::sync::Arc;
+
+use geometry::mesh::{HeightAmount, HeightMap, Heights, Material, Mesh, PartRange, PartStyle, Shape};
+use geometry::progress::Progress;
 use geometry::tessellate::{
-    Edges, Inputs, Lod, Partitioning, Surface, Tessellation, edge_factors as factors_on_cpu, tessellate,
+    Displacement, Edges, Inputs, Lod, Partitioning, Surface, Tessellation, edge_factors as factors_on_cpu, tessellate,
 };
 use inspect::engine::Loaded;
 use inspect::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
@@ -143,4 +146,42 @@ fn details_scale_the_tolerance_and_edges_as_published_keep_each_patch_its_own() 
     });
     assert!(made[0][0] < made[1][0] && made[1][0] < made[2][0], "{made:?}");
     assert!(made[0][1] == made[1][1] && made[1][1] == made[2][1], "nothing is shared: {made:?}");
+}
+
+#[test]
+fn parts_with_details_are_displaced_by_the_images_of_their_materials() {
+    let styled = three_parts(Shape::Torus, [style(Surface::Flat, 0.5), style(Surface::Phong, 2.0)]);
+    let mut mesh = Mesh::clone(&styled.mesh);
+    let half = mesh.triangles.len() as u32 / 2;
+    let of = |triangles| Material { triangles, ..mesh.materials[0].clone() };
+    mesh.materials = vec![of(0..half), of(half..2 * half)];
+    let image = |side: u32| {
+        let height = |i: u32| 0.5 + 0.4 * (std::f32::consts::TAU * (i % side) as f32 / side as f32).sin();
+        HeightMap::new([side; 2], (0..side * side).map(height).collect())
+    };
+    let own = [Some(image(16).with_amount(HeightAmount::from_factor(0.2, -0.1))), Some(image(32))];
+    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled")));
+    let loaded = loaded_mesh(Source::Shape(Shape::Torus), mesh);
+    let (size, patches) = (loaded.mesh.bounds().radius(), loaded.topology.patches.len());
+    let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
+    for lod in [Lod::Uniform, Lod::EdgeLength, Lod::Error] {
+        let displacement = Displacement::On;
+        let own = Tessellation { displacement, height_scale: 0.05, factor: 3.0, lod, ..Tessellation::default() };
+        let inputs = inputs(&loaded, &Settings::from(own));
+        let gpu = on_gpu(&mut scene, &inputs);
+        let cracks = engine().measure(&mut scene).expect("a readback").cracks;
+        assert_eq!((cracks.different_bits, cracks.different_factors), (0, 0), "{lod:?}");
+        if lod == Lod::Error {
+            let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+            let different = gpu.patch_factors.iter().zip(&cpu.patch_factors).filter(|(a, b)| a != b).count();
+            assert!(50 * different <= patches, "{different} of {patches}");
+            continue;
+        }
+        let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, Some(&edge_factors(&scene)));
+        assert_eq!(gpu.vertices.len(), cpu.vertices.len(), "{lod:?}");
+        for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
+            let [p, q] = [a.position, b.position].map(glam::Vec3::from);
+            assert!(p.distance(q) <= 1e-5 * size, "{lod:?}: {p} {q}");
+        }
+    }
 }

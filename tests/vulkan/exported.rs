@@ -5,7 +5,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use geometry::mesh::adjacency::Layout;
-use geometry::mesh::{HeightMap, Heights, Mesh, Topology};
+use geometry::mesh::{HeightAmount, HeightMap, Heights, Mesh, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::hull_factors::HullFactors;
 use geometry::tessellate::mesh_displacement::displaced_corners;
@@ -165,7 +165,7 @@ impl<'a> Subject<'a> {
         let corners = displaced_corners(&self.mesh, &self.topology);
         let displaced = corners.as_deref().filter(|_| tessellation.displacement != Displacement::Off);
         let displaced = displaced.and_then(|corners| {
-            let map = self.mesh.heights.as_deref()?.maps().first()?;
+            let map = self.mesh.heights.as_deref()?.maps.first()?;
             let levels = file("levels.comp").or(file("levels.hlsl"));
             Some(Displaced { corners, map, constants: self.height_constants(tessellation, map), levels })
         });
@@ -199,8 +199,9 @@ impl<'a> Subject<'a> {
     /// The constant buffer, laid out as the exported files say.
     fn constants(&self, own: &Tessellation) -> [f32; 48] {
         let heights = self.mesh.heights.as_deref().filter(|_| own.displacement != Displacement::Off);
-        let reach = heights.map_or(0.0, |heights| heights.reach(own.midlevel));
-        constants(own, &self.view.with_reach(self.height_scale(own).abs() * reach))
+        let amount = HeightAmount { scale: self.height_scale(own), midlevel: own.midlevel };
+        let reach = heights.map_or(0.0, |heights| heights.reach(amount));
+        constants(own, &self.view.with_reach(reach))
     }
 
     fn patch_corners(&self) -> Vec<[[f32; 3]; 3]> {

@@ -320,7 +320,7 @@ fn a_file_is_opened_by_its_path_and_reloading_keeps_settings_and_camera() {
     settle(&mut harness);
     let Source::File(path) = vase() else { unreachable!("it is a file") };
     harness
-        .get_by_label("A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)")
+        .get_by_label("A .gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf file, shape:NAME, a height image (.png, .jpg, .webp, .tif), or an environment (.hdr, .exr)")
         .type_text(&path.display().to_string());
     settle(&mut harness);
     click(&mut harness, "Open");

@@ -7,6 +7,7 @@ use geometry::mesh::Shape;
 use geometry::tessellate::{Displacement, Normals, Surface};
 use load::{HeightSource, Source};
 
+use crate::editing::copied;
 use crate::{choose, press, settle, uniform};
 
 #[test]
@@ -90,6 +91,27 @@ fn an_image_displaces_the_mesh_and_other_settings_stay() {
 }
 
 #[test]
+fn a_file_is_displaced_by_the_height_images_of_its_materials() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = |name: &str| folder.path().join(name);
+    let white = image::GrayImage::from_pixel(2, 2, image::Luma([255]));
+    white.save(path("white.png")).expect("a writable temporary folder");
+    let mesh = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl wall\nf 1/1 2/2 3/3\n";
+    for (name, text) in [("a.mtl", "newmtl wall\ndisp -mm 0 0.25 white.png\n"), ("a.obj", mesh)] {
+        std::fs::write(path(name), text).expect("a writable temporary folder");
+    }
+    let mut harness = uniform(Some(Source::File(path("a.obj"))));
+    assert_eq!(harness.state().settings().tessellation.displacement, Displacement::On);
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.heights, None, "nothing was chosen");
+    assert!(harness.query_by_role_and_label(Role::Slider, "Midlevel").is_none(), "the file says how far");
+    assert!(copied(&mut harness).contains("--height file"));
+    press(&mut harness, Key::D);
+    press(&mut harness, Key::R);
+    let app = harness.state();
+    assert_eq!(app.settings().tessellation.displacement, Displacement::Off, "loading it again changes nothing");
+}
+
+#[test]
 fn missing_heights_are_reported_and_change_nothing() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     let pictures = harness.state().pictures();
@@ -113,5 +135,5 @@ fn a_height_image_can_be_chosen_from_the_file_menu() {
     entry.hover();
     // Hover texts appear after a delay.
     harness.run_steps(60);
-    harness.get_by_label_contains("PNG, JPEG or WebP image");
+    harness.get_by_label_contains("PNG, JPEG, WebP, TIFF or EXR image");
 }

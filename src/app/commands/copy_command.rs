@@ -57,9 +57,10 @@ impl App {
         let reference_shape = self.reference_shape().map(absolute_source);
         let left_mesh = self.left_mesh.as_ref().and_then(|left| left.from.as_ref()).map(absolute_source);
         let mut preparation = document.loaded.preparation.clone();
-        if let Some(HeightSource::File(path)) = &mut preparation.heights {
-            *path = absolute_path(path.clone());
+        if preparation.heights.is_none() && self.has_heights() {
+            preparation.heights = Some(HeightSource::Model);
         }
+        preparation.heights.iter_mut().for_each(HeightSource::make_absolute);
         let settings = self.saved_settings_of(theme, choices);
         let settings = Settings { split: settings.split.filter(|_| !self.shows_before()), ..settings };
         let px = |size: glam::Vec2| size.to_array().map(|side| side as u32);

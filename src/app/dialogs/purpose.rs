@@ -40,12 +40,16 @@ impl AskedFile {
         };
         let images: &[_] = &["png", "jpg", "jpeg", "webp"];
         match purpose {
-            Purpose::Open => {
-                mesh("Open path", "shape:NAME, a height image (.png, .jpg, .webp), or an environment (.hdr, .exr)")
-            }
+            Purpose::Open => mesh(
+                "Open path",
+                "shape:NAME, a height image (.png, .jpg, .webp, .tif), or an environment (.hdr, .exr)",
+            ),
             Purpose::CompanionFile(CompanionFile::ReferenceShape) => mesh("Reference surface path", "or shape:NAME"),
             Purpose::CompanionFile(CompanionFile::LeftMesh) => mesh("Left mesh path", "or shape:NAME"),
-            Purpose::Heights => beside("Height image path", "A .png, .jpg or .webp image", "Images", images),
+            Purpose::Heights => {
+                let images = [images, &["tif", "tiff", "exr"]].concat();
+                beside("Height image path", "A .png, .jpg, .webp, .tif or .exr image", "Images", &images)
+            }
             Purpose::CompanionFile(CompanionFile::Matcap) => {
                 beside("Matcap path", "A .png, .jpg or .webp image", "Images", images)
             }

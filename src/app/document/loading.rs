@@ -224,7 +224,7 @@ impl App {
         if !is_first {
             self.dialogs.error = None;
         }
-        self.take_heights(before.and_then(|document| document.loaded.preparation.heights).as_ref());
+        self.take_heights(before.is_some_and(|document| document.loaded.mesh.heights.is_some()));
         if !keep_view {
             self.panels.dragged_morphs = None;
             self.take_placement();

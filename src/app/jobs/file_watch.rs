@@ -63,8 +63,8 @@ pub(super) fn watch(mut known: Stamped, wanted: &Progress, mut changed: impl FnM
 /// The files that a mesh is read from, besides those that it names.
 pub(crate) fn sources(source: &Source, heights: Option<&HeightSource>) -> Vec<PathBuf> {
     let mesh = if let Source::File(path) = source { Some(path) } else { None };
-    let heights = if let Some(HeightSource::File(path)) = heights { Some(path) } else { None };
-    mesh.into_iter().chain(heights).cloned().collect()
+    let heights = heights.map(HeightSource::files).unwrap_or_default();
+    mesh.into_iter().cloned().chain(heights.into_iter().map(Into::into)).collect()
 }
 
 impl App {

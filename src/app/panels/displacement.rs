@@ -7,6 +7,8 @@ use crate::app::App;
 use crate::app::text::short;
 use crate::app::widgets::list_row;
 use crate::commands::{Action, HEIGHT_IMAGE, Purpose, key_name};
+use geometry::mesh::{HeightAmount, Material};
+use geometry::names::shown;
 use geometry::tessellate::Displacement;
 use inspect::settings::options;
 use load::environment_file::is_environment;
@@ -15,7 +17,7 @@ use load::{HeightSource, Source};
 /// Whether a path names an image rather than a mesh.
 fn is_image(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg" | "webp"))
+    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg" | "webp" | "tif" | "tiff"))
 }
 
 impl App {
@@ -36,11 +38,11 @@ impl App {
     }
 
     /// Adapts displacement to a mesh that was just loaded: on if it is the first with heights, off without heights.
-    pub(in crate::app) fn take_heights(&mut self, before: Option<&HeightSource>) {
-        self.settings.tessellation.displacement = match (self.has_heights(), before) {
-            (true, Some(_)) => return,
-            (has_heights, _) => Displacement::usual(has_heights),
-        };
+    pub(in crate::app) fn take_heights(&mut self, had_heights: bool) {
+        let has_heights = self.has_heights();
+        if !(has_heights && had_heights) {
+            self.settings.tessellation.displacement = Displacement::usual(has_heights);
+        }
     }
 
     pub(in crate::app) fn has_heights(&self) -> bool {
@@ -49,15 +51,21 @@ impl App {
 
     pub(in crate::app) fn height_rows(&mut self, ui: &mut egui::Ui) {
         let heights = self.preparation().heights;
-        let shown = heights.as_ref().map_or("None".to_owned(), HeightSource::title);
+        let materials = self.document.iter().flat_map(|document| &document.loaded.mesh.materials);
+        let has_own = materials.into_iter().any(|material| material.height.is_some());
+        let of_file = if has_own { "As the file says" } else { "None" };
+        let shown = heights.as_ref().map_or(of_file.to_owned(), HeightSource::title);
         let mut chosen = None;
-        let hover = "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window \
-                     becomes the height map (--height).";
-        list_row(ui, "Height map", hover, &shown, |ui| {
+        let hover = format!(
+            "The image that displaces the surface: black is 0 and white is 1. An image that is dropped on the window becomes the \
+             height map (--height).{}",
+            self.amounts(),
+        );
+        list_row(ui, "Height map", &hover, &shown, |ui| {
             let mut entry = |text: &str, is_shown: bool, hover: &str| {
                 ui.selectable_label(is_shown, text).on_hover_text(hover).clicked()
             };
-            if entry("None", heights.is_none(), "The surface isn't displaced.") {
+            if entry(of_file, heights.is_none(), "The height images that the file gives its materials, if any.") {
                 chosen = Some(None);
             }
             let is_material = heights == Some(HeightSource::Materials);
@@ -72,9 +80,19 @@ impl App {
         if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
             self.displace(ui.ctx(), chosen);
         }
-        if self.has_heights() {
-            self.displacement_rows(ui);
-        }
+        self.displacement_rows(ui);
+    }
+
+    /// Names the first few materials whose images say how far they move the surface.
+    fn amounts(&self) -> String {
+        const NAMED: usize = 8;
+        let mesh = self.document.as_ref().map(|document| document.loaded.mesh.clone()).unwrap_or_default();
+        let line = |(index, material): (usize, &Material)| {
+            let HeightAmount { scale, midlevel } = mesh.heights.as_deref()?.map(index)?.amount?;
+            let [scale, midlevel] = [scale, midlevel].map(|number| short(f64::from(number)));
+            Some(format!("\n{}: {scale} object units, midlevel {midlevel}", shown(&material.name)))
+        };
+        mesh.materials.iter().enumerate().filter_map(line).take(NAMED).collect()
     }
 
     pub(in crate::app) fn toggle_displacement(&mut self) {
@@ -90,14 +108,17 @@ impl App {
     }
 
     fn displacement_rows(&mut self, ui: &mut egui::Ui) {
-        let heights = self.document.as_ref().and_then(|document| document.loaded.mesh.heights.clone());
-        let radius = heights.map_or(0.0, |heights| heights.radius);
+        let Some(document) = &self.document else { return };
+        let Some(heights) = document.loaded.mesh.heights.clone() else { return };
         let settings = &mut self.settings;
         option_row(ui, &options::DISPLACEMENT, settings, key_name(&Action::ToggleDisplacement));
-        let units = short(f64::from(settings.tessellation.height_scale * radius));
-        let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
-        option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);
-        option_row(ui, &options::MIDLEVEL, settings, "");
+        // Otherwise each image has a scale and a midlevel of its own.
+        if heights.follow_settings() {
+            let units = short(f64::from(settings.tessellation.height_scale * heights.radius));
+            let hover = format!("{} Here it is {units} object units.", option_hover(&options::HEIGHT_SCALE, ""));
+            option_row_with(ui, &options::HEIGHT_SCALE, settings, &hover);
+            option_row(ui, &options::MIDLEVEL, settings, "");
+        }
         option_row(ui, &options::NORMAL_MAPS, settings, "");
     }
 }

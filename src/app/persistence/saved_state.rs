@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::saved_settings::{read_settings, written_settings};
 use crate::app::sections::{OpenSections, Section};
 use crate::commands::{CompanionFile, MOST_BOOKMARKS};
+use geometry::defaults::with_defaults;
 use geometry::mesh::UpAxis;
 use inspect::render::Camera;
 use inspect::settings::{Choice, Settings};
@@ -34,26 +35,30 @@ pub(super) const KEPT: [(CompanionFile, &str); 3] = [
 const THEMES: [(ThemePreference, &str); 3] =
     [(ThemePreference::System, "system"), (ThemePreference::Light, "light"), (ThemePreference::Dark, "dark")];
 
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct SavedState {
-    /// Without displacement, axis and unit, which depend on the mesh.
-    pub settings: Settings,
-    pub frame: WindowGeometry,
-    pub open: OpenSections,
-    /// The absolute paths of the files of [`KEPT`] that are open.
-    pub companions: [Option<String>; KEPT.len()],
-    /// The file that was opened last comes first.
-    pub files: Vec<SavedFile>,
+with_defaults! {
+    #[derive(Clone, Debug, PartialEq)]
+    pub(super) struct SavedState {
+        /// Without displacement, axis and unit, which depend on the mesh.
+        pub settings: Settings = Settings::opening(),
+        pub frame: WindowGeometry = WindowGeometry::default(),
+        pub open: OpenSections = OpenSections::default(),
+        /// The absolute paths of the files of [`KEPT`] that are open.
+        pub companions: [Option<String>; KEPT.len()] = Default::default(),
+        /// The file that was opened last comes first.
+        pub files: Vec<SavedFile> = Vec::new(),
+    }
 }
 
-/// The window's size, theme and zoom.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WindowGeometry {
-    /// Width and height while it isn't maximised, in points without zoom.
-    pub size: [f32; 2],
-    pub is_maximized: bool,
-    pub theme: ThemePreference,
-    pub zoom: f32,
+with_defaults! {
+    /// The window's size, theme and zoom.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct WindowGeometry {
+        /// Width and height while it isn't maximised, in points without zoom.
+        pub size: [f32; 2] = [1400.0, 860.0],
+        pub is_maximized: bool = false,
+        pub theme: ThemePreference = ThemePreference::System,
+        pub zoom: f32 = 1.0,
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -82,24 +87,6 @@ pub(super) struct SavedCamera {
     pub camera: Camera,
     /// The mesh's bounding diagonal, in object units.
     pub diagonal: f32,
-}
-
-impl Default for WindowGeometry {
-    fn default() -> Self {
-        Self { size: [1400.0, 860.0], is_maximized: false, theme: ThemePreference::System, zoom: 1.0 }
-    }
-}
-
-impl Default for SavedState {
-    fn default() -> Self {
-        Self {
-            settings: Settings::opening(),
-            frame: WindowGeometry::default(),
-            open: OpenSections::default(),
-            companions: Default::default(),
-            files: Vec::new(),
-        }
-    }
 }
 
 impl SavedCamera {

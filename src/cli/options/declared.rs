@@ -50,7 +50,7 @@ impl Default for GivenTessellation {
 }
 
 const WITHOUT_DISPLACEMENT: &str =
-    "By default on with --height, else off. Without --height, the materials' images are the height map";
+    "By default on with --height, else off. Without --height it takes the file's height images, or else base colours";
 /// Arguments that say factors: a factor, and a file or a shader of factors.
 const WITHOUT_LOD: [&str; 3] = ["factor", "given", "lod_shader"];
 const USUAL_LOD: &str = "With --factor it is uniform, unless this option says otherwise";

@@ -11,8 +11,8 @@ use glam::Vec3;
 use geometry::mesh::PartStyle;
 use inspect::export::ending;
 use inspect::render::camera::FIELDS_OF_VIEW;
-use load::Source;
 use load::format::Format;
+use load::{HeightSource, Source};
 
 /// Parses the path of a picture. Refuses standard output, and endings of files that are no PNG files.
 pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
@@ -135,6 +135,11 @@ pub(super) fn position(text: &str) -> Result<Vec3, String> {
 /// Parses a mesh's source, whose path may be in any encoding.
 pub(crate) fn source() -> impl TypedValueParser<Value = Source> {
     OsStringValueParser::new().try_map(Source::try_from)
+}
+
+/// Parses a source of height images, whose path may be in any encoding.
+pub(crate) fn heights() -> impl TypedValueParser<Value = HeightSource> {
+    OsStringValueParser::new().try_map(HeightSource::parse)
 }
 
 /// Parses a number of bytes, with a unit or without.

@@ -1,15 +1,18 @@
-//! Height images for displacement. Each is a pyramid of levels, so that a sample can cover an area that suits the
-//! triangles.
+//! Height images for displacement, one for each material or one for all. Each is a pyramid of levels, so that a sample can cover an
+//! area that suits the triangles.
 
 mod pyramid;
 mod relief;
 
 pub use relief::{PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use glam::Vec2;
 
 use super::Mesh;
-use crate::casts::to_f32;
+use crate::casts::{to_f32, to_u32};
 use crate::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
@@ -17,6 +20,31 @@ pub const MAX_KEPT: u32 = 4096;
 
 /// The greatest number of maps of a mesh, for which the shaders have room.
 pub const MAX_MAPS: usize = 256;
+
+/// The largest scale and midlevel of an image, so that no coordinate leaves f32.
+const MOST_AMOUNT: f32 = 1e9;
+
+/// How far heights move the surface: by `scale` * (height - `midlevel`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeightAmount {
+    /// How far white is above black, in object units.
+    pub scale: f32,
+    /// The height that stays where it is.
+    pub midlevel: f32,
+}
+
+impl HeightAmount {
+    /// None if a number is no number, or above 1e9.
+    pub fn new(scale: f32, midlevel: f32) -> Option<Self> {
+        [scale, midlevel].iter().all(|number| number.abs() <= MOST_AMOUNT).then_some(Self { scale, midlevel })
+    }
+
+    /// The amount by which a height that is multiplied by `factor` and then has `offset` added moves the surface, both in object
+    /// units; none if the height makes no difference, and as for [`Self::new`].
+    pub fn from_factor(factor: f32, offset: f32) -> Option<Self> {
+        Self::new(factor, -offset / factor)
+    }
+}
 
 /// The heights of one image, from 0 (black) to 1 (white), in levels. Each level is half as wide and high as the one
 /// before, down to a single pixel.
@@ -30,8 +58,12 @@ pub struct HeightMap {
     /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
     /// continue.
     pub repeats: bool,
-    /// The pixels of all levels, one level after another, each row by row from the top.
-    pub heights: Vec<f32>,
+    /// How far it moves the surface; none if the settings say so.
+    pub amount: Option<HeightAmount>,
+    /// The least and the greatest height.
+    pub range: [f32; 2],
+    /// The pixels of all levels, one level after another, each row by row from the top. Maps that differ in the rest share them.
+    pub heights: Arc<Vec<f32>>,
 }
 
 /// The height maps that displace a mesh.
@@ -43,8 +75,6 @@ pub struct Heights {
     pub of_material: Vec<Option<u32>>,
     /// Whether each map is the brightness of its material's base colour.
     pub are_of_colors: bool,
-    /// The least and the greatest height in all maps.
-    pub range: [f32; 2],
     /// The mesh's bounding radius at rest, in object units. The scale of displacement is a multiple of it.
     pub radius: f32,
     /// For each of the mesh's corners, the sum of the angles, in radians, of the triangles there, in the mesh at rest.
@@ -58,13 +88,18 @@ impl HeightMap {
     pub fn level_size(&self, level: u32) -> [u32; 2] {
         self.size.map(|side| (side >> level).max(1))
     }
+
+    /// Returns the same image with an amount of its own.
+    pub fn with_amount(&self, amount: Option<HeightAmount>) -> Self {
+        Self { amount, ..self.clone() }
+    }
 }
 
 impl Heights {
     /// Uses one map for all materials of a mesh.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
         // The only possible error is cancellation, and no other code has this handle.
-        Self::all_over(mesh, map, &Progress::new()).expect("not cancelled")
+        Self::of_materials(mesh, &vec![Some(map); mesh.materials.len()], &Progress::new()).expect("not cancelled")
     }
 
     /// Uses a map made in code, of `side` px a side, with so many waves across and down. It can be repeated without a seam.
@@ -76,49 +111,30 @@ impl Heights {
         Self::everywhere(mesh, HeightMap::new([side; 2], (0..side * side).map(height).collect()))
     }
 
-    /// Uses one map for all materials of a mesh, and can be cancelled.
-    ///
-    /// # Errors
-    /// [`Cancelled`].
-    pub fn all_over(mesh: &Mesh, map: HeightMap, progress: &Progress) -> Result<Self, Cancelled> {
-        Self::new(mesh, vec![map], vec![Some(0); mesh.materials.len()], progress)
-    }
-
-    /// Uses several maps; `of_material` holds the map of each material.
+    /// Uses a map for each material that has one. Materials whose maps are equal share one.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
-    pub fn new(
-        mesh: &Mesh,
-        mut maps: Vec<HeightMap>,
-        of_material: Vec<Option<u32>>,
-        progress: &Progress,
-    ) -> Result<Self, Cancelled> {
-        for (material, map) in mesh.materials.iter().zip(&of_material) {
+    pub fn of_materials(mesh: &Mesh, own: &[Option<HeightMap>], progress: &Progress) -> Result<Self, Cancelled> {
+        let (mut maps, mut of_material): (Vec<HeightMap>, _) = (Vec::new(), Vec::new());
+        for (material, own) in mesh.materials.iter().zip(own) {
+            let Some(own) = own else {
+                of_material.push(None);
+                continue;
+            };
+            let is_same = |map: &HeightMap| Arc::ptr_eq(&map.heights, &own.heights) && map.amount == own.amount;
+            let index = maps.iter().position(is_same).unwrap_or(maps.len());
+            if index == maps.len() {
+                maps.push(own.clone());
+            }
+            of_material.push(Some(to_u32(index)));
             let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
-            let uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
-            let beyond = |uv: Vec2| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any();
-            if let Some(map) = map.and_then(|map| maps.get_mut(map as usize)) {
-                map.repeats |= uvs.clone().any(beyond);
-            }
-        }
-        let mut range = [f32::INFINITY, f32::NEG_INFINITY];
-        for map in &maps {
-            let [width, height] = map.size;
-            for &own in &map.heights[..(width * height) as usize] {
-                range = [range[0].min(own), range[1].max(own)];
-            }
+            let mut uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
+            maps[index].repeats |= uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any());
         }
         let reliefs = relief::reliefs(mesh, &maps, &of_material, progress)?;
-        Ok(Self {
-            maps,
-            of_material,
-            are_of_colors: false,
-            range,
-            radius: mesh.bounds().radius(),
-            angles: angles(mesh),
-            reliefs,
-        })
+        let (radius, angles) = (mesh.bounds().radius(), angles(mesh));
+        Ok(Self { maps, of_material, are_of_colors: false, radius, angles, reliefs })
     }
 
     /// Returns the number of a material's image, if it has one.
@@ -126,20 +142,30 @@ impl Heights {
         self.of_material.get(material).copied().flatten()
     }
 
-    /// Returns the images.
-    pub fn maps(&self) -> &[HeightMap] {
-        &self.maps
+    /// Returns a material's image, if it has one.
+    pub fn map(&self, material: usize) -> Option<&HeightMap> {
+        self.maps.get(self.map_of(material)? as usize)
     }
 
-    /// Returns the greatest distance that a point can be moved by, as a multiple of the scale.
-    pub fn reach(&self, midlevel: f32) -> f32 {
-        (self.range[0] - midlevel).abs().max((self.range[1] - midlevel).abs())
+    /// Returns the greatest distance that a point can be moved by, in object units, where the settings say `usual`.
+    pub fn reach(&self, usual: HeightAmount) -> f32 {
+        let of_map = |map: &HeightMap| {
+            let HeightAmount { scale, midlevel } = map.amount.unwrap_or(usual);
+            map.range.map(|height| (scale * (height - midlevel)).abs())
+        };
+        self.maps.iter().flat_map(of_map).fold(0.0, f32::max)
     }
 
-    /// Returns the size of all maps, in bytes.
-    pub fn bytes(&self) -> u64 {
-        self.maps.iter().map(|map| size_of_val(&map.heights[..]) as u64).sum()
+    /// Whether the settings say how far some image moves the surface.
+    pub fn follow_settings(&self) -> bool {
+        self.maps.iter().any(|map| map.amount.is_none())
     }
+}
+
+/// Returns the size of maps in bytes. Pixels that several share count once.
+pub fn bytes_of_maps<'a>(maps: impl Iterator<Item = &'a HeightMap>) -> u64 {
+    let known: HashMap<_, _> = maps.map(|map| (Arc::as_ptr(&map.heights), map.heights.len())).collect();
+    4 * known.into_values().sum::<usize>() as u64
 }
 
 /// Returns how many bytes [`Heights`] take for a mesh beside their maps: for angles, and for bounds over triangles while they are made.
@@ -168,7 +194,33 @@ mod tests {
     fn a_point_moves_by_the_height_that_differs_most_from_the_middle() {
         let map = HeightMap::new([4, 4], (0..16).map(|i| if i < 8 { 0.25 } else { 1.0 }).collect());
         let heights = Heights::everywhere(&Shape::Torus.build(), map);
-        assert_eq!([0.0, 0.5, 0.75, 1.0].map(|midlevel| heights.reach(midlevel)), [1.0, 0.5, 0.5, 0.75]);
+        let reach = |midlevel| heights.reach(HeightAmount { scale: -2.0, midlevel });
+        assert_eq!([0.0, 0.5, 0.75, 1.0].map(reach), [2.0, 1.0, 1.0, 1.5]);
+        let own = heights.maps[0].with_amount(HeightAmount::from_factor(4.0, -1.0));
+        assert_eq!(own.amount, Some(HeightAmount { scale: 4.0, midlevel: 0.25 }));
+        let own = Heights { maps: vec![own], ..heights };
+        assert_eq!(own.reach(HeightAmount { scale: 100.0, midlevel: 0.0 }), 3.0, "the settings don't count");
+    }
+
+    #[test]
+    fn amounts_that_depend_on_no_height_are_none() {
+        let bad = [(0.0, 1.0), (f32::NAN, 0.0), (f32::INFINITY, 0.0), (1.0, f32::NAN), (1e-30, 1e30)];
+        assert!(bad.into_iter().all(|(factor, offset)| HeightAmount::from_factor(factor, offset).is_none()));
+        assert_eq!(HeightAmount::from_factor(1e9, 0.0).map(|amount| amount.scale), Some(1e9));
+        assert_eq!(HeightAmount::from_factor(1.1e9, 0.0), None);
+    }
+
+    #[test]
+    fn materials_with_equal_maps_share_one_and_pixels_count_once() {
+        let mut mesh = Shape::Torus.build();
+        mesh.materials = vec![mesh.materials[0].clone(); 4];
+        let map = HeightMap::new([2, 2], vec![0.5; 4]);
+        let deep = map.with_amount(HeightAmount::from_factor(3.0, 0.0));
+        let own = [Some(map.clone()), None, Some(deep.clone()), Some(map.clone())];
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled");
+        assert_eq!(heights.of_material, [Some(0), None, Some(1), Some(0)]);
+        assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
+        assert!(heights.follow_settings() && !Heights::everywhere(&mesh, deep).follow_settings());
     }
 
     #[test]

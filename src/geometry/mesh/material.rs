@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::HeightMap;
 use crate::choice::choices;
+use crate::defaults::with_defaults;
 
 /// The look of some of a mesh's patches.
 #[derive(Clone, Debug)]
@@ -23,6 +25,8 @@ pub struct Material {
     pub double_sided: bool,
     /// How it reflects light.
     pub look: Look,
+    /// The height image that the file gives it, at the corners' own texture coordinates.
+    pub height: Option<HeightMap>,
     /// The mesh's triangles of this material.
     pub triangles: Range<u32>,
 }
@@ -37,6 +41,7 @@ impl Material {
             sampling: Sampling::default(),
             double_sided: false,
             look: Look::default(),
+            height: None,
             triangles: 0..0,
         }
     }
@@ -57,87 +62,60 @@ pub struct Texture {
     pub rgba: Vec<u8>,
 }
 
-/// How a material reflects and emits light. As JSON it has the numbers that need no explanation.
-#[derive(Clone, Debug, Serialize)]
-pub struct Look {
-    /// 0 for dielectrics, 1 for metals.
-    pub metallic: f32,
-    /// Perceptual roughness, 0 (a mirror) to 1.
-    pub roughness: f32,
-    /// Linear RGB that the surface emits, its strength included.
-    pub emissive: [f32; 3],
-    /// Factor of the first two components of the normal map's normals.
-    #[serde(skip)]
-    pub normal_scale: f32,
-    /// How much of the occlusion map counts, 0 to 1.
-    #[serde(skip)]
-    pub occlusion_strength: f32,
-    /// What the base colour's alpha does.
-    #[serde(skip)]
-    pub alpha: Alpha,
-    /// Whether the base colour is shown as it is, without light (KHR_materials_unlit).
-    pub unlit: bool,
-    /// Index of refraction of a dielectric (KHR_materials_ior).
-    pub ior: f32,
-    /// Strength of a dielectric's reflection, 0 to 1 (KHR_materials_specular).
-    pub specular: f32,
-    /// Linear RGB of a dielectric's reflection seen head-on (KHR_materials_specular).
-    pub specular_color: [f32; 3],
-    /// How much of the surface a clear coat covers, 0 to 1 (KHR_materials_clearcoat).
-    pub clearcoat: f32,
-    /// Perceptual roughness of the coat.
-    pub clearcoat_roughness: f32,
-    /// Factor of the first two components of the normals that the coat's own map has.
-    #[serde(skip)]
-    pub clearcoat_normal_scale: f32,
-    /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1 (KHR_materials_transmission).
-    pub transmission: f32,
-    /// Linear RGB of the light that fibres over the surface reflect, as those of cloth do; 0 without them (KHR_materials_sheen).
-    pub sheen_color: [f32; 3],
-    /// Perceptual roughness of the fibres, 0 (they stand upright) to 1.
-    pub sheen_roughness: f32,
-    /// How much longer highlights are along a direction than across it, 0 to 1 (KHR_materials_anisotropy).
-    pub anisotropy: f32,
-    /// The angle of that direction, in radians from the tangent towards the bitangent.
-    pub anisotropy_rotation: f32,
-    /// How far light goes through the body behind the surface, in object units; 0 for a thin surface, which bends no light
-    /// (KHR_materials_volume).
-    pub thickness: f32,
-    /// After how many object units the body leaves `attenuation_color` of white light; infinitely many if it absorbs none.
-    pub attenuation_distance: f32,
-    /// Linear RGB.
-    pub attenuation_color: [f32; 3],
-    /// The images beside that of the base colour, by [`Slot`].
-    #[serde(skip)]
-    pub maps: [Option<Map>; Slot::COUNT],
-}
-
-impl Default for Look {
-    fn default() -> Self {
-        Self {
-            metallic: 0.0,
-            roughness: 0.5,
-            emissive: [0.0; 3],
-            normal_scale: 1.0,
-            occlusion_strength: 1.0,
-            alpha: Alpha::Opaque,
-            unlit: false,
-            ior: 1.5,
-            specular: 1.0,
-            specular_color: [1.0; 3],
-            clearcoat: 0.0,
-            clearcoat_roughness: 0.0,
-            clearcoat_normal_scale: 1.0,
-            transmission: 0.0,
-            sheen_color: [0.0; 3],
-            sheen_roughness: 0.0,
-            anisotropy: 0.0,
-            anisotropy_rotation: 0.0,
-            thickness: 0.0,
-            attenuation_distance: f32::INFINITY,
-            attenuation_color: [1.0; 3],
-            maps: Default::default(),
-        }
+with_defaults! {
+    /// How a material reflects and emits light. As JSON it has the numbers that need no explanation.
+    #[derive(Clone, Debug, Serialize)]
+    pub struct Look {
+        /// 0 for dielectrics, 1 for metals.
+        pub metallic: f32 = 0.0,
+        /// Perceptual roughness, 0 (a mirror) to 1.
+        pub roughness: f32 = 0.5,
+        /// Linear RGB that the surface emits, its strength included.
+        pub emissive: [f32; 3] = [0.0; 3],
+        /// Factor of the first two components of the normal map's normals.
+        #[serde(skip)]
+        pub normal_scale: f32 = 1.0,
+        /// How much of the occlusion map counts, 0 to 1.
+        #[serde(skip)]
+        pub occlusion_strength: f32 = 1.0,
+        /// What the base colour's alpha does.
+        #[serde(skip)]
+        pub alpha: Alpha = Alpha::Opaque,
+        /// Whether the base colour is shown as it is, without light (KHR_materials_unlit).
+        pub unlit: bool = false,
+        /// Index of refraction of a dielectric (KHR_materials_ior).
+        pub ior: f32 = 1.5,
+        /// Strength of a dielectric's reflection, 0 to 1 (KHR_materials_specular).
+        pub specular: f32 = 1.0,
+        /// Linear RGB of a dielectric's reflection seen head-on (KHR_materials_specular).
+        pub specular_color: [f32; 3] = [1.0; 3],
+        /// How much of the surface a clear coat covers, 0 to 1 (KHR_materials_clearcoat).
+        pub clearcoat: f32 = 0.0,
+        /// Perceptual roughness of the coat.
+        pub clearcoat_roughness: f32 = 0.0,
+        /// Factor of the first two components of the normals that the coat's own map has.
+        #[serde(skip)]
+        pub clearcoat_normal_scale: f32 = 1.0,
+        /// How much of a dielectric's light goes through it in place of being scattered, 0 to 1 (KHR_materials_transmission).
+        pub transmission: f32 = 0.0,
+        /// Linear RGB of the light that fibres over the surface reflect, as those of cloth do; 0 without (KHR_materials_sheen).
+        pub sheen_color: [f32; 3] = [0.0; 3],
+        /// Perceptual roughness of the fibres, 0 (they stand upright) to 1.
+        pub sheen_roughness: f32 = 0.0,
+        /// How much longer highlights are along a direction than across it, 0 to 1 (KHR_materials_anisotropy).
+        pub anisotropy: f32 = 0.0,
+        /// The angle of that direction, in radians from the tangent towards the bitangent.
+        pub anisotropy_rotation: f32 = 0.0,
+        /// How far light goes through the body behind the surface, in object units; 0 for a thin surface, which bends no light
+        /// (KHR_materials_volume).
+        pub thickness: f32 = 0.0,
+        /// After how many object units the body leaves `attenuation_color` of white light; infinitely many if it absorbs none.
+        pub attenuation_distance: f32 = f32::INFINITY,
+        /// Linear RGB.
+        pub attenuation_color: [f32; 3] = [1.0; 3],
+        /// The images beside that of the base colour, by [`Slot`].
+        #[serde(skip)]
+        pub maps: [Option<Map>; Slot::COUNT] = Default::default(),
     }
 }
 
@@ -247,22 +225,18 @@ pub enum MapUv {
     Set(usize, [f32; 6]),
 }
 
-/// How an image is sampled, in the words of WebGPU.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Sampling {
-    /// Beyond the image, along u and v.
-    pub wrap: [Wrap; 2],
-    /// Whether texels are blended where they are larger than pixels.
-    pub magnify_linear: bool,
-    /// The same where they are smaller.
-    pub minify_linear: bool,
-    /// Whether mip levels are used, and blended (`Some(true)`).
-    pub mip_linear: Option<bool>,
-}
-
-impl Default for Sampling {
-    fn default() -> Self {
-        Self { wrap: [Wrap::Repeat; 2], magnify_linear: true, minify_linear: true, mip_linear: Some(true) }
+with_defaults! {
+    /// How an image is sampled, in the words of WebGPU.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+    pub struct Sampling {
+        /// Beyond the image, along u and v.
+        pub wrap: [Wrap; 2] = [Wrap::Repeat; 2],
+        /// Whether texels are blended where they are larger than pixels.
+        pub magnify_linear: bool = true,
+        /// The same where they are smaller.
+        pub minify_linear: bool = true,
+        /// Whether mip levels are used, and blended (`Some(true)`).
+        pub mip_linear: Option<bool> = Some(true),
     }
 }
 

@@ -50,7 +50,7 @@ use glam::{Vec2, Vec3};
 pub use bounds::Bounds;
 pub use corner_details::{CornerDetail, CornerDetails};
 pub use file_camera::{FileCamera, Projection};
-pub use heights::{HeightMap, Heights};
+pub use heights::{HeightAmount, HeightMap, Heights};
 pub use light::{Light, LightKind, MOST_LIGHTS};
 pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
 pub use repairs::Repairs;
@@ -136,7 +136,7 @@ impl Mesh {
         positions.clone().next().map(|_| Bounds::new(positions))
     }
 
-    /// The size in memory, in bytes. A texture that materials share counts once.
+    /// The size in memory, in bytes. A texture or a height image that materials share counts once.
     pub fn bytes(&self) -> u64 {
         let of_material = |material: &Material| {
             let maps = material.look.maps.clone().into_iter().flatten().map(|map| map.texture);
@@ -148,11 +148,12 @@ impl Mesh {
         let textures: usize = textures.iter().map(|texture| texture.rgba.capacity()).sum();
         let materials: usize =
             self.materials.iter().map(|material| size_of::<Material>() + material.name.capacity()).sum();
+        let heights = heights::bytes_of_maps(self.materials.iter().filter_map(|material| material.height.as_ref()));
         let rig = self.rig.as_ref().map_or(0, |rig| rig.bytes());
         let [corners, triangles] = [self.corners.capacity() * 32, self.triangles.capacity() * 12];
         let details = self.details.as_ref().map_or(0, |details| size_of_val(&details[..]));
         let parts = self.part_ranges.capacity() * size_of::<PartRange>();
-        (corners + triangles + parts + textures + materials + rig + details) as u64
+        (corners + triangles + parts + textures + materials + rig + details) as u64 + heights
     }
 
     /// Returns the lights of the file in a pose. One without a finite place there stays where it is at rest.

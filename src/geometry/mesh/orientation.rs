@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, Vec3};
 
-use super::{LightKind, Mesh, Projection, Rig};
+use super::{LightKind, Material, Mesh, Projection, Rig};
 use crate::casts::to_f32;
 
 choices! {
@@ -67,8 +67,11 @@ pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
     if let Some(rig) = &mut mesh.rig {
         reorient_rig(Arc::make_mut(rig), DMat4::from_mat3(up.matrix() * scale));
     }
-    for look in mesh.materials.iter_mut().map(|material| &mut material.look) {
+    for Material { look, height, .. } in &mut mesh.materials {
         (look.thickness, look.attenuation_distance) = (length(look.thickness), length(look.attenuation_distance));
+        if let Some(amount) = height.as_mut().and_then(|map| map.amount.as_mut()) {
+            amount.scale = length(amount.scale);
+        }
     }
     for light in &mut mesh.lights {
         (light.place, light.direction) = (place(light.place), up.turn(light.direction));
@@ -101,7 +104,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::Corner;
+    use crate::mesh::{Corner, HeightAmount, HeightMap};
 
     const ALL: [UpAxis; 6] = [UpAxis::X, UpAxis::Y, UpAxis::Z, UpAxis::NegX, UpAxis::NegY, UpAxis::NegZ];
 
@@ -134,6 +137,8 @@ mod tests {
     fn what_is_in_a_body_is_scaled_with_it() {
         let mut material = crate::mesh::Material::plain("body", [1.0; 4]);
         material.look.thickness = 4.0;
+        let image = HeightMap::new([1, 1], vec![0.5]);
+        material.height = Some(image.with_amount(HeightAmount::from_factor(4.0, -2.0)));
         let mut mesh = Mesh { materials: vec![material], ..Mesh::default() };
         for distance in [2.0, f32::INFINITY] {
             mesh.materials[0].look.attenuation_distance = distance;
@@ -141,6 +146,8 @@ mod tests {
             assert_eq!(mesh.materials[0].look.attenuation_distance, 0.5 * distance);
         }
         assert_eq!(mesh.materials[0].look.thickness, 1.0);
+        let amount = mesh.materials[0].height.as_ref().and_then(|map| map.amount);
+        assert_eq!(amount, HeightAmount::from_factor(1.0, -0.5));
     }
 
     proptest! {

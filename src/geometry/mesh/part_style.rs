@@ -5,21 +5,18 @@ use std::str::FromStr;
 
 use super::{Mesh, Topology};
 use crate::choice::Choice;
+use crate::defaults::with_defaults;
 use crate::surface_kind::Surface;
 
-/// What a part of a mesh has in place of what its tessellation says for all.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PartStyle {
-    /// Its surface; none for that of the tessellation.
-    pub surface: Option<Surface>,
-    /// How many times as fine as the rest LOD makes it, [`Self::LEAST`] to [`Self::MOST`] in steps of that least: by so much its
-    /// lengths and errors in px count, and given factors are multiplied.
-    pub detail: f32,
-}
-
-impl Default for PartStyle {
-    fn default() -> Self {
-        Self { surface: None, detail: 1.0 }
+with_defaults! {
+    /// What a part of a mesh has in place of what its tessellation says for all.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct PartStyle {
+        /// Its surface; none for that of the tessellation.
+        pub surface: Option<Surface> = None,
+        /// How many times as fine as the rest LOD makes it, [`Self::LEAST`] to [`Self::MOST`] in steps of that least: by so much its
+        /// lengths and errors in px count, and given factors are multiplied.
+        pub detail: f32 = 1.0,
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Clip, Convention, Displacement, Lod, LodView, Normals, Partitioning, Surface};
 use crate::choice::choices;
+use crate::defaults::with_defaults;
 use crate::mesh::Sharing;
 
 choices! {
@@ -18,66 +19,44 @@ choices! {
     }
 }
 
-/// How a mesh is tessellated.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tessellation {
-    /// The surface that replaces each triangle.
-    pub surface: Surface,
-    /// Strength of Phong tessellation, 0 (flat) to 1.
-    pub alpha: f32,
-    /// The normals of emitted vertices.
-    pub normals: Normals,
-    /// Where sides get what they share from.
-    pub edges: Edges,
-    /// Tessellation factor under uniform LOD, and the largest under LOD by distance, 1 to 64.
-    pub factor: f32,
-    /// How factors become segments.
-    pub partitioning: Partitioning,
-    /// The LOD that is chosen; [`Self::used_lod`] is the one that is used.
-    pub lod: Lod,
-    /// Under LOD by edge length: length of a segment on screen, in px.
-    pub pixels: f32,
-    /// Under LOD by error: largest distance on screen between the emitted triangles and the surface, in px.
-    pub tolerance: f32,
-    /// Under LOD by distance: distance to the eye up to which the factor is `factor`, in bounding radii.
-    pub near: f32,
-    /// Under LOD by distance: distance to the eye from which on the factor is 1, in bounding radii; larger than `near`.
-    pub far: f32,
-    /// Whether patches outside the view are left out.
-    pub clip: Clip,
-    /// Whether patches that show only their backs are left out, if the mesh is closed.
-    pub cull_back_faces: bool,
-    /// The order of factors and weights.
-    pub convention: Convention,
-    /// Whether height images move the surface.
-    pub displacement: Displacement,
-    /// Distance between a height of 0 and a height of 1, in bounding radii of the mesh at rest.
-    pub height_scale: f32,
-    /// The height that isn't moved, 0 to 1.
-    pub midlevel: f32,
-}
-
-impl Default for Tessellation {
-    fn default() -> Self {
-        Self {
-            surface: Surface::PnAen,
-            alpha: 0.75,
-            normals: Normals::Linear,
-            edges: Edges::PerEdge,
-            factor: 8.0,
-            partitioning: Lod::Uniform.usual_partitioning(),
-            lod: Lod::Uniform,
-            pixels: 8.0,
-            tolerance: 0.25,
-            near: 2.0,
-            far: 10.0,
-            clip: Clip::Off,
-            cull_back_faces: false,
-            convention: Convention::D3d11,
-            displacement: Displacement::Off,
-            height_scale: 0.05,
-            midlevel: 0.5,
-        }
+with_defaults! {
+    /// How a mesh is tessellated.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Tessellation {
+        /// The surface that replaces each triangle.
+        pub surface: Surface = Surface::PnAen,
+        /// Strength of Phong tessellation, 0 (flat) to 1.
+        pub alpha: f32 = 0.75,
+        /// The normals of emitted vertices.
+        pub normals: Normals = Normals::Linear,
+        /// Where sides get what they share from.
+        pub edges: Edges = Edges::PerEdge,
+        /// Tessellation factor under uniform LOD, and the largest under LOD by distance, 1 to 64.
+        pub factor: f32 = 8.0,
+        /// How factors become segments.
+        pub partitioning: Partitioning = Lod::Uniform.usual_partitioning(),
+        /// The LOD that is chosen; [`Self::used_lod`] is the one that is used.
+        pub lod: Lod = Lod::Uniform,
+        /// Under LOD by edge length: length of a segment on screen, in px.
+        pub pixels: f32 = 8.0,
+        /// Under LOD by error: largest distance on screen between the emitted triangles and the surface, in px.
+        pub tolerance: f32 = 0.25,
+        /// Under LOD by distance: distance to the eye up to which the factor is `factor`, in bounding radii.
+        pub near: f32 = 2.0,
+        /// Under LOD by distance: distance to the eye from which on the factor is 1, in bounding radii; larger than `near`.
+        pub far: f32 = 10.0,
+        /// Whether patches outside the view are left out.
+        pub clip: Clip = Clip::Off,
+        /// Whether patches that show only their backs are left out, if the mesh is closed.
+        pub cull_back_faces: bool = false,
+        /// The order of factors and weights.
+        pub convention: Convention = Convention::D3d11,
+        /// Whether height images move the surface.
+        pub displacement: Displacement = Displacement::Off,
+        /// Distance between a height of 0 and a height of 1, in bounding radii of the mesh at rest.
+        pub height_scale: f32 = 0.05,
+        /// The height that isn't moved, 0 to 1.
+        pub midlevel: f32 = 0.5,
     }
 }
 

@@ -13,24 +13,26 @@ use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
 use super::surface::{UNIT, linear_uv, patch_tangents};
 use super::vertex::Vertex;
-use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, factor_side};
-use crate::mesh::{Curves, Dominance, HeightMap, Heights, Mesh, PatchRelief, Sharing, Topology, patch_reliefs};
+use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, Tessellation, factor_side};
+use crate::mesh::{
+    Curves, Dominance, HeightAmount, HeightMap, Heights, Mesh, PatchRelief, Sharing, Topology, patch_reliefs,
+};
 
 /// Returns the heights that displace a mesh with these inputs, if any.
 pub fn displacing_heights<'a>(mesh: &'a Mesh, inputs: &Inputs) -> Option<&'a Heights> {
     mesh.heights.as_deref().filter(|_| inputs.tessellation.displacement.is_on())
 }
 
-/// Returns the distance between black and white in object units. It depends on the size of the mesh at rest, so that it
-/// is the same in every pose.
-pub fn height_units(heights: &Heights, inputs: &Inputs) -> f32 {
-    inputs.tessellation.height_scale * heights.radius
+/// Returns how far images without an amount of their own move the surface. It depends on the size of the mesh at rest, so that it is
+/// the same in every pose.
+pub fn usual_amount(heights: &Heights, inputs: &Inputs) -> HeightAmount {
+    let Tessellation { height_scale, midlevel, .. } = inputs.tessellation;
+    HeightAmount { scale: height_scale * heights.radius, midlevel }
 }
 
 /// Returns the largest distance by which a point is displaced, in object units.
 pub fn displacement_reach(mesh: &Mesh, inputs: &Inputs) -> f32 {
-    displacing_heights(mesh, inputs)
-        .map_or(0.0, |heights| height_units(heights, inputs).abs() * heights.reach(inputs.tessellation.midlevel))
+    displacing_heights(mesh, inputs).map_or(0.0, |heights| heights.reach(usual_amount(heights, inputs)))
 }
 
 /// The heights over a mesh, and what its patches share at edges and points.
@@ -40,9 +42,8 @@ pub(super) struct MeshDisplacement<'a> {
     heights: &'a Heights,
     mode: Displacement,
     normals: Normals,
-    /// The distance between black and white, in object units.
-    scale: f32,
-    midlevel: f32,
+    /// How far images without an amount of their own move the surface.
+    usual: HeightAmount,
     /// The largest factor that there is.
     last_factor: f32,
     dominance: Dominance,
@@ -92,8 +93,7 @@ impl<'a> MeshDisplacement<'a> {
             heights,
             mode: inputs.tessellation.displacement,
             normals: inputs.tessellation.normals,
-            scale: height_units(heights, inputs),
-            midlevel: inputs.tessellation.midlevel,
+            usual: usual_amount(heights, inputs),
             last_factor: last_factor(inputs.tessellation.partitioning),
             directions: directions(mesh, &dominance),
             frames: frames(mesh, topology),
@@ -132,7 +132,8 @@ impl<'a> MeshDisplacement<'a> {
     /// of the heights over the patch.
     pub(super) fn relief(&self, patch: u32) -> ([Vec3; 3], f32, PatchRelief) {
         let packed = self.corner_directions(patch).map(pack_normal);
-        (packed.map(unpack_normal), self.scale, self.reliefs[patch as usize])
+        let scale = self.map(patch).map_or(0.0, |map| self.amount(map).scale);
+        (packed.map(unpack_normal), scale, self.reliefs[patch as usize])
     }
 
     /// Returns the displacement of a place in a patch in object units, in f64. Heights are read from mip level 0 at the
@@ -142,7 +143,7 @@ impl<'a> MeshDisplacement<'a> {
         let uv = (0..3).map(|k| self.uvs(patch)[k].as_dvec2() * weights[k]).sum::<DVec2>();
         let directions = self.corner_directions(patch);
         let direction = (0..3).map(|k| directions[k].as_dvec3() * weights[k]).sum::<DVec3>().normalize_or_zero();
-        direction * f64::from(self.scale * (height_at(map, 0.0, uv.as_vec2()) - self.midlevel))
+        direction * f64::from(self.moved(map, 0.0, uv.as_vec2()))
     }
 
     /// Returns the mip level of an edge, by the length of its dominant side in the image.
@@ -160,8 +161,18 @@ impl<'a> MeshDisplacement<'a> {
 
     /// Returns the height map of a patch.
     fn map(&self, patch: u32) -> Option<&'a HeightMap> {
-        let map = self.heights.map_of(self.topology.material_of(patch))?;
-        self.heights.maps.get(map as usize)
+        self.heights.map(self.topology.material_of(patch))
+    }
+
+    /// Returns how far an image moves the surface.
+    fn amount(&self, map: &HeightMap) -> HeightAmount {
+        map.amount.unwrap_or(self.usual)
+    }
+
+    /// Returns how far an image moves a place of the surface, in object units.
+    fn moved(&self, map: &HeightMap, level: f32, uv: Vec2) -> f32 {
+        let HeightAmount { scale, midlevel } = self.amount(map);
+        scale * (height_at(map, level, uv) - midlevel)
     }
 
     fn uvs(&self, patch: u32) -> [Vec2; 3] {
@@ -262,14 +273,14 @@ impl<'a> MeshDisplacement<'a> {
     fn offset(&self, at: Lookup) -> f32 {
         let Some(map) = self.map(at.patch) else { return 0.0 };
         let level = if self.reads_level_0 { 0.0 } else { at.level.min((map.levels - 1) as f32) };
-        self.scale * (height_at(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) - self.midlevel)
+        self.moved(map, level, linear_uv(self.uvs(at.patch), at.u, at.v))
     }
 
     /// Returns the gradient of the height in object space, by the frames of the patch's corners.
     fn uphill(&self, at: Lookup) -> Vec3 {
         let Some(map) = self.map(at.patch) else { return Vec3::ZERO };
         let level = at.level.min((map.levels - 1) as f32);
-        let rises = height_slopes(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) * self.scale;
+        let rises = height_slopes(map, level, linear_uv(self.uvs(at.patch), at.u, at.v)) * self.amount(map).scale;
         let [a, b, c] = self.topology.patch_corners(at.patch).map(|corner| self.frames[corner as usize]);
         let [x, y, z] = [at.u, at.v, FIXED_ONE - at.u - at.v].map(|weight| weight as f32 * UNIT);
         let along_u = a[0] * x + b[0] * y + c[0] * z;
@@ -291,7 +302,7 @@ impl<'a> MeshDisplacement<'a> {
         let tangents = [along_u + turn_u * offset, along_v + turn_v * offset];
         let Some(map) = self.map(at.patch) else { return (Vec2::ZERO, tangents) };
         let level = at.level.min((map.levels - 1) as f32);
-        let rises = height_slopes(map, level, linear_uv(uvs, at.u, at.v)) * self.scale;
+        let rises = height_slopes(map, level, linear_uv(uvs, at.u, at.v)) * self.amount(map).scale;
         (Vec2::new(rises.dot(uvs[0] - uvs[2]), rises.dot(uvs[1] - uvs[2])), tangents)
     }
 }
@@ -360,6 +371,7 @@ pub fn displaced_corners(mesh: &Mesh, topology: &Topology) -> Option<Vec<Displac
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashMap;
     use std::sync::Arc;
 
     use super::*;
@@ -388,6 +400,65 @@ mod tests {
         let map = HeightMap::new([64, 64], (0..4096).map(height).collect());
         mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, map)));
         mesh
+    }
+
+    /// The bits of every position on edges and points, by a number of the edge or point and a place along the edge.
+    fn shared_places(mesh: &Mesh, topology: &Topology, displacement: Displacement) -> HashMap<[u32; 3], [u32; 3]> {
+        let own = Tessellation { displacement, factor: 5.3, height_scale: 0.2, ..Tessellation::default() };
+        let view = LodView::new(Mat4::IDENTITY, Vec2::ONE);
+        let mut places = HashMap::new();
+        for vertex in &tessellate(mesh, topology, &Inputs::new(&own, view), None).vertices {
+            let (patch, [u, v]) = (vertex.patch(), vertex.domain());
+            let point = |k: usize| topology.corner_points[topology.patch_corners(patch)[k % 3] as usize];
+            let place = match spot(u, v) {
+                Spot::Inside => continue,
+                Spot::Corner(k) => [0, point(k), 0],
+                Spot::Side(side, t) => {
+                    let edge = topology.sides[topology.patches[patch as usize].sides[side] as usize].edge;
+                    [1, edge, if point(side) < point(side + 1) { t } else { FIXED_ONE - t }]
+                }
+            };
+            let bits = vertex.position.map(f32::to_bits);
+            assert_eq!(*places.entry(place).or_insert(bits), bits, "a crack at {place:?}");
+        }
+        places
+    }
+
+    #[test]
+    fn materials_meet_at_the_image_of_the_dominant_side() {
+        let mut mesh = Shape::Torus.build();
+        let half = mesh.triangles.len() as u32 / 2;
+        let of = |triangles| Material { triangles, ..mesh.materials[0].clone() };
+        mesh.materials = vec![of(0..half), of(half..2 * half)];
+        let topology = Topology::build(&mesh, &Progress::new()).expect("not cancelled");
+        let ramp = HeightMap::new([8, 8], (0..64).map(|i| (i % 8) as f32 / 8.0).collect());
+        let steps = HeightMap::new([5, 3], (0..15).map(|i| (i * 7 % 15) as f32 / 15.0).collect());
+        let steps = steps.with_amount(HeightAmount::from_factor(0.3, 0.1));
+        let mut places = |own: [Option<&HeightMap>; 2]| {
+            let own = own.map(|map| map.cloned());
+            mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled")));
+            shared_places(&mesh, &topology, Displacement::On)
+        };
+        let [flat, first, second, both] =
+            [[None, None], [Some(&steps), None], [None, Some(&ramp)], [Some(&steps), Some(&ramp)]].map(&mut places);
+        let patches_of = |side: &u32| topology.sides[*side as usize].patch();
+        let mut met = 0;
+        for (place, bits) in &both {
+            let [1, edge, _] = *place else { continue };
+            let sides: Vec<_> =
+                (0..).zip(&topology.sides).filter(|(_, side)| side.edge == edge).map(|own| own.0).collect();
+            let is_first = |side: &u32| patches_of(side) < half;
+            // The first side of an edge is the dominant one, and that of the first material comes first.
+            let expected = if sides.iter().any(is_first) { &first } else { &second };
+            assert_eq!(expected[place], *bits);
+            if sides.iter().any(is_first) && !sides.iter().all(is_first) {
+                met += 1;
+                let at = |bits: &[u32; 3]| bits.map(f32::from_bits);
+                assert_eq!(at(&second[place]), at(&flat[place]), "its dominant side has no image");
+                assert_ne!(first[place], flat[place]);
+            }
+        }
+        assert!(met > 20, "{met} places between the materials");
     }
 
     #[test]

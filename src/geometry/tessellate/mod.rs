@@ -88,7 +88,7 @@ pub use inputs::{sharing, user_sharing};
 pub use limit_surface::LimitSurface;
 pub use lod::beyond_near;
 pub(crate) use lod::{distance_factor, edge_length_factor, paper_edge_factor};
-pub use mesh_displacement::{displaced_corners, displacement_reach, displacing_heights, height_units};
+pub use mesh_displacement::{displaced_corners, displacement_reach, displacing_heights, usual_amount};
 pub use mesh_factors::rounds;
 pub use mesh_tessellation::{edge_factors, given_totals, hull_factors, tessellate_given, totals};
 pub use normal::{edge_normal, linear_normal};

@@ -203,8 +203,8 @@ impl Tessellator {
     /// Where displacement moves points to.
     fn directions(&self) -> Result<Vec<Step>, GpuError> {
         let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
-        let Some(relief) = &mesh.relief else { return Ok(Vec::new()) };
-        Ok(vec![on.over(DIRECTIONS, mesh.point_count)?, on.over(FRAMES, relief.corner_count)?])
+        let Some(corners) = mesh.displaced_corners else { return Ok(Vec::new()) };
+        Ok(vec![on.over(DIRECTIONS, mesh.point_count)?, on.over(FRAMES, corners)?])
     }
 
     /// Factors of LOD, or of functions of the user's own.
@@ -220,7 +220,7 @@ impl Tessellator {
         }
         let mut steps = vec![on.over(EDGE_FACTORS, mesh.factor_count)?];
         if choices.by_error {
-            if choices.displaces && mesh.relief.is_some() {
+            if choices.displaces && mesh.displaced_corners.is_some() {
                 steps.push(on.over(PATCH_DIRECTIONS, mesh.patch_count)?);
             }
             for (pass, workgroups) in search_passes(&on, choices.has_rows) {
@@ -233,7 +233,7 @@ impl Tessellator {
     /// If vertices are displaced, the levels at which heights are looked up.
     fn levels(&self, choices: Choices) -> Result<Vec<Step>, GpuError> {
         let (on, mesh) = (self.inputs_of_passes(), &self.buffers);
-        if !choices.displaces || mesh.relief.is_none() {
+        if !choices.displaces || mesh.displaced_corners.is_none() {
             return Ok(Vec::new());
         }
         Ok(vec![on.over(FACTOR_LEVELS, mesh.factor_count)?, on.over(POINT_LEVELS, mesh.point_count)?])

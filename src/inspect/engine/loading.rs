@@ -9,13 +9,11 @@ use geometry::mesh::{BuildError, CreaseBand, Mesh, Moment, Topology, with_crease
 use geometry::progress::{Progress, Stage};
 use geometry::tessellate::PosedMesh;
 use load::files::Limits;
+use load::heights::load_heights;
 use load::import::Subdivide;
 use load::part_tree::{self, Branch};
 use load::selection::Selection;
-use load::{
-    Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings,
-    untextured_warning,
-};
+use load::{Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug, Default)]
@@ -62,7 +60,7 @@ pub struct Preparation {
     pub weld: f32,
     /// The width of the crease band, relative to the bounding diagonal; 0 for none.
     pub crease_band: f32,
-    /// The height images for displacement.
+    /// The height images for displacement; none for those that the file gives its materials, if any.
     pub heights: Option<HeightSource>,
     /// The material variant of the file, by name; none for each primitive's own material.
     pub variant: Option<String>,
@@ -111,9 +109,9 @@ pub fn load_reference(
 pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
     let start = Instant::now();
     // Large images take longer than most meshes.
-    let of_mesh = if preparation.heights.is_some() { progress.part(0.0, 0.4) } else { progress.clone() };
+    let of_mesh = if preparation.heights.is_some() { 0.4 } else { 1.0 };
     let LoadedMesh { mesh: mut read, mut warnings, contents, files, file_bytes, is_refined: _ } =
-        source.load_selected(preparation.selection(), &preparation.limits, &of_mesh)?;
+        source.load_selected(preparation.selection(), &preparation.limits, &progress.part(0.0, of_mesh))?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
     let too_large = |what| move |error| unfinished(source, what, error);
@@ -136,12 +134,12 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         }
     }
     let mesh = cut.as_mut().unwrap_or(&mut read);
-    if let Some(heights) = &preparation.heights {
+    let wanted = preparation.heights.as_ref();
+    if wanted.is_some() {
         progress.enter(Stage::Heights);
-        let heights = heights.load(mesh, &warnings, &budget, &progress.part(0.4, 1.0))?;
-        warnings.extend(untextured_warning(&heights, mesh));
-        mesh.heights = Some(Arc::new(heights));
     }
+    let heights = load_heights(wanted, mesh, &mut warnings, &budget, &progress.part(of_mesh, 1.0))?;
+    mesh.heights = heights.map(Arc::new);
     let read = Arc::new(read);
     Ok(Loaded {
         source: source.clone(),

@@ -17,6 +17,7 @@ use super::screen_error::Screen;
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
 use geometry::cores::on_threads;
+use geometry::defaults::with_defaults;
 use geometry::near::Interval;
 use geometry::progress::{Cancelled, Progress};
 use geometry::tessellate::{LodView, Vertex};
@@ -28,22 +29,17 @@ pub(crate) use largest::{Comparison, Largest};
 pub(crate) use mean_square::MeanSquare;
 pub use mean_square::Rms;
 
-/// How finely accuracy is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AccuracyOptions {
-    /// The number of samples that are spread over the reference surface by area, for means. What was emitted gets about as
-    /// many, but at least four per triangle.
-    pub samples: usize,
-    /// When the intervals of the largest distances are narrow enough.
-    pub narrow: Narrow,
-    /// The number of threads. The result doesn't depend on it.
-    pub threads: usize,
-}
-
-impl Default for AccuracyOptions {
-    fn default() -> Self {
-        let threads = thread::available_parallelism().map_or(1, |cores| cores.get());
-        Self { samples: 100_000, narrow: Narrow::default(), threads }
+with_defaults! {
+    /// How finely accuracy is measured.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct AccuracyOptions {
+        /// The number of samples that are spread over the reference surface by area, for means. What was emitted gets about as
+        /// many, but at least four per triangle.
+        pub samples: usize = 100_000,
+        /// When the intervals of the largest distances are narrow enough.
+        pub narrow: Narrow = Narrow::default(),
+        /// The number of threads. The result doesn't depend on it.
+        pub threads: usize = thread::available_parallelism().map_or(1, |cores| cores.get()),
     }
 }
 

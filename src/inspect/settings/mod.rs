@@ -12,6 +12,7 @@ mod value;
 
 use glam::{Mat4, Vec2, Vec3};
 
+use geometry::defaults::with_defaults;
 use geometry::mesh::{Heights, Material, Mesh};
 use geometry::tessellate::{Clip, CurvatureKind, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
 use load::Import;
@@ -31,93 +32,62 @@ pub const ARENA_BYTES: u64 = 256 << 20;
 const DARK_BACKGROUND: [u8; 3] = [0x2b, 0x2e, 0x33];
 pub const LIGHT_BACKGROUND: [u8; 3] = [0xe4, 0xe6, 0xe9];
 
-/// What is shown and how, apart from mesh and camera.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Settings {
-    pub tessellation: Tessellation,
-    /// Where shading normals are evaluated; a displaced surface has them at vertices. See [`Self::used_normals_at`].
-    pub normals_at: NormalsAt,
-    /// Whether normal maps tilt the normals of a displaced surface. See [`Self::draws_normal_map`].
-    pub normal_maps: NormalMaps,
-    pub overlays: Overlays,
-    /// The light that the mesh's own materials are seen in.
-    pub lighting: Lighting,
-    /// Whether the lights of the file shine, if it has some. Not under [`Lighting::Camera`], as what follows.
-    pub lights: FileLights,
-    /// How bright the light from all around is beside emission and the lights of the file, in EV: each step doubles it.
-    pub environment_brightness: f32,
-    /// Whether the light from all around is seen behind the mesh.
-    pub environment_background: bool,
-    /// How bright the picture is, in EV: each step doubles the light.
-    pub exposure: f32,
-    /// How light becomes colours of the picture.
-    pub tone_curve: ToneCurve,
-    /// How far the light is turned about the vertical axis, in degrees.
-    pub light_rotation: f32,
-    /// The unit of the distances that the deviation overlay colours.
-    pub deviation_in: SurfaceUnit,
-    /// Which curvature the curvature overlay shows.
-    pub curvature_kind: CurvatureKind,
-    /// The curvature at the ends of that overlay's scale, in 1 / bounding radius; none for what suits the mesh. That of Gaussian
-    /// curvature is its square.
-    pub curvature_scale: Option<f32>,
-    /// How many stripes the zebra overlay has over half a turn of the normal.
-    pub zebra_stripes: f32,
-    /// The direction along the zebra's stripes in the view, in degrees: 0 is to the right, and 90 up.
-    pub zebra_direction: f32,
-    /// How many squares the checker has in one unit of u and v.
-    pub checker_squares: f32,
-    /// The unit along which texel density is counted.
-    pub texel_density_per: SurfaceUnit,
-    /// The lit sphere that the matcap overlay shows.
-    pub matcap: Matcap,
-    /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
-    pub split: Option<f32>,
-    /// How the halves of a split picture are shown.
-    pub split_view: SplitView,
-    /// The tessellation left of the split, with all other settings the same.
-    pub left: Tessellation,
-    /// The side of a section that is drawn; none for all of the mesh.
-    pub section: Option<SectionAxis>,
-    /// Where the section is between the least (0) and the largest (1) coordinate of the bounding box.
-    pub section_at: f32,
-    /// sRGB colour behind the mesh; none for that of the window's theme, and in commands [`DARK_BACKGROUND`].
-    pub background: Option<[u8; 3]>,
-    /// How the geometry of the mesh's file is taken. The mesh is read again when it changes.
-    pub import: Import,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            tessellation: Tessellation::default(),
-            normals_at: NormalsAt::Vertices,
-            normal_maps: NormalMaps::default(),
-            overlays: Overlays::default(),
-            lighting: Lighting::default(),
-            lights: FileLights::default(),
-            environment_brightness: 0.0,
-            environment_background: false,
-            exposure: 0.0,
-            tone_curve: ToneCurve::default(),
-            light_rotation: 0.0,
-            deviation_in: SurfaceUnit::Units,
-            curvature_kind: CurvatureKind::default(),
-            curvature_scale: None,
-            zebra_stripes: 24.0,
-            // Askew, since most meshes have edges that lie level or upright: on stripes along an edge one wouldn't see a kink.
-            zebra_direction: 36.87,
-            checker_squares: 8.0,
-            texel_density_per: SurfaceUnit::Px,
-            matcap: Matcap::default(),
-            split: None,
-            split_view: SplitView::default(),
-            left: Tessellation::untessellated(),
-            section: None,
-            section_at: 0.5,
-            background: None,
-            import: Import::default(),
-        }
+with_defaults! {
+    /// What is shown and how, apart from mesh and camera.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Settings {
+        pub tessellation: Tessellation = Tessellation::default(),
+        /// Where shading normals are evaluated; a displaced surface has them at vertices. See [`Self::used_normals_at`].
+        pub normals_at: NormalsAt = NormalsAt::Vertices,
+        /// Whether normal maps tilt the normals of a displaced surface. See [`Self::draws_normal_map`].
+        pub normal_maps: NormalMaps = NormalMaps::default(),
+        pub overlays: Overlays = Overlays::default(),
+        /// The light that the mesh's own materials are seen in.
+        pub lighting: Lighting = Lighting::default(),
+        /// Whether the lights of the file shine, if it has some. Not under [`Lighting::Camera`], as what follows.
+        pub lights: FileLights = FileLights::default(),
+        /// How bright the light from all around is beside emission and the lights of the file, in EV: each step doubles it.
+        pub environment_brightness: f32 = 0.0,
+        /// Whether the light from all around is seen behind the mesh.
+        pub environment_background: bool = false,
+        /// How bright the picture is, in EV: each step doubles the light.
+        pub exposure: f32 = 0.0,
+        /// How light becomes colours of the picture.
+        pub tone_curve: ToneCurve = ToneCurve::default(),
+        /// How far the light is turned about the vertical axis, in degrees.
+        pub light_rotation: f32 = 0.0,
+        /// The unit of the distances that the deviation overlay colours.
+        pub deviation_in: SurfaceUnit = SurfaceUnit::Units,
+        /// Which curvature the curvature overlay shows.
+        pub curvature_kind: CurvatureKind = CurvatureKind::default(),
+        /// The curvature at the ends of that overlay's scale, in 1 / bounding radius; none for what suits the mesh. That of
+        /// Gaussian curvature is its square.
+        pub curvature_scale: Option<f32> = None,
+        /// How many stripes the zebra overlay has over half a turn of the normal.
+        pub zebra_stripes: f32 = 24.0,
+        /// The direction along the zebra's stripes in the view, in degrees: 0 is to the right, and 90 up.
+        // Askew, since most meshes have edges that lie level or upright: on stripes along an edge one wouldn't see a kink.
+        pub zebra_direction: f32 = 36.87,
+        /// How many squares the checker has in one unit of u and v.
+        pub checker_squares: f32 = 8.0,
+        /// The unit along which texel density is counted.
+        pub texel_density_per: SurfaceUnit = SurfaceUnit::Px,
+        /// The lit sphere that the matcap overlay shows.
+        pub matcap: Matcap = Matcap::default(),
+        /// Where the picture is split, as a fraction of its width from the left; none if it isn't.
+        pub split: Option<f32> = None,
+        /// How the halves of a split picture are shown.
+        pub split_view: SplitView = SplitView::default(),
+        /// The tessellation left of the split, with all other settings the same.
+        pub left: Tessellation = Tessellation::untessellated(),
+        /// The side of a section that is drawn; none for all of the mesh.
+        pub section: Option<SectionAxis> = None,
+        /// Where the section is between the least (0) and the largest (1) coordinate of the bounding box.
+        pub section_at: f32 = 0.5,
+        /// sRGB colour behind the mesh; none for that of the window's theme, and in commands [`DARK_BACKGROUND`].
+        pub background: Option<[u8; 3]> = None,
+        /// How the geometry of the mesh's file is taken. The mesh is read again when it changes.
+        pub import: Import = Import::default(),
     }
 }
 

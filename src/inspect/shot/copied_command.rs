@@ -106,11 +106,7 @@ impl CopiedCommand<'_> {
         parts.morphs.iter().for_each(|(name, weight)| line.option("--morph", format!("{name}={weight}")));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
-        let Some(heights) = heights else { return };
-        match heights {
-            HeightSource::Materials => line.option("--height", "material"),
-            HeightSource::File(path) => line.option("--height", named(&Source::File(path.clone()))),
-        }
+        heights.iter().flat_map(HeightSource::texts).for_each(|text| line.option("--height", text));
     }
 
     /// Writes every setting that has an effect and isn't at its default. A transparent picture has no colour behind the mesh.
@@ -254,10 +250,10 @@ pub fn given(arguments: impl IntoIterator<Item = OsString>) -> String {
     ["pnaen".to_owned()].into_iter().chain(words).collect::<Vec<_>>().join(" ")
 }
 
-/// Formats a source as an argument. A file that would be taken for an option, a shape or `material` gets `./` in front.
+/// Formats a source as an argument. A file that would be taken for an option or a shape gets `./` in front.
 fn named(source: &Source) -> String {
     let text = source.to_string();
-    let is_misread = text.starts_with('-') || text == "material" || text.starts_with("shape:");
+    let is_misread = text.starts_with('-') || text.starts_with("shape:");
     if is_misread && matches!(source, Source::File(_)) { format!("./{text}") } else { text }
 }
 

@@ -9,6 +9,7 @@ use super::files::file_error;
 use super::{Shot, ShotError};
 use crate::export::ending;
 use crate::render::Camera;
+use geometry::defaults::with_defaults;
 use geometry::progress::Progress;
 use load::files::{PartFile, PartFolder, file_reason};
 
@@ -17,17 +18,13 @@ pub const FRAMES: std::ops::RangeInclusive<u32> = 2..=3600;
 /// GIF files count in hundredths of a second, and viewers play those of 1 more slowly.
 pub const FPS: std::ops::RangeInclusive<u32> = 1..=50;
 
-/// One turn of the camera around the vertical axis through the point that it looks at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Turn {
-    pub frames: u32,
-    /// Pictures a second in a GIF.
-    pub fps: u32,
-}
-
-impl Default for Turn {
-    fn default() -> Self {
-        Self { frames: 36, fps: 12 }
+with_defaults! {
+    /// One turn of the camera around the vertical axis through the point that it looks at.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Turn {
+        pub frames: u32 = 36,
+        /// Pictures a second in a GIF.
+        pub fps: u32 = 12,
     }
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::{Errors, Probe, Row, Setting, Time};
+use geometry::defaults::with_defaults;
 use geometry::tessellate::{Clip, Tessellation};
 use gpu::{GpuError, Timing};
 use inspect::engine::{Engine, MeasurementResults, Measurements, Runs};
@@ -11,23 +12,14 @@ use inspect::reference_shape::ReferenceShape;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::Settings;
 
-/// How much time is spent on a setting.
-#[derive(Clone, Copy, Debug)]
-pub struct Effort {
-    pub runs: Runs,
-    pub accuracy: AccuracyOptions,
-    /// Settings with more triangles are left out.
-    pub most_triangles: u64,
-}
-
-impl Default for Effort {
-    fn default() -> Self {
-        let runs = Runs { least: 3, most: 100, within: Duration::from_millis(200) };
-        Self {
-            runs,
-            accuracy: AccuracyOptions { narrow: Narrow::QUICK, ..AccuracyOptions::default() },
-            most_triangles: 500_000,
-        }
+with_defaults! {
+    /// How much time is spent on a setting.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Effort {
+        pub runs: Runs = Runs { least: 3, most: 100, within: Duration::from_millis(200) },
+        pub accuracy: AccuracyOptions = AccuracyOptions { narrow: Narrow::QUICK, ..AccuracyOptions::default() },
+        /// Settings with more triangles are left out.
+        pub most_triangles: u64 = 500_000,
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::distinct;
 use geometry::choice::choices;
+use geometry::defaults::with_defaults;
 use geometry::tessellate::{Lod, Normals, Partitioning, Surface, Tessellation};
 use inspect::settings::{Choice, Settings};
 
@@ -108,33 +109,22 @@ impl fmt::Display for Setting {
     }
 }
 
-/// All methods and settings that a chart tries.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Plan {
-    pub surfaces: Vec<Surface>,
-    pub normals: Vec<Normals>,
-    /// Each is tried with every LOD. If empty, each LOD has the partitioning that it is commonly used with.
-    pub partitionings: Vec<Partitioning>,
-    pub lods: Vec<LodKind>,
-    /// The factors of uniform LOD.
-    pub factors: Vec<f32>,
-    /// The px per segment of the white paper's LOD.
-    pub pixels: Vec<f32>,
-    /// The tolerances of LOD by error, in px.
-    pub tolerances: Vec<f32>,
-}
-
-impl Default for Plan {
-    fn default() -> Self {
-        Self {
-            surfaces: Surface::ALL.into_iter().filter(|surface| surface.is_flat() || surface.is_averaged()).collect(),
-            normals: vec![Normals::Linear],
-            partitionings: Vec::new(),
-            lods: LodKind::ALL.to_vec(),
-            factors: vec![1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0],
-            pixels: vec![32.0, 16.0, 8.0, 4.0, 2.0, 1.0],
-            tolerances: vec![8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125],
-        }
+with_defaults! {
+    /// All methods and settings that a chart tries.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Plan {
+        pub surfaces: Vec<Surface> =
+            Surface::ALL.into_iter().filter(|surface| surface.is_flat() || surface.is_averaged()).collect(),
+        pub normals: Vec<Normals> = vec![Normals::Linear],
+        /// Each is tried with every LOD. If empty, each LOD has the partitioning that it is commonly used with.
+        pub partitionings: Vec<Partitioning> = Vec::new(),
+        pub lods: Vec<LodKind> = LodKind::ALL.to_vec(),
+        /// The factors of uniform LOD.
+        pub factors: Vec<f32> = vec![1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0],
+        /// The px per segment of the white paper's LOD.
+        pub pixels: Vec<f32> = vec![32.0, 16.0, 8.0, 4.0, 2.0, 1.0],
+        /// The tolerances of LOD by error, in px.
+        pub tolerances: Vec<f32> = vec![8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125],
     }
 }
 

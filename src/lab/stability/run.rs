@@ -10,6 +10,7 @@ use std::thread;
 use glam::{DVec2, Vec4};
 
 use super::{Method, Probe, Quantity, Row, Subject, Tried, views};
+use geometry::defaults::with_defaults;
 use geometry::mesh::{Bounds, Mesh, Moment, Pose, Topology, t_junctions};
 use geometry::progress::Progress;
 use geometry::tessellate::{
@@ -21,27 +22,22 @@ use inspect::measure::{Measured, RequestedFactors, SWEEP_STEP, sweep};
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Choice, Settings};
 
-/// How much is tried, and on which devices.
-#[derive(Clone, Debug)]
-pub struct Effort {
-    /// The uniform factors that are tried.
-    pub factors: Vec<f32>,
-    /// How many cameras are tried for adaptive LOD and clipping: the first ones of a fixed sequence.
-    pub cameras: u32,
-    /// Whether the reference implementation on the CPU runs as well.
-    pub cpu: bool,
-    /// The last factor of a sweep, which starts at 1.
-    pub sweep_to: f32,
-    /// The methods that run.
-    pub methods: Vec<Method>,
-    /// Whether folds are counted on every mesh, and not only on the case that is about them.
-    pub folds: bool,
-}
-
-impl Default for Effort {
-    fn default() -> Self {
-        let (factors, methods) = (vec![1.0, 2.4, 7.0, 16.0], Method::all());
-        Self { factors, cameras: 6, cpu: true, sweep_to: 64.0, methods, folds: false }
+with_defaults! {
+    /// How much is tried, and on which devices.
+    #[derive(Clone, Debug)]
+    pub struct Effort {
+        /// The uniform factors that are tried.
+        pub factors: Vec<f32> = vec![1.0, 2.4, 7.0, 16.0],
+        /// How many cameras are tried for adaptive LOD and clipping: the first ones of a fixed sequence.
+        pub cameras: u32 = 6,
+        /// Whether the reference implementation on the CPU runs as well.
+        pub cpu: bool = true,
+        /// The last factor of a sweep, which starts at 1.
+        pub sweep_to: f32 = 64.0,
+        /// The methods that run.
+        pub methods: Vec<Method> = Method::all(),
+        /// Whether folds are counted on every mesh, and not only on the case that is about them.
+        pub folds: bool = false,
     }
 }
 

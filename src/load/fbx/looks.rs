@@ -50,6 +50,10 @@ pub(super) struct LookSource<'a> {
     pub normal: Option<MapSource<'a>>,
     pub emission: Option<MapSource<'a>>,
     pub occlusion: Option<MapSource<'a>>,
+    /// The height image.
+    pub height: Option<MapSource<'a>>,
+    /// What its heights are multiplied by, in units of the file.
+    pub height_factor: f32,
     /// What of it isn't drawn.
     pub undrawn: Vec<&'static str>,
 }
@@ -103,13 +107,15 @@ impl<'a> LookSource<'a> {
             normal: map(&pbr.normal_map),
             emission,
             occlusion: map(&pbr.ambient_occlusion),
+            height: map(&material.fbx.displacement).or_else(|| map(&pbr.displacement_map)),
+            height_factor: to_f32(number(&material.fbx.displacement_factor, 1.0)),
             undrawn: undrawn(material),
         }
     }
 
-    /// Returns the texture coordinates of the base colour, which corners have themselves.
+    /// Returns the texture coordinates that corners have themselves: those of the base colour, or else of the height image.
     pub(super) fn own_uvs(&self) -> MapUvs {
-        self.base.as_ref().map_or_else(MapUvs::default, |base| base.uvs)
+        self.base.or(self.height).map_or_else(MapUvs::default, |own| own.uvs)
     }
 
     /// Returns its textures, and how texels of each are averaged.
@@ -169,7 +175,7 @@ fn undrawn(material: &ufbx::Material) -> Vec<&'static str> {
     let is_layered = |texture: &ufbx::MaterialTexture| texture.texture.type_ != ufbx::TextureType::File;
     let found = [
         (has(&fbx.bump), "a bump map"),
-        (has(&fbx.displacement) || has(&fbx.vector_displacement) || has(&pbr.displacement_map), "a displacement map"),
+        (has(&fbx.vector_displacement), "a map of displacement along vectors"),
         (has(&fbx.specular_color) || has(&pbr.specular_color), "a specular map"),
         (has(&fbx.reflection_color), "a reflection map"),
         (number(&pbr.sheen_factor, 0.0) > 0.0, "sheen"),

@@ -8,12 +8,13 @@ use ufbx::{Mesh, Node, RefList};
 use super::looks::{LookSource, MapSource, MapUvs};
 use super::textures::{Textures, of_file, sampling};
 use crate::face_builder::FaceBuilder;
+use crate::heights::ModelImages;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::packing;
 use crate::read_error::ReadError;
-use crate::uri::Files;
-use geometry::mesh::{Alpha, Map, MapUv, Material, Sampling, Slot, Texture};
+use crate::uri::{Files, shown};
+use geometry::mesh::{Alpha, HeightAmount, HeightMap, Map, MapUv, Material, Sampling, Slot, Texture};
 
 /// The materials of all polygons.
 pub(super) struct Materials<'a> {
@@ -21,6 +22,9 @@ pub(super) struct Materials<'a> {
     budget: &'a Budget,
     /// By material (none for polygons without one) and the sets of its maps, which depend on the mesh.
     resolved: HashMap<(Option<u32>, Vec<usize>), Resolved>,
+    heights: ModelImages<'a, u32>,
+    /// How many object units one unit of the file is.
+    unit: f32,
     /// By what isn't drawn, the names of the materials that have it.
     undrawn: BTreeMap<&'static str, Vec<String>>,
     notes: Notes,
@@ -38,11 +42,14 @@ pub(super) struct Resolved {
 }
 
 impl<'a> Materials<'a> {
-    pub(super) fn new(files: &'a Files<'a>) -> Self {
+    /// `unit` is how many object units one unit of the file is.
+    pub(super) fn new(files: &'a Files<'a>, unit: f32) -> Self {
         Self {
             textures: Textures::new(files),
             budget: files.budget,
             resolved: HashMap::new(),
+            heights: ModelImages::new(files),
+            unit,
             undrawn: BTreeMap::new(),
             notes: Notes::default(),
         }
@@ -57,6 +64,7 @@ impl<'a> Materials<'a> {
         meshes: impl Iterator<Item = (&'m Node, &'m Mesh)>,
         reserved: u64,
     ) -> Result<(), ReadError> {
+        self.heights.reserved = reserved;
         let mut seen = HashSet::new();
         let sources = meshes.flat_map(|(node, mesh)| {
             let is_new = seen.insert(mesh.element.typed_id);
@@ -87,7 +95,8 @@ impl<'a> Materials<'a> {
         };
         let source = LookSource::new(material, mesh);
         let maps = [&source.base, &source.normal, &source.roughness, &source.metalness, &source.emission];
-        let sets = maps.into_iter().chain([&source.occlusion]).flatten().map(|map| map.uvs.set).collect();
+        let sets =
+            maps.into_iter().chain([&source.occlusion, &source.height]).flatten().map(|map| map.uvs.set).collect();
         let key = (Some(material.element.typed_id), sets);
         if let Some(&resolved) = self.resolved.get(&key) {
             return Ok(resolved);
@@ -96,7 +105,8 @@ impl<'a> Materials<'a> {
         for what in &source.undrawn {
             self.undrawn.entry(what).or_default().push(source.name.clone());
         }
-        let material = self.make(&source);
+        let height = self.height(&source)?;
+        let material = Material { height, ..self.make(&source) };
         self.add(key, material, source.own_uvs(), faces)
     }
 
@@ -136,7 +146,18 @@ impl<'a> Materials<'a> {
         }
         let LookSource { name, base_color, double_sided, .. } = source;
         let (name, base_color, double_sided) = (name.clone(), *base_color, *double_sided);
-        Material { name, base_color, texture, sampling, double_sided, look, triangles: 0..0 }
+        Material { name, base_color, texture, sampling, double_sided, look, height: None, triangles: 0..0 }
+    }
+
+    fn height(&mut self, source: &LookSource) -> Result<Option<HeightMap>, ReadError> {
+        let Some((map, file)) = source.height.and_then(|map| Some((map, of_file(map.texture)?))) else {
+            return Ok(None);
+        };
+        let names = [&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name];
+        let is_elsewhere = map.uvs != source.own_uvs();
+        let read = self.heights.read(file.file_index, names, is_elsewhere, || self.textures.bytes(file))?;
+        let amount = HeightAmount::from_factor(source.height_factor * self.unit, 0.0);
+        Ok(read.map(|map| map.with_amount(amount)))
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.
@@ -204,6 +225,7 @@ impl<'a> Materials<'a> {
     pub(super) fn into_notes(self) -> Notes {
         const NAMED: usize = 5;
         let mut notes = self.notes;
+        notes.extend(self.heights.warnings);
         for (what, materials) in self.undrawn {
             let mut names: Vec<_> = materials.iter().take(NAMED).map(|name| format!("\"{name}\"")).collect();
             if materials.len() > NAMED {

@@ -79,7 +79,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let memory = (triangles as u64).saturating_mul(12);
         budget.check(memory)?;
         faces.expect(triangles, 0);
-        let mut materials = Materials::new(files);
+        let unit = scene.settings.original_unit_meters / scene.settings.unit_meters;
+        let mut materials = Materials::new(files, to_f32(unit));
         let corners = meshes().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
         let details = if is_detailed { DetailTable::bytes_for(to_usize(corners)) } else { 0 };
         // What the parsed file takes has been freed when the edges are made.

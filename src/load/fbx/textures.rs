@@ -53,7 +53,7 @@ impl<'a> Textures<'a> {
     ///
     /// # Errors
     /// A clause that says why there are none.
-    fn bytes<'t>(&self, texture: &'t ufbx::Texture) -> Result<Cow<'t, [u8]>, String> {
+    pub(super) fn bytes<'t>(&self, texture: &'t ufbx::Texture) -> Result<Cow<'t, [u8]>, String> {
         if !texture.content.is_empty() {
             return Ok(Cow::Borrowed(&texture.content));
         }

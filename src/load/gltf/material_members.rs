@@ -32,7 +32,7 @@ pub const UNIT: [f32; 2] = [0.0, 1.0];
 /// From 0 to what any number of a material may be at most: products of two are finite.
 pub const POSITIVE: [f32; 2] = [0.0, 1e18];
 /// As far below 0 as above.
-const ANY: [f32; 2] = [-1e18, 1e18];
+pub const ANY: [f32; 2] = [-1e18, 1e18];
 
 /// The maps that a material has itself.
 pub const MAPS: &Members = &[

@@ -1,13 +1,14 @@
 //! Reads what a document says about a material, without its images.
 //!
 //! Sources: glTF 2.0 specification, section 3.9; Khronos' extensions KHR_materials_emissive_strength, KHR_materials_unlit and
-//! KHR_materials_pbrSpecularGlossiness, and those of [`EXTENSIONS`].
+//! KHR_materials_pbrSpecularGlossiness, and those of [`EXTENSIONS`]; the draft KHR_materials_displacement,
+//! <https://github.com/KhronosGroup/glTF/issues/948>.
 
 use super::lenient::Members;
-use super::material_members::{self, EXTENSIONS, MAPS, METALLIC_ROUGHNESS, Member, POSITIVE, UNIT};
+use super::material_members::{self, ANY, EXTENSIONS, MAPS, METALLIC_ROUGHNESS, Member, POSITIVE, UNIT};
 use super::schema::TRANSFORM;
 use super::uv_transform::UvTransform;
-use geometry::mesh::{Alpha, Look, Slot};
+use geometry::mesh::{Alpha, HeightAmount, Look, Slot};
 
 /// A material of a document. Its images are still to be read.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +21,8 @@ pub(super) struct MaterialSource {
     /// Without maps.
     pub look: Look,
     pub maps: [Option<MapSource>; Slot::COUNT],
+    /// The height image, and how far it moves the surface.
+    pub height: Option<(MapSource, Option<HeightAmount>)>,
     /// Factor of the glossiness that the specular colour's image has in alpha; none if it has none.
     pub glossiness: Option<f32>,
     /// Names of extensions, and of parts of extensions, that aren't drawn.
@@ -52,6 +55,7 @@ const STRENGTHS: [(&str, &str); 3] = [
 const UNLIT: &str = "KHR_materials_unlit";
 const EMISSIVE_STRENGTH: &str = "KHR_materials_emissive_strength";
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
+const DISPLACEMENT: &str = "KHR_materials_displacement";
 
 impl MaterialSource {
     /// Reads a material, or returns that of primitives without one. `textures` is how many the document has.
@@ -81,10 +85,6 @@ impl MaterialSource {
         source
     }
 
-    fn map(&mut self, slot: Slot, map: Option<MapSource>) {
-        self.maps[slot as usize] = map;
-    }
-
     /// Reads members of an object: maps only where they matter to the look that was read so far.
     fn read(
         &mut self,
@@ -104,12 +104,12 @@ impl MaterialSource {
                     *own = object.numbers(name, *own, *range);
                 }
                 Member::Map(_) | Member::ScaledMap(..) if !matters(&self.look) => {}
-                Member::Map(slot) => self.map(*slot, MapSource::new(object, name, textures)),
+                Member::Map(slot) => self.maps[*slot as usize] = MapSource::new(object, name, textures),
                 Member::ScaledMap(slot, factor, number, range) => {
                     if let Some(info) = object.inside(name) {
                         let own = number(&mut self.look);
                         *own = info.number(factor, *own, *range);
-                        self.map(*slot, MapSource::inside(&info, textures));
+                        self.maps[*slot as usize] = MapSource::inside(&info, textures);
                     }
                 }
             }
@@ -131,6 +131,9 @@ impl MaterialSource {
         }
         if let Some(glossy) = extensions.inside(GLOSSINESS) {
             self.glossy(&glossy, textures);
+        }
+        if let Some(displacement) = extensions.inside(DISPLACEMENT) {
+            self.height = height(&displacement, textures);
         }
         self.note_undrawn(extensions);
     }
@@ -154,9 +157,9 @@ impl MaterialSource {
     fn glossy(&mut self, glossy: &Members, textures: usize) {
         self.base_color = glossy.numbers("diffuseFactor", [1.0; 4], UNIT);
         self.base_map = MapSource::new(glossy, "diffuseTexture", textures);
-        self.map(Slot::MetallicRoughness, None);
-        self.map(Slot::Specular, None);
-        self.map(Slot::SpecularColor, MapSource::new(glossy, "specularGlossinessTexture", textures));
+        self.maps[Slot::MetallicRoughness as usize] = None;
+        self.maps[Slot::Specular as usize] = None;
+        self.maps[Slot::SpecularColor as usize] = MapSource::new(glossy, "specularGlossinessTexture", textures);
         let glossiness = glossy.number("glossinessFactor", 1.0, UNIT);
         self.glossiness = Some(glossiness);
         let look = &mut self.look;
@@ -168,7 +171,8 @@ impl MaterialSource {
     /// Notes extensions that aren't drawn, where they would change something, and other parts of the material that aren't.
     fn note_undrawn(&mut self, extensions: &Members) {
         let is_drawn = |name| {
-            [UNLIT, EMISSIVE_STRENGTH, GLOSSINESS].contains(&name) || EXTENSIONS.iter().any(|(own, ..)| *own == name)
+            [UNLIT, EMISSIVE_STRENGTH, GLOSSINESS, DISPLACEMENT].contains(&name)
+                || EXTENSIONS.iter().any(|(own, ..)| *own == name)
         };
         for name in extensions.names().filter(|name| !is_drawn(name)) {
             let strength = STRENGTHS.iter().find(|(extension, _)| *extension == name);
@@ -190,7 +194,8 @@ impl MaterialSource {
 
     /// Returns the texture coordinates that corners have themselves.
     pub(super) fn own_uvs(&self) -> Uvs {
-        self.base_map.map_or_else(Uvs::default, |map| map.uvs)
+        let height = self.height.as_ref().map(|(map, _)| *map);
+        self.base_map.or(height).map_or_else(Uvs::default, |map| map.uvs)
     }
 
     /// Returns whether corners need more than position, normal and texture coordinates.
@@ -199,6 +204,17 @@ impl MaterialSource {
         let is_mapped = Look::TANGENT_SLOTS.iter().any(|slot| self.maps[*slot as usize].is_some());
         others || is_mapped || self.look.has_anisotropy()
     }
+}
+
+/// Reads a height image. Drafts of the extension name its members differently.
+fn height(displacement: &Members, textures: usize) -> Option<(MapSource, Option<HeightAmount>)> {
+    let [texture, factor, offset] = match displacement.has("displacementTexture") {
+        true => ["displacementTexture", "displacementFactor", "displacementOffset"],
+        false => ["displacementGeometryTexture", "displacementGeometryFactor", "displacementGeometryOffset"],
+    };
+    let map = MapSource::new(displacement, texture, textures)?;
+    let (factor, offset) = (displacement.number(factor, 1.0, ANY), displacement.number(offset, 0.0, ANY));
+    Some((map, HeightAmount::from_factor(factor, offset)))
 }
 
 impl MapSource {

@@ -1,5 +1,6 @@
 //! Makes materials of what a document says about them. Each is made when a primitive first uses it.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
@@ -14,16 +15,17 @@ use super::notes::Notes;
 use super::texture_source::{self, TextureSource};
 use super::uv_transform::UvTransform;
 use super::{Accessors, GltfError};
-use crate::images::{decode_halved, decoded_bytes, texture_size};
+use crate::heights::ModelImages;
+use crate::images::texture_size;
 use crate::memory_budget::Budget;
 use crate::packing::roughness;
-use crate::texture_room::{Scaling, TextureRoom};
+use crate::texture_room::{LEFT_OUT, ReadImage, read_images};
 use crate::uri::Files;
 use geometry::choice::Choice;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{Borrowed, Look, Map, MapUv, Material, Sampling, Slot, Texture};
-use geometry::progress::Progress;
+use geometry::mesh::{HeightMap, Look, Map, MapUv, Material, Sampling, Slot, Texture, borrowing};
+use geometry::progress::Cancelled;
 
 /// How many materials a sentence names.
 const NAMED: usize = 3;
@@ -61,28 +63,13 @@ pub(super) struct Materials<'a> {
     images: HashMap<usize, ReadImage>,
     /// Maps of roughness that were made of glossiness, by the image and the bits of its factor.
     rough: HashMap<(*const Texture, u32), Arc<Texture>>,
+    /// By the image's index.
+    heights: ModelImages<'a, usize>,
     /// The memory that the rest of the load takes, in bytes.
     reserved: u64,
     /// For what isn't drawn, the names of the first few materials that have it, and how many have it.
     undrawn: BTreeMap<String, (Vec<String>, usize)>,
     notes: RefCell<Notes>,
-}
-
-/// An image that will be read.
-struct FoundImage {
-    image: usize,
-    filter: MipFilter,
-    /// In px.
-    size: [u32; 2],
-}
-
-/// An image that was read.
-#[derive(Clone)]
-struct ReadImage {
-    /// What was read, or a clause that says why it can't be.
-    texture: Result<Arc<Texture>, String>,
-    /// What is to be said of how it was scaled down; none once a warning said so.
-    scaled: Option<String>,
 }
 
 impl<'a> Materials<'a> {
@@ -107,6 +94,7 @@ impl<'a> Materials<'a> {
             textures: HashMap::new(),
             images: HashMap::new(),
             rough: HashMap::new(),
+            heights: ModelImages::new(files),
             reserved: 0,
             undrawn: BTreeMap::new(),
             notes: RefCell::default(),
@@ -146,11 +134,11 @@ impl<'a> Materials<'a> {
     ///
     /// # Errors
     /// [`GltfError::Cancelled`].
-    pub(super) fn read_images(&mut self, reserved: u64, progress: &Progress) -> Result<(), GltfError> {
-        self.reserved = reserved;
+    pub(super) fn read_images(&mut self, reserved: u64) -> Result<(), GltfError> {
+        (self.reserved, self.heights.reserved) = (reserved, reserved);
         let mut keys: Vec<_> = self.sources.keys().copied().collect();
         keys.sort_unstable();
-        let mut found: Vec<FoundImage> = Vec::new();
+        let mut found: Vec<(usize, MipFilter)> = Vec::new();
         let mut seen = HashSet::new();
         for key in keys {
             let Some(source) = self.sources.get(&key).cloned() else { continue };
@@ -159,39 +147,27 @@ impl<'a> Materials<'a> {
             let maps = maps.filter_map(|(slot, map)| Some((map?.texture, MipFilter::from_map(slot))));
             for (texture, filter) in base.into_iter().chain(maps) {
                 let Some(TextureSource { images, .. }) = self.texture_source(texture) else { continue };
-                progress.check()?;
+                self.files.progress.check()?;
                 // The first one that looks right; if it turns out not to be, the next one is read when it is needed.
-                let image =
-                    images.into_iter().find_map(|image| Some(FoundImage { image, filter, size: self.size(image)? }));
-                found.extend(image.filter(|image| seen.insert(image.image)));
+                let looks_right = |image: &usize| {
+                    borrowing(self.budget, || self.bytes(*image).is_ok_and(|bytes| texture_size(&bytes).is_some()))
+                };
+                let image = images.into_iter().find(looks_right).filter(|image| seen.insert(*image));
+                found.extend(image.map(|image| (image, filter)));
             }
         }
-        let sizes: Vec<_> = found.iter().map(|image| image.size).collect();
-        let scalings = TextureRoom::new(self.budget, reserved).scalings(&sizes);
-        // What takes most memory while it is decoded comes first, while the others don't take any yet.
-        let mut order: Vec<_> = found.into_iter().zip(scalings).collect();
-        order.sort_by_key(|(image, _)| std::cmp::Reverse(decoded_bytes(image.size)));
-        for (image, scaling) in order {
-            progress.check()?;
-            self.read_image(image, scaling);
-        }
+        Ok(self.read(&found)?)
+    }
+
+    fn read(&mut self, images: &[(usize, MipFilter)]) -> Result<(), Cancelled> {
+        let bytes = |(image, filter)| Ok((self.bytes(image)?, filter));
+        let read = read_images(images, bytes, self.reserved, self.budget, self.files.progress)?;
+        self.images.extend(images.iter().map(|(image, _)| *image).zip(read));
         Ok(())
     }
 
-    /// The size of an image in px; none if it can't be read.
-    fn size(&self, image: usize) -> Option<[u32; 2]> {
-        let _scope = Borrowed::from(self.budget);
-        let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
-        bytes.ok().and_then(|bytes| texture_size(&bytes))
-    }
-
-    fn read_image(&mut self, FoundImage { image, filter, size }: FoundImage, scaling: Scaling) {
-        let _scope = Borrowed::from(self.budget);
-        let bytes = texture_source::image(&self.lists.images, image, self.accessors, self.files);
-        let texture =
-            bytes.and_then(|bytes| decode_halved(&bytes, scaling.halvings, filter, self.budget)).map(Arc::new);
-        let scaled = texture.as_ref().ok().and_then(|texture| scaling.said(size, Ok(texture.size)));
-        self.images.insert(image, ReadImage { texture, scaled });
+    fn bytes(&self, image: usize) -> Result<Cow<'a, [u8]>, String> {
+        texture_source::image(&self.lists.images, image, self.accessors, self.files)
     }
 
     /// Finds a material of what is shown, or adds it to the builder. `scale` is that of the node which shows it. A texture that
@@ -221,13 +197,14 @@ impl<'a> Materials<'a> {
         if let Some(factor) = source.glossiness {
             self.set_roughness(&mut look, factor, &name);
         }
+        let height = self.height(&source, &name);
         let (texture, sampling) =
             base.map_or((None, Sampling::default()), |(texture, sampling)| (Some(texture), sampling));
         let (uvs, tangents) = (source.own_uvs(), look.tangent_uv().is_some());
         let needs = DetailNeeds { sets: look.uv_sets(), tangents };
         let MaterialSource { base_color, double_sided, .. } = source;
         let triangles = 0..0;
-        let made = Material { name, base_color, texture, sampling, double_sided, look, triangles };
+        let made = Material { name, base_color, texture, sampling, double_sided, look, height, triangles };
         let resolved = Resolved { index: builder.material(made), scale, uvs, needs };
         self.resolved.insert(key, resolved);
         resolved
@@ -248,6 +225,16 @@ impl<'a> Materials<'a> {
             }
         };
         Some(Map { texture, uv, sampling })
+    }
+
+    fn height(&mut self, source: &MaterialSource, material: &str) -> Option<HeightMap> {
+        let (map, amount) = source.height?;
+        let image = *self.texture_source(map.texture)?.images.last()?;
+        let bytes = || texture_source::image(&self.lists.images, image, self.accessors, self.files);
+        let names = [&*format!("/images/{image}"), material];
+        // If it was cancelled, what follows ends too.
+        let read = self.heights.read(image, names, map.uvs != source.own_uvs(), bytes).ok()?;
+        read.map(|map| map.with_amount(amount))
     }
 
     /// Gives a material a map of roughness, made of the glossiness in the image of its specular colour, times this factor.
@@ -289,37 +276,27 @@ impl<'a> Materials<'a> {
         let name = format!("the {what} of material \"{material}\"");
         let used = "can't be used, and the texture's other image takes its place";
         let other = others.iter().find_map(|&image| self.image(image, filter, &name, used));
-        Some((other.or_else(|| self.image(*last, filter, &name, "is left out"))?, sampling))
+        Some((other.or_else(|| self.image(*last, filter, &name, LEFT_OUT))?, sampling))
     }
 
     /// An image, which is read unless it was already. If it can't be read, the sentence about it has `otherwise` in it; `name` says
     /// where it is used.
     fn image(&mut self, image: usize, filter: MipFilter, name: &str, otherwise: &str) -> Option<Arc<Texture>> {
-        let is_new = !self.images.contains_key(&image);
-        if is_new {
-            let size = self.size(image).unwrap_or_default();
-            let mut scalings = TextureRoom::new(self.budget, self.reserved).scalings(&[size]);
-            self.read_image(FoundImage { image, filter, size }, scalings.pop().unwrap_or_default());
+        if !self.images.contains_key(&image) {
+            // If it was cancelled, what follows ends too.
+            self.read(&[(image, filter)]).ok()?;
         }
-        let ReadImage { texture, scaled } = self.images.get_mut(&image)?;
-        match texture {
-            Ok(texture) => {
-                self.notes.get_mut().extend(scaled.take().map(|said| format!("{name} {said}")));
-                Some(texture.clone())
-            }
-            Err(reason) => {
-                // Said once.
-                if !reason.is_empty() {
-                    self.notes.get_mut().push(format!("{name} {otherwise}: {}.", std::mem::take(reason)));
-                }
-                None
-            }
-        }
+        let ReadImage { texture, said } = self.images.get_mut(&image)?;
+        // Said once.
+        let said = said.take().map(|said| format!("{name} {}", said.replacen(LEFT_OUT, otherwise, 1)));
+        self.notes.get_mut().extend(said);
+        texture.clone()
     }
 
     /// Returns what was repaired or left out.
     pub(super) fn into_notes(self) -> Notes {
         let mut notes = self.notes.into_inner();
+        notes.extend(self.heights.warnings);
         for (what, (named, count)) in self.undrawn {
             let names = named.join(", ");
             notes.push(match count - named.len() {

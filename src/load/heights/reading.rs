@@ -3,49 +3,55 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader};
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 use png::{BitDepth, DecodingError};
 
-use super::{HeightError, MAX_SIZE};
-use crate::files::{FileError, Limits, file_reason, read_file};
-use crate::images::{decoding_bytes, metadata_limits, png_header};
+use super::HeightError;
+use crate::environment_file::unpacking_bytes;
+use crate::files::{self, FileError, file_reason, read_file};
+use crate::images::{check_size, decoding_bytes, metadata_limits, png_header};
 use crate::memory_budget::Budget;
 use crate::watched_bytes::watched;
 use crate::webp;
 use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
-use geometry::mesh::heights::HeightMap;
+use geometry::mesh::heights::{HeightMap, MAX_KEPT};
 use geometry::progress::{Cancelled, Progress};
 
 /// The bytes of a file at most: more than the largest image takes without compression.
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// What is said of a file of another kind.
-const NO_IMAGE: &str = "choose a PNG, JPEG or WebP image";
+const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TIFF or EXR image";
 
-/// Reads a PNG, JPEG or WebP image. A PNG is decoded row by row, so that a large image takes no more memory than its file and its map;
-/// a JPEG, a WebP, and an interlaced PNG, is decoded whole. The file's size is added to the budget. `beside` is how many
-/// bytes heights take beside their map.
+/// The largest height, positive or negative. Images with floating-point numbers may have heights beyond black and white.
+const MOST_HEIGHT: f32 = 65504.0;
+
+/// Reads a PNG, JPEG, WebP, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than its file
+/// and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
 ///
 /// # Errors
 /// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
-pub(super) fn read_map(
-    path: &Path,
-    beside: u64,
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<HeightMap, HeightError> {
-    let image = ImageFile { path, beside, budget, progress };
+pub(super) fn read_map(path: &Path, budget: &Budget, progress: &Progress) -> Result<HeightMap, HeightError> {
+    let image = ImageFile { path, reserved: 0, budget, progress };
     let check = |start: &[u8]| {
         image::guess_format(start).map_err(|_| image.fail(NO_IMAGE.to_owned()))?;
         image.check(png_header(start).map_or([0; 2], |(size, _)| size)).map(|_| ())
     };
-    let bytes = read_file(path, &Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
+    let bytes = read_file(path, &files::Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
     budget.allow(bytes.len() as u64);
-    match png_header(&bytes) {
-        Some((_, false)) => image.read_rows(&bytes),
-        _ => image.read_whole(&bytes),
-    }
+    image.decode(&bytes)
+}
+
+/// The same of an image in memory, which errors call `name`. `reserved` is the memory that the rest of the load takes, in bytes.
+pub(super) fn map_of_bytes(
+    name: &Path,
+    bytes: &[u8],
+    reserved: u64,
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<HeightMap, HeightError> {
+    ImageFile { path: name, reserved, budget, progress }.decode(bytes)
 }
 
 impl From<FileError> for HeightError {
@@ -63,7 +69,7 @@ impl From<FileError> for HeightError {
     }
 }
 
-/// Computes the brightness of pixels of 8 or 16 bits a channel, with the weights of Rec. 709 and no transfer function,
+/// Computes the brightness of pixels of 8, 16 or 32 bits a channel, with the weights of Rec. 709 and no transfer function,
 /// since heights aren't light. Gray images keep their values with all bits.
 ///
 /// # Errors
@@ -82,19 +88,22 @@ pub(super) fn map_of_px(
     let [channels, depth] = [color.channel_count(), color.bytes_per_pixel() / color.channel_count()];
     HeightMap::build(size, progress, |out| {
         let line = lines.next().unwrap_or_default();
-        brighten(line, channels.into(), depth == 2, u16::from_ne_bytes, out);
+        brighten(line, channels.into(), depth, u16::from_ne_bytes, out);
         Ok(())
     })
 }
 
-/// Computes the brightness of each pixel of a row with `channels` channels of 8 bits, or of 16 bits if `is_wide`.
-fn brighten(line: &[u8], channels: usize, is_wide: bool, of_bytes: fn([u8; 2]) -> u16, out: &mut [f32]) {
-    let channel = |px: &[u8], index: usize| match is_wide {
-        true => f32::from(of_bytes([px[2 * index], px[2 * index + 1]])) / 65535.0,
-        false => f32::from(px[index]) / 255.0,
+/// Computes the brightness of each pixel of a row with `channels` channels of so many bytes. Four are a floating-point number.
+fn brighten(line: &[u8], channels: usize, depth: u8, of_bytes: fn([u8; 2]) -> u16, out: &mut [f32]) {
+    let depth = usize::from(depth);
+    let channel = |px: &[u8], index: usize| match px[index * depth..][..depth] {
+        [a, b, c, d] => Some(f32::from_ne_bytes([a, b, c, d])).filter(|own| own.is_finite()).unwrap_or(0.0),
+        [a, b] => f32::from(of_bytes([a, b])) / 65535.0,
+        _ => f32::from(px[index]) / 255.0,
     };
-    for (height, px) in out.iter_mut().zip(line.chunks_exact(if is_wide { 2 * channels } else { channels })) {
-        *height = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
+    for (height, px) in out.iter_mut().zip(line.chunks_exact(depth * channels)) {
+        let own = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
+        *height = own.clamp(-MOST_HEIGHT, MOST_HEIGHT);
     }
 }
 
@@ -105,7 +114,7 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 /// An image file that is being read, with what reading it needs.
 struct ImageFile<'a> {
     path: &'a Path,
-    beside: u64,
+    reserved: u64,
     budget: &'a Budget,
     progress: &'a Progress,
 }
@@ -116,9 +125,13 @@ impl ImageFile<'_> {
     }
 
     fn check(&self, size: [u32; 2]) -> Result<[u32; 2], HeightError> {
-        match size.iter().any(|&side| side > MAX_SIZE) {
-            true => Err(HeightError::TooLarge { path: self.path.to_owned(), size }),
-            false => Ok(size),
+        check_size("it", size).map(|()| size).map_err(|reason| self.fail(reason))
+    }
+
+    fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        match png_header(bytes) {
+            Some((_, false)) => self.read_rows(bytes),
+            _ => self.read_whole(bytes),
         }
     }
 
@@ -137,7 +150,8 @@ impl ImageFile<'_> {
         let mut line = vec![0; line];
         HeightMap::build(size, self.progress, |out| {
             reader.read_row(&mut line).map_err(undecoded)?;
-            brighten(&line, color.samples(), depth == BitDepth::Sixteen, u16::from_be_bytes, out);
+            let depth = if depth == BitDepth::Sixteen { 2 } else { 1 };
+            brighten(&line, color.samples(), depth, u16::from_be_bytes, out);
             Ok(())
         })
     }
@@ -147,37 +161,49 @@ impl ImageFile<'_> {
         // Cancelling stops the decoder with some error.
         let undecoded = |error: ImageError| match (self.progress.check(), error) {
             (Err(cancelled), _) => cancelled.into(),
-            (_, ImageError::Unsupported(_)) => self.fail(NO_IMAGE.to_owned()),
+            (_, ImageError::Unsupported(_)) if image::guess_format(bytes).is_err() => self.fail(NO_IMAGE.to_owned()),
             (_, error) => self.fail(error.to_string()),
         };
         webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
         let watched = ImageReader::new(watched(bytes, self.progress.part(0.0, 0.6)));
         let mut reader = watched.with_guessed_format().map_err(|error| undecoded(error.into()))?;
-        let decoding = Borrowed::from(self.budget);
-        if reader.format() == Some(ImageFormat::Png) {
+        let borrowed = Borrowed::from(self.budget);
+        let format = reader.format();
+        if format == Some(ImageFormat::Png) {
             reader.limits(metadata_limits(self.budget));
         }
-        let decoder = reader.into_decoder().map_err(undecoded)?;
+        let mut decoder = reader.into_decoder().map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
+        let has_copy = matches!(format, Some(ImageFormat::Tiff | ImageFormat::OpenExr | ImageFormat::Hdr));
+        let blocks = match format {
+            Some(ImageFormat::OpenExr) => unpacking_bytes(bytes).map_err(|fault| self.fail(fault.to_string()))?,
+            _ => 0,
+        };
+        let decoding = (decoding_bytes(&decoder) - count).saturating_add(if has_copy { count } else { 0 });
         // What decoding takes is freed before a map is made from the pixels.
-        self.afford(size, bytes, count, decoding_bytes(&decoder) - count)?;
+        self.afford(size, bytes, count, decoding.saturating_add(blocks))?;
+        let mut limits = Limits::default();
+        limits.max_alloc = Some(self.budget.left().max(1 << 20).saturating_add(count));
+        decoder.set_limits(limits).map_err(undecoded)?;
         let mut px = vec![0; to_usize(count)];
         decoder.read_image(&mut px).map_err(undecoded)?;
-        drop(decoding);
+        drop(borrowed);
         Ok(map_of_px(size, color, &px, &self.progress.part(0.6, 1.0))?)
     }
 
     /// Checks that the budget has room for an image of this size: `px` bytes of decoded pixels, `decoding` bytes while
     /// it is decoded, and the map, which is held.
     fn afford(&self, size: [u32; 2], bytes: &[u8], px: u64, decoding: u64) -> Result<(), HeightError> {
-        let kept = HeightMap::bytes_to_build(size).saturating_add(self.beside);
-        let too_much = |refused: MemoryRefused| HeightError::TooMuch {
-            path: self.path.to_owned(),
-            size,
-            reason: refused.to_string(),
+        let kept = HeightMap::bytes_to_build(size);
+        let too_much = |refused: MemoryRefused| {
+            let ([width, height], side) = (size, format!("scale it to {MAX_KEPT} px a side or less"));
+            self.fail(format!(
+                "it has {width} x {height} px and {refused}; {side}, or save it as a PNG that isn't interlaced"
+            ))
         };
-        let all = px.saturating_add(kept.max(decoding)).saturating_add(bytes.len() as u64);
+        let all =
+            px.saturating_add(kept.max(decoding)).saturating_add(bytes.len() as u64).saturating_add(self.reserved);
         borrowing(self.budget, || self.budget.borrow(all)).map_err(too_much)?;
         self.budget.hold(kept).map_err(too_much)
     }
@@ -189,6 +215,7 @@ mod tests {
     use image::{DynamicImage, ImageBuffer, Luma, Rgb, RgbImage};
 
     use super::*;
+    use crate::images::MAX_SIZE;
 
     /// Writes a file into a folder.
     fn write(folder: &tempfile::TempDir, name: &str, bytes: &[u8]) -> std::path::PathBuf {
@@ -214,9 +241,35 @@ mod tests {
         let map = of(&gray.into());
         assert_eq!(map.heights[..2], [1.0 / 65535.0, 1.0]);
         let green = RgbImage::from_pixel(1, 1, Rgb([0, 255, 0])).into();
-        assert_eq!(of(&green).heights, [0.7152]);
+        assert_eq!(*of(&green).heights, [0.7152]);
         let wide = ImageBuffer::<Rgb<u16>, _>::from_pixel(1, 1, Rgb([0, 0, 65535])).into();
-        assert_eq!(of(&wide).heights, [0.0722]);
+        assert_eq!(*of(&wide).heights, [0.0722]);
+    }
+
+    #[test]
+    fn numbers_beyond_black_and_white_stay_and_those_that_are_none_become_black() {
+        let px = [2.5, -1.0, f32::NAN, f32::INFINITY, -1e9];
+        let px: Vec<f32> = px.into_iter().flat_map(|height| [height; 3]).collect();
+        let image = DynamicImage::ImageRgb32F(ImageBuffer::from_raw(5, 1, px).expect("five px"));
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        for format in [image::ImageFormat::OpenExr, image::ImageFormat::Tiff] {
+            let mut bytes = Cursor::new(Vec::new());
+            image.write_to(&mut bytes, format).expect("an image in memory");
+            let file = write(&folder, "px", bytes.get_ref());
+            let map = read_map(&file, &Budget::unlimited(), &Progress::new()).expect("an image");
+            let expected = [2.5, -1.0, 0.0, 0.0, -MOST_HEIGHT];
+            let close = |(own, expected): (&f32, f32)| (own - expected).abs() <= 1e-6 * expected.abs();
+            assert!(map.heights.iter().zip(expected).all(close), "{format:?}: {:?}", &map.heights[..5]);
+            assert!(map.range[0] == -MOST_HEIGHT && (map.range[1] - 2.5).abs() < 1e-5, "{format:?}: {:?}", map.range);
+            let cut = write(&folder, "cut", &bytes.get_ref()[..bytes.get_ref().len() / 2]);
+            let said = read_map(&cut, &Budget::unlimited(), &Progress::new()).expect_err("half an image");
+            assert!(said.to_string().contains("can't be read as a height image"), "{said}");
+        }
+        let wide: ImageBuffer<Luma<u16>, _> = ImageBuffer::from_raw(2, 1, vec![1_u16, 65535]).expect("two px");
+        let file = folder.path().join("wide.tif");
+        wide.save(&file).expect("a writable temporary folder");
+        let map = read_map(&file, &Budget::unlimited(), &Progress::new()).expect("an image");
+        assert_eq!(map.heights[..2], [1.0 / 65535.0, 1.0], "all 16 bits");
     }
 
     #[test]
@@ -225,10 +278,10 @@ mod tests {
         let folder = tempfile::tempdir().expect("a writable temporary folder");
         let file = write(&folder, "px.png", &png(&image));
         let progress = Progress::new();
-        assert_eq!(read_map(&file, 0, &Budget::unlimited(), &progress).expect("an image"), of(&image));
+        assert_eq!(read_map(&file, &Budget::unlimited(), &progress).expect("an image"), of(&image));
         assert!(progress.fraction() > 0.8, "{}", progress.fraction());
         progress.cancel();
-        assert!(matches!(read_map(&file, 0, &Budget::unlimited(), &progress), Err(HeightError::Cancelled(Cancelled))));
+        assert!(matches!(read_map(&file, &Budget::unlimited(), &progress), Err(HeightError::Cancelled(Cancelled))));
     }
 
     #[test]
@@ -240,13 +293,13 @@ mod tests {
         header.extend([8, 0, 0, 0, 0]);
         let folder = tempfile::tempdir().expect("a writable temporary folder");
         let file = write(&folder, "large.png", &header);
-        let error = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        let error = read_map(&file, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
         let expected = "has 20000 x 20000 px, but at most 16384 px a side are read; scale it to 4096 px a side or less";
         assert!(error.ends_with(expected) && error.contains("large.png"), "{error}");
         // One pixel more than is read; the decoder itself would read it.
         let wide = DynamicImage::new_luma8(MAX_SIZE + 1, 1);
         let file = write(&folder, "wide.png", &png(&wide));
-        let error = read_map(&file, 0, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
+        let error = read_map(&file, &Budget::unlimited(), &Progress::new()).expect_err("too large").to_string();
         assert!(error.contains("has 16385 x 1 px"), "{error}");
     }
 }

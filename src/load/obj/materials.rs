@@ -8,6 +8,7 @@ use glam::Vec2;
 use super::mtl::{self, MtlMap, MtlMaterial, MtlTexture};
 use super::textures::{Giving, TextureUser, are_normals};
 use crate::face_builder::FaceBuilder;
+use crate::heights::ModelImages;
 use crate::images::decoded_bytes;
 use crate::notes::counts;
 use crate::read_error::ReadError;
@@ -41,6 +42,8 @@ pub(super) struct Materials<'a> {
     indices: HashMap<Vec<u8>, usize>,
     /// How texture coordinates are placed, by the index of a material: what they are multiplied by, and what is added.
     places: HashMap<usize, [Vec2; 2]>,
+    /// The height images, by the index of a material.
+    heights: Vec<(usize, MtlTexture)>,
     /// The texture files, in order, and their numbers by name.
     textures: Vec<TextureFile>,
     numbers: HashMap<String, usize>,
@@ -69,6 +72,7 @@ impl<'a> Materials<'a> {
             index: None,
             indices: HashMap::new(),
             places: HashMap::new(),
+            heights: Vec::new(),
             textures: Vec::new(),
             numbers: HashMap::new(),
             problems: Vec::new(),
@@ -147,7 +151,12 @@ impl<'a> Materials<'a> {
         // One place serves all images of a material.
         let place = textures.first().map(|(.., texture)| [texture.scale, texture.offset].map(Vec2::from));
         self.places.extend(place.filter(|place| *place != [Vec2::ONE, Vec2::ZERO]).map(|place| (index, place)));
-        for (map, factor, MtlTexture { file, .. }) in textures {
+        for (map, factor, texture) in textures {
+            if map == MtlMap::Displacement {
+                self.heights.push((index, texture));
+                continue;
+            }
+            let file = texture.file;
             let number = *self.numbers.entry(file.clone()).or_insert(self.textures.len());
             if number == self.textures.len() {
                 self.textures.push(TextureFile { name: file, first: name.clone(), users: Vec::new() });
@@ -234,6 +243,19 @@ impl<'a> Materials<'a> {
             given.for_each(|(user, texture)| giving.give(faces, user, texture));
         }
         self.problems.extend(giving.finish(faces, self.files.budget));
+        self.read_heights(faces, reserved)
+    }
+
+    fn read_heights(&mut self, faces: &mut FaceBuilder, reserved: u64) -> Result<(), ReadError> {
+        let mut images = ModelImages::new(self.files);
+        images.reserved = reserved;
+        for (index, MtlTexture { file, amount, .. }) in self.heights.drain(..) {
+            let (material, image) = (faces.builder.material_mut(index), shown(file.as_bytes()));
+            let bytes = || self.files.read_path(&file).map(Cow::Owned);
+            material.height =
+                images.read(file.clone(), [&image, &material.name], false, bytes)?.map(|map| map.with_amount(amount));
+        }
+        self.problems.extend(images.warnings);
         Ok(())
     }
 

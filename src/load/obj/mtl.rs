@@ -6,6 +6,7 @@
 use std::collections::BTreeMap;
 
 use crate::text_lines::{Lines, first_word, numbers_or_nan, parsed, words};
+use geometry::mesh::HeightAmount;
 use geometry::mesh::mipmap::MipFilter;
 
 /// A material in a material file.
@@ -44,6 +45,8 @@ pub(super) enum MtlMap {
     Roughness,
     /// map_Pm: what multiplies how much of a metal it is.
     Metalness,
+    /// disp or map_disp: heights that displace the surface.
+    Displacement,
 }
 
 impl MtlMap {
@@ -52,13 +55,13 @@ impl MtlMap {
         match self {
             Self::BaseColor | Self::Emissive => MipFilter::Colors,
             Self::Normal | Self::Bump => MipFilter::Normals,
-            Self::Opacity | Self::Roughness | Self::Metalness => MipFilter::Numbers,
+            Self::Opacity | Self::Roughness | Self::Metalness | Self::Displacement => MipFilter::Numbers,
         }
     }
 }
 
 /// The statements of maps.
-const MAP_STATEMENTS: [(&[u8], MtlMap); 9] = [
+const MAP_STATEMENTS: [(&[u8], MtlMap); 12] = [
     (b"map_Kd", MtlMap::BaseColor),
     (b"map_Ke", MtlMap::Emissive),
     (b"norm", MtlMap::Normal),
@@ -68,6 +71,9 @@ const MAP_STATEMENTS: [(&[u8], MtlMap); 9] = [
     (b"map_d", MtlMap::Opacity),
     (b"map_Pr", MtlMap::Roughness),
     (b"map_Pm", MtlMap::Metalness),
+    (b"disp", MtlMap::Displacement),
+    (b"map_disp", MtlMap::Displacement),
+    (b"map_Disp", MtlMap::Displacement),
 ];
 
 impl MtlMaterial {
@@ -98,7 +104,7 @@ impl MtlMaterial {
             MtlMap::Normal | MtlMap::Bump => texture.strength,
             MtlMap::Roughness => self.roughness.unwrap_or(1.0),
             MtlMap::Metalness => self.metallic.unwrap_or(1.0),
-            MtlMap::BaseColor | MtlMap::Emissive | MtlMap::Opacity => 1.0,
+            MtlMap::BaseColor | MtlMap::Emissive | MtlMap::Opacity | MtlMap::Displacement => 1.0,
         }
     }
 }
@@ -114,6 +120,8 @@ pub(super) struct MtlTexture {
     pub is_clamped: bool,
     /// -bm: what the slopes of a normal map are multiplied by.
     pub strength: f32,
+    /// -mm: how far heights move the surface, which is what is added to them and before that what they are multiplied by.
+    pub amount: Option<HeightAmount>,
 }
 
 /// Reads the materials of a file. Also returns how many statements that are understood have numbers that can't be read.
@@ -169,8 +177,14 @@ fn part(text: &[u8]) -> Option<f32> {
 
 /// Parses a file name after options. Options about anything but its place are ignored.
 fn texture(mut text: &[u8]) -> MtlTexture {
-    let mut found =
-        MtlTexture { file: String::new(), scale: [1.0; 2], offset: [0.0; 2], is_clamped: false, strength: 1.0 };
+    let mut found = MtlTexture {
+        file: String::new(),
+        scale: [1.0; 2],
+        offset: [0.0; 2],
+        is_clamped: false,
+        strength: 1.0,
+        amount: None,
+    };
     loop {
         let (word, mut rest) = first_word(text);
         let count = match word {
@@ -188,6 +202,7 @@ fn texture(mut text: &[u8]) -> MtlTexture {
         match word {
             b"-clamp" => found.is_clamped = first_word(rest).0 == b"on",
             b"-bm" => found.strength = Some(place[0]).filter(|strength| strength.is_finite()).unwrap_or(1.0),
+            b"-mm" => found.amount = HeightAmount::from_factor(place[1], place[0]),
             b"-s" => replace(&mut found.scale, place, count),
             b"-o" => replace(&mut found.offset, place, count),
             _ => {}
@@ -217,9 +232,10 @@ mod tests {
     #[test]
     fn colours_and_textures_are_read_and_the_rest_is_not() {
         let text = "# made by hand\r\nKd 1 0 0\r\nnewmtl old wood\r\nNs x\r\nKd 0.5 .25 2\r\nmap_Kd -s 2 3 1 -clamp on \
-                    a b.png\r\nPr 0.25\r\nPm 7\r\nd -halo 0.5\r\nTr 0.5\r\nKe 2\r\nmap_Ke -o 0.5 glow.png\r\nnorm -bm 2.5 n.png\r\nmap_bump b.png\r\nmap_d d.png\r\nmap_Pr r.png\r\nmap_Pm m.png\r\nnewmtl plain\r\n\tKd \
+                    a b.png\r\nPr 0.25\r\nPm 7\r\nd -halo 0.5\r\nTr 0.5\r\nKe 2\r\nmap_Ke -o 0.5 glow.png\r\nnorm -bm 2.5 n.png\r\nmap_bump b.png\r\nmap_d d.png\r\nmap_Pr r.png\r\nmap_Pm m.png\r\nmap_disp -mm -0.5 2 h.png\r\nnewmtl plain\r\n\tKd \
                     spectral a.rfl\r\nKd 0.5\r\nd\r\n";
         let place = |file: &str| MtlTexture { file: file.to_owned(), ..texture(b"") };
+        let amount = Some(HeightAmount { scale: 2.0, midlevel: 0.25 });
         let wood = MtlMaterial {
             color: [0.5, 0.25, 1.0],
             emissive: [2.0; 3],
@@ -235,13 +251,18 @@ mod tests {
                 (MtlMap::Opacity, place("d.png")),
                 (MtlMap::Roughness, place("r.png")),
                 (MtlMap::Metalness, place("m.png")),
+                (MtlMap::Displacement, MtlTexture { amount, ..place("h.png") }),
             ]),
             ..MtlMaterial::named(b"old wood")
         };
         let plain = MtlMaterial { color: [0.5; 3], ..MtlMaterial::named(b"plain") };
         assert_eq!(read(text.as_bytes()), Ok((vec![wood, plain], 2)));
         assert_eq!(texture(b"-o 1 2.png"), MtlTexture { offset: [1.0, 0.0], ..place("2.png") });
-        assert_eq!(texture(b"-mm 0 1 -bm 2 -t 1 x"), MtlTexture { strength: 2.0, ..place("x") });
+        let whole = HeightAmount::from_factor(1.0, 0.0);
+        assert_eq!(texture(b"-mm 0 1 -bm 2 -t 1 x"), MtlTexture { strength: 2.0, amount: whole, ..place("x") });
+        for bad in ["-mm 1 0 x", "-mm a b x", "-mm 0 inf x"] {
+            assert_eq!(texture(bad.as_bytes()), place("x"), "{bad}");
+        }
         assert_eq!(texture(b"-bm x y"), place("y"));
         assert_eq!(texture(b"-s"), place(""));
     }

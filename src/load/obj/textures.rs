@@ -55,6 +55,8 @@ impl Giving {
                 material.look.normal_scale = factor;
                 set_map(material, Slot::Normal, texture);
             }
+            // Read apart from the others, with all its bits.
+            MtlMap::Displacement => {}
             MtlMap::Opacity => self.0.entry(index).or_default().opacity = Some(texture),
             MtlMap::Roughness => {
                 material.look.roughness = factor;

@@ -1,5 +1,7 @@
 //! Builds the levels of a height map.
 
+use std::sync::Arc;
+
 use super::{HeightMap, MAX_KEPT};
 use crate::casts::to_u32;
 use crate::progress::{Cancelled, Progress};
@@ -31,6 +33,7 @@ impl HeightMap {
         let mut heights = Vec::with_capacity(sizes.iter().map(|&size| px_of(size)).sum());
         let mut done = 0.9;
         shrink(size, fitted, &progress.part(0.0, done), row, &mut heights)?;
+        let [least, greatest] = [f32::min, f32::max].map(|of| heights.iter().copied().reduce(of).unwrap_or(0.0));
         let mut start = 0;
         for pair in sizes.windows(2) {
             // Each level has a quarter of the pixels of the one before.
@@ -42,7 +45,9 @@ impl HeightMap {
             heights.extend_from_slice(&next);
             done = end;
         }
-        Ok(Self { size: fitted, levels: to_u32(sizes.len()), repeats: false, heights })
+        let range = [least, greatest];
+        let (levels, heights) = (to_u32(sizes.len()), Arc::new(heights));
+        Ok(Self { size: fitted, levels, repeats: false, amount: None, range, heights })
     }
 
     /// Returns how many bytes it takes to build a map from an image of this size, the map included.

@@ -107,8 +107,7 @@ impl PatchRelief {
 pub fn patch_reliefs(heights: Option<&Heights>, mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
     let Some(heights) = heights else { return Vec::new() };
     let of_patch = |(index, patch): (u32, &Patch)| {
-        let map = heights.map_of(topology.material_of(index));
-        let Some(map) = map.and_then(|map| heights.maps.get(map as usize)) else { return PatchRelief::NONE };
+        let Some(map) = heights.map(topology.material_of(index)) else { return PatchRelief::NONE };
         let Relief { longest, range, slope, losses } = heights.reliefs[patch.triangle as usize];
         let size = Vec2::from(map.size.map(|side| side as f32));
         let [a, b, c] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv * size);

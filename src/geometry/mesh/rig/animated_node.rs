@@ -3,6 +3,7 @@
 use glam::{DMat4, DQuat, DVec3};
 
 use super::clip::{Channel, Property, unit};
+use crate::defaults::with_defaults;
 
 /// A node that a clip moves. The transforms of nodes that no clip moves are part of `between`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,18 +19,14 @@ pub struct AnimatedNode {
     pub is_joint: bool,
 }
 
-/// A node's own transform, as translation, rotation and scale.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Placement {
-    pub translation: DVec3,
-    /// Not always of unit length.
-    pub rotation: DQuat,
-    pub scale: DVec3,
-}
-
-impl Default for Placement {
-    fn default() -> Self {
-        Self { translation: DVec3::ZERO, rotation: DQuat::IDENTITY, scale: DVec3::ONE }
+with_defaults! {
+    /// A node's own transform, as translation, rotation and scale.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Placement {
+        pub translation: DVec3 = DVec3::ZERO,
+        /// Not always of unit length.
+        pub rotation: DQuat = DQuat::IDENTITY,
+        pub scale: DVec3 = DVec3::ONE,
     }
 }
 

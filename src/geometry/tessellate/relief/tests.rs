@@ -4,7 +4,7 @@ use glam::{Mat4, Vec4, vec2, vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::{Corner, HeightMap, Heights, Material, Mesh, Topology, patch_reliefs};
+use crate::mesh::{Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Topology, patch_reliefs};
 use crate::tessellate::displace::bilinear_height;
 use crate::tessellate::lod::LodView;
 use crate::tessellate::normal::unit_or;
@@ -159,7 +159,7 @@ proptest! {
             (clip_from_object.x_axis.z, clip_from_object.y_axis.z) = (0.0, 0.0);
             (clip_from_object.z_axis.z, clip_from_object.w_axis.z) = (0.0, 0.01);
         }
-        let reach = height_scale.abs() * heights.reach(midlevel);
+        let reach = heights.reach(HeightAmount { scale: height_scale, midlevel });
         let view = LodView::new(clip_from_object, vec2(400.0, 300.0)).with_reach(reach);
         let net = flat_net(corners_of.map(|corner| corner.position));
         let mut patch = seen_patch(&view, &net);

@@ -244,6 +244,11 @@ pub(crate) fn morphed_square() -> Vec<Entry> {
 /// A square in metres with texture coordinates, colours of corners, and a Phong material. Its texture's image is embedded, or
 /// named by a path.
 pub(crate) fn textured_square(image: Result<&[u8], &str>) -> Vec<Entry> {
+    square_textured_as("DiffuseColor", image, 100.0)
+}
+
+/// The same square with the texture as this property of its material, in units of so many centimetres.
+pub(crate) fn square_textured_as(property: &'static str, image: Result<&[u8], &str>, unit: f64) -> Vec<Entry> {
     let uvs = layer(
         "LayerElementUV",
         "ByPolygonVertex",
@@ -276,8 +281,8 @@ pub(crate) fn textured_square(image: Result<&[u8], &str>) -> Vec<Entry> {
         object("Texture", 61, "Texture::wood", "", texture),
         object("Video", 62, "Video::wood", "Clip", video),
     ];
-    let links = [Link(20, 0, ""), Link(10, 20, ""), Link(60, 20, ""), Link(61, 60, "DiffuseColor"), Link(62, 61, "")];
-    document(false, 100.0, objects, &links)
+    let links = [Link(20, 0, ""), Link(10, 20, ""), Link(60, 20, ""), Link(61, 60, property), Link(62, 61, "")];
+    document(false, unit, objects, &links)
 }
 
 /// A PNG image of two texels: red above blue.

@@ -2,7 +2,9 @@
 
 use glam::Vec3;
 
-use super::documents::{Link, document, geometry, image, layer, model, prism, smoothed_prism, textured_square};
+use super::documents::{
+    Link, document, geometry, image, layer, model, prism, smoothed_prism, square_textured_as, textured_square,
+};
 use super::tree::{Entry, one, text};
 use super::{loaded, near, read};
 use crate::fbx::{read as read_on_a_thread, read_here};
@@ -10,7 +12,7 @@ use crate::files::Limits;
 use crate::loaded_mesh::LoadedMesh;
 use crate::model_file::ModelFile;
 use crate::read_error::ReadError;
-use geometry::mesh::{Alpha, Wrap};
+use geometry::mesh::{Alpha, HeightAmount, Wrap};
 use geometry::progress::Progress;
 
 #[test]
@@ -180,6 +182,18 @@ fn a_phong_material_with_an_embedded_image_is_read() {
         // A texture scaled by 2 is twice as large: coordinates halve; v counts from the top.
         assert!(near(corner.uv.to_array(), [x / 2.0, 1.0 - y / 3.0]), "{} at {}", corner.uv, corner.position);
     }
+}
+
+#[test]
+fn a_displacement_map_is_a_height_image_in_units_of_the_file() {
+    let loaded = loaded(&square_textured_as("DisplacementColor", Ok(&image()), 1.0));
+    assert_eq!(loaded.warnings, [] as [String; 0]);
+    let map = loaded.materials[0].height.as_ref().expect("a height image");
+    assert_eq!((map.size, map.amount), ([1, 2], HeightAmount::from_factor(0.01, 0.0)));
+    let broken = text(&square_textured_as("DisplacementColor", Ok(b"no image"), 1.0));
+    let broken = read(&broken).expect("a mesh");
+    let start = "the height image of material \"paint\" is left out: \"wood\" can't be read as a height image: ";
+    assert!(broken.materials[0].height.is_none() && broken.warnings[0].starts_with(start), "{:?}", broken.warnings);
 }
 
 #[test]

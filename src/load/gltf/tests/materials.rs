@@ -3,7 +3,7 @@
 use glam::Vec4;
 
 use super::*;
-use geometry::mesh::{Alpha, CornerDetail, Look, MapUv, Material, Sampling, Slot, Wrap};
+use geometry::mesh::{Alpha, CornerDetail, HeightAmount, Look, MapUv, Material, Sampling, Slot, Wrap};
 
 /// The square of 1 in the xy plane that faces +Z, of two triangles.
 const SQUARE: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0]];
@@ -91,6 +91,31 @@ fn a_sheen_has_a_colour_a_roughness_and_maps() {
     let none = json!({ "sheenRoughnessFactor": 0.75, "sheenColorTexture": { "index": 0 } });
     let read = material(json!({ "extensions": { "KHR_materials_sheen": none } })).look;
     assert!(!read.has_sheen() && slots.iter().all(|&slot| read.maps[slot as usize].is_none()));
+}
+
+#[test]
+fn height_images_displace_as_either_draft_says() {
+    let displaced = |of: Value| json!({ "extensions": { "KHR_materials_displacement": of } });
+    for name in ["displacement", "displacementGeometry"] {
+        let [texture, factor, offset] = ["Texture", "Factor", "Offset"].map(|end| format!("{name}{end}"));
+        let own = json!({ (&texture): { "index": 0 }, (factor): 0.5, (offset): -0.125 });
+        let map = material(displaced(own)).height.expect("a height image");
+        assert_eq!((map.size, map.amount), ([2, 1], Some(HeightAmount { scale: 0.5, midlevel: 0.25 })));
+        let usual = material(displaced(json!({ (texture): { "index": 0 } }))).height.expect("a height image");
+        assert_eq!(usual.amount, HeightAmount::from_factor(1.0, 0.0));
+    }
+    let elsewhere = json!({ "displacementTexture": { "index": 0, "texCoord": 1 } });
+    let alone = square(displaced(elsewhere.clone())).read().unwrap();
+    assert!(alone.warnings.is_empty() && alone.corners.iter().all(|corner| corner.uv.to_array() == QUARTER));
+    let mut both = displaced(elsewhere);
+    both["pbrMetallicRoughness"] = json!({ "baseColorTexture": { "index": 0 } });
+    let said = &square(both).read().unwrap().warnings[0];
+    assert!(said.contains("height image of material \"material 0\" lies elsewhere than its base colour"), "{said}");
+    let mut broken = square(displaced(json!({ "displacementTexture": { "index": 0 } })));
+    broken.root["images"] = json!([{ "uri": "data:image/png;base64,AAAA" }]);
+    let broken = broken.read().unwrap();
+    let start = "the height image of material \"material 0\" is left out: /images/0 can't be read as a height image: ";
+    assert!(broken.materials[0].height.is_none() && broken.warnings[0].starts_with(start), "{:?}", broken.warnings);
 }
 
 #[test]

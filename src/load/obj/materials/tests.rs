@@ -4,7 +4,7 @@ use tempfile::TempDir;
 
 use crate::files::Limits;
 use crate::{LoadedMesh, load};
-use geometry::mesh::{Alpha, Material, Slot, Wrap};
+use geometry::mesh::{Alpha, HeightAmount, Material, Slot, Wrap};
 use geometry::progress::Progress;
 
 /// A folder with a folder of textures in it.
@@ -120,6 +120,30 @@ fn opacity_roughness_and_metalness_come_from_images() {
     let mesh = square(&folder(), "map_Pm gone.png\nmap_d gone.png\n");
     let look = &mesh.materials[0].look;
     assert_eq!((look.metallic, look.alpha, mesh.warnings.len()), (0.0, Alpha::Opaque, 1), "{:?}", mesh.warnings);
+}
+
+#[test]
+fn height_images_displace_as_the_file_says() {
+    let height = |statement: &str| {
+        let mut mesh = square(&folder(), statement);
+        (mesh.mesh.materials[0].height.take(), mesh.warnings)
+    };
+    for statement in ["disp", "map_disp", "map_Kd w.png\nmap_Disp"] {
+        let (map, warnings) = height(&format!("{statement} -mm -0.5 2 w.png\n"));
+        let map = map.expect("a height image");
+        assert_eq!((map.size, map.amount), ([2, 1], Some(HeightAmount { scale: 2.0, midlevel: 0.25 })));
+        assert_eq!(map.heights[..2], [0.2126, 0.0722], "the brightness of red and of blue");
+        assert_eq!(warnings, [""; 0]);
+    }
+    let (map, _) = height("disp w.png\n");
+    assert_eq!(map.map(|map| map.amount), Some(None), "the file doesn't say how far");
+    for (file, reason) in [("gone.png", "there is no such file"), ("m.mtl", "choose a "), ("../up.png", "with ..")] {
+        let (map, warnings) = height(&format!("disp {file}\n"));
+        let start =
+            format!("the height image of material \"m\" is left out: \"{file}\" can't be read as a height image: ");
+        let is_said = warnings.len() == 1 && warnings[0].starts_with(&start) && warnings[0].contains(reason);
+        assert!(map.is_none() && is_said, "{warnings:?}");
+    }
 }
 
 #[test]
