@@ -211,7 +211,8 @@ fn part_row(
             let switch = ui.add(switch).on_hover_text(hover);
             let style = selected.style(&name(tree, branch));
             if style != PartStyle::default() {
-                ui.weak(style.to_string()).on_hover_text("What it has of its own (--part).");
+                let marked = ui.label("*").on_hover_text(format!("It has {style} of its own (--part)."));
+                marked.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, style.to_string()));
             }
             switch
         })

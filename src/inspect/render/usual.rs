@@ -27,6 +27,8 @@ pub struct Usual {
     pub radius: f32,
     /// Where the scale of curvature ends, in 1 / object unit.
     pub curvature: f32,
+    /// The same of Gaussian curvature, in 1 / object unit squared.
+    pub gaussian: f32,
     /// Texels along an object unit on half of the patches, as a power of two.
     pub texels: f32,
 }
@@ -35,19 +37,26 @@ impl Usual {
     /// Looks at a mesh at rest. A side's curvature is how far the normals at its ends are apart, divided by its length: on a sphere of
     /// radius r it is 1 / r. It doesn't depend on the surface that patches become, so that scales stay when that changes.
     pub fn new(mesh: &Mesh, topology: &Topology, radius: f32) -> Self {
-        let (mut curvatures, mut densities) = (Vec::new(), Vec::new());
+        let (mut curvatures, mut products, mut densities) = (Vec::new(), Vec::new(), Vec::new());
         let step = topology.patches.len().div_ceil(MOST_PATCHES).max(1);
         for patch in (0..topology.patches.len() as u32).step_by(step) {
             let corners = topology.patch_corners(patch).map(|corner| &mesh.corners[corner as usize]);
             let (uvs, places) = (corners.map(|corner| corner.uv), corners.map(|corner| corner.position));
             let bent = [(0, 1), (1, 2), (2, 0)]
                 .map(|(a, b)| corners[a].normal.distance(corners[b].normal) / places[a].distance(places[b]));
-            curvatures.extend(bent.iter().filter(|bent| bent.is_finite() && **bent * radius > LEAST_CURVATURE));
+            let is_curved = |bent: &f32| bent.is_finite() && *bent * radius > LEAST_CURVATURE;
+            curvatures.extend(bent.iter().filter(|bent| is_curved(bent)));
+            // A patch bends the most and the least about as its sides do.
+            products.extend(bent.iter().all(is_curved).then(|| {
+                let ends = bent.iter().fold([f32::MAX, 0.0], |[least, most], own| [least.min(*own), most.max(*own)]);
+                ends[0] * ends[1]
+            }));
             densities.extend(texel_density(&mesh.materials[topology.material_of(patch)], uvs, places));
         }
         let curvature = quantile(curvatures, CURVED_PART).map_or(FLAT_CURVATURE / radius, |bent| BEYOND * bent);
+        let gaussian = quantile(products, CURVED_PART).map_or(curvature * curvature, |bent| BEYOND * BEYOND * bent);
         let texels = quantile(densities, 0.5).map_or(1.0, |density| density.log2().round().exp2());
-        Self { radius, curvature, texels }
+        Self { radius, curvature, gaussian, texels }
     }
 
     /// The scale for the numbers that a picture's colours stand for; any scale if they stand for none. `known` is that of distances in
@@ -59,9 +68,13 @@ impl Usual {
                 SurfaceUnit::Px => DEVIATION_PX_SCALE,
             },
             Colors::Curvature => {
-                let ends = settings.curvature_scale.map_or(self.curvature, |ends| ends / self.radius);
-                let power = if settings.curvature_kind == CurvatureKind::Gaussian { 2 } else { 1 };
-                curvature_scale(f64::from(ends).powi(power))
+                let set = settings.curvature_scale.map(|ends| f64::from(ends / self.radius));
+                curvature_scale(match settings.curvature_kind {
+                    CurvatureKind::Gaussian => set.map_or(self.gaussian.into(), |ends| ends * ends),
+                    CurvatureKind::Mean | CurvatureKind::Largest | CurvatureKind::Least => {
+                        set.unwrap_or(self.curvature.into())
+                    }
+                })
             }
             Colors::TexelDensity => {
                 let middle = if settings.texel_density_per == SurfaceUnit::Units { self.texels } else { 1.0 };
@@ -107,6 +120,7 @@ mod tests {
         assert!((1.2..1.8).contains(&own), "a sphere has 1 / radius, and the scale goes on: {own}");
         let mut large = Shape::Icosphere.build();
         large.corners.iter_mut().for_each(|corner| corner.position *= 50.0);
+        assert!((sphere.gaussian / sphere.curvature.powi(2) - 1.0).abs() < 0.2, "all of a sphere bends alike");
         let ratio = sphere.curvature / usual(&large).curvature;
         assert!((ratio / 50.0 - 1.0).abs() < 1e-3, "{ratio}");
         // No side of a cube with hard edges is curved.
@@ -133,7 +147,7 @@ mod tests {
 
     #[test]
     fn the_user_sets_the_ends_in_bounding_radii_and_gaussian_curvature_has_their_square() {
-        let usual = Usual { radius: 2.0, curvature: 3.0, texels: 256.0 };
+        let usual = Usual { radius: 2.0, curvature: 3.0, gaussian: 5.0, texels: 256.0 };
         let mut settings = Settings::default();
         settings.overlays.colors = Colors::Curvature;
         let most = |settings: &Settings| usual.scale(settings, None).most;
