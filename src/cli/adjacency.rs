@@ -31,12 +31,12 @@ pub struct Args {
     /// What to write; by default bin if the output's name ends in .bin, and otherwise json
     #[arg(long, value_parser = options::choice::<Format>(), requires = "output")]
     pub format: Option<Format>,
-    /// Compare this file with the computed indices (- for standard input): JSON as this command writes it, or bare indices
+    /// Compare this file with the computed indices (- for standard input). It is JSON as this command writes it, or bare indices
     /// as in a .bin file. Standard error lists which patches differ and what that means; the command fails if any differs
     #[arg(long, value_name = "FILE")]
     pub against: Option<PathBuf>,
-    /// Also write what exported shaders that displace need of every corner, 40 bytes each: the unit vector along which its point moves,
-    /// the gradients of both texture coordinates, and the length of the point's shortest edge in px of the height image
+    /// Also write what exported shaders that displace need of every corner, 40 bytes each. These are the direction in which its
+    /// point moves, gradients of both texture coordinates, and the length of the point's shortest edge in px of the image
     #[arg(long, value_name = "OUT.bin", requires = "height")]
     pub corners: Option<PathBuf>,
     /// The height image of --corners: a PNG, JPEG, WebP, TIFF or EXR image over all materials, or `material`, the materials' base colour image

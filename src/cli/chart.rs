@@ -45,7 +45,7 @@ pub struct Args {
     /// Partitionings to try; by default integer under LOD by error, else fractional-odd. Subtriangulation has uniform LOD only
     #[arg(long, value_delimiter = ',', value_name = "P,..", value_parser = options::choice::<Partitioning>())]
     pub partitionings: Vec<Partitioning>,
-    /// Kinds of LOD to try: one factor everywhere; the white paper's, by projected lengths of edges; or by error on screen
+    /// Kinds of LOD to try. They are one factor everywhere, the white paper's by lengths of edges, or by error on screen
     #[arg(long, value_parser = options::choice::<LodKind>(), value_delimiter = ',', value_name = "LOD,..", default_values = ["uniform", "paper", "error", "error-rows"])]
     pub lods: Vec<LodKind>,
     /// Factors to try under uniform LOD, each 1 to 64
@@ -80,8 +80,8 @@ pub struct Args {
     /// Table to write (- for standard output); each line is written as soon as its setting is done
     #[arg(long, value_name = "OUT.csv")]
     pub csv: Option<PathBuf>,
-    /// Folder for a report: results.md (which method to use when), a picture for each mesh, and the table results.csv; made
-    /// if it isn't there
+    /// Folder for a report; made if it isn't there. It has results.md (which method to use when), a picture for each mesh, and
+    /// the table results.csv
     #[arg(long, value_name = "DIR")]
     pub report: Option<PathBuf>,
     #[command(flatten)]

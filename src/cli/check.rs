@@ -45,14 +45,13 @@ pub struct Args {
     /// File for the report (- for standard output)
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     pub output: PathBuf,
-    /// Folder for a page with a picture of each asset and of the worst place of each failed gate, index.html and its
-    /// pictures; made if it isn't there
+    /// Folder for a page with a picture of each asset and of the worst place of each failed gate; made if it isn't there
     #[arg(long, value_name = "DIR")]
     pub page: Option<PathBuf>,
     /// Folder that keeps what was found, so that an unchanged asset isn't measured again; made if it isn't there
     #[arg(long, value_name = "DIR")]
     pub cache: Option<PathBuf>,
-    /// Folder of golden pictures in place of that of the configuration: each view must be the same as ASSET.png, or if it has a
+    /// Folder of golden pictures in place of that of the configuration. Each view must be the same as ASSET.png, or if it has a
     /// name, ASSET/VIEW.png
     #[arg(long, value_name = "DIR")]
     pub golden: Option<PathBuf>,

@@ -39,8 +39,8 @@ pub struct Args {
     /// Distance within which vertices count as equal: object units, or ULP of the mesh's largest coordinate, such as 16ulp
     #[arg(long, value_name = "DISTANCE", default_value = "16ulp", value_parser = within, allow_negative_numbers = true)]
     pub within: Within,
-    /// The columns of a .csv file that are the position, by their name without the component: position for position.x, position.y
-    /// and position.z
+    /// The columns of a .csv file that are the position, by their name without the component. It is position for position.x,
+    /// position.y and position.z
     #[arg(long, value_name = "NAME")]
     pub position_column: Option<String>,
     /// Print JSON

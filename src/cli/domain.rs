@@ -23,8 +23,9 @@ pub struct Args {
     /// to powers of two before the tessellator gets them
     #[arg(long, value_name = "P", value_parser = super::options::choice::<Partitioning>())]
     pub partitioning: Partitioning,
-    /// Factors of the edges where u, v and w are 0, and the inside factor; of a quad those of the edges where u is 0, v is 0, u is 1 and
-    /// v is 1, and inside along u and v; of isolines their number and the segments of each; nan, inf, 0 and negative numbers are allowed
+    /// Factors of the edges where u, v and w are 0, and the inside factor; nan, inf, 0 and negative numbers are allowed. Of a
+    /// quad those of the edges where u is 0, v is 0, u is 1 and v is 1, and inside along u and v; of isolines their number and
+    /// the segments of each
     #[arg(
         long,
         value_name = "E0,E1,E2,INSIDE",

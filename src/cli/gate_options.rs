@@ -15,8 +15,8 @@ use inspect::shot::{Shot, write_picture};
 pub struct GateOptions {
     #[command(flatten)]
     pub gates: FailOnOption,
-    /// Folder for a picture of the worst place of each gate that failed, named after the output (of stability: the case) and the
-    /// gate; made if it isn't there
+    /// Folder for a picture of the worst place of each gate that failed; made if it isn't there. Pictures are named after the
+    /// output (of stability: the case) and the gate
     #[arg(long, value_name = "DIR", requires = "fail_on")]
     pub evidence: Option<PathBuf>,
 }

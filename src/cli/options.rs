@@ -235,16 +235,16 @@ pub struct WeldOption {
     /// Weld points within this distance, relative to the bounding diagonal; 0 joins only exactly equal positions
     #[arg(long, value_name = "TOLERANCE", default_value_t = 0.0, value_parser = within(0.0..=0.1))]
     pub weld: f32,
-    /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a band of small
-    /// triangles that share one normal on the crease, so that PN triangles don't crack there (Vlachos et al. 2001). Relative
-    /// to the bounding diagonal, 0 to 0.1; 0 makes no band. It is at most a third of an edge, and half the radius of a
-    /// triangle's incircle
+    /// Cut triangles back from creases (edges with split normals) by this width, and fill the gap with a band of small triangles,
+    /// so that nothing cracks there (Vlachos et al. 2001). On the crease they share one normal. The width is relative to the
+    /// bounding diagonal, 0 to 0.1; 0 makes no band. It is at most a third of an edge, and half the radius of a triangle's
+    /// incircle
     #[arg(long, alias = "rim", value_name = "WIDTH", default_value_t = 0.0, value_parser = within(0.0..=WIDEST), allow_hyphen_values = true)]
     pub crease_band: f32,
-    /// Show the materials that a glTF file has for this variant (KHR_materials_variants), by name; `info` lists the variants
+    /// Show the materials of this variant of a glTF file (KHR_materials_variants), by name; `info` lists them
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     pub variant: Option<String>,
-    /// Show this scene of a glTF file instead of its default scene, by name, or by number from 0; `info` lists the scenes
+    /// Show this scene of a glTF file instead of its default, by name or by number from 0; `info` lists them
     #[arg(long, value_name = "NAME|N", allow_hyphen_values = true)]
     pub scene: Option<String>,
     #[command(flatten)]
@@ -277,8 +277,7 @@ pub struct ReferenceOption {
     /// By default the exact surface of a shape; for other meshes the surface that the tessellation converges to
     #[arg(long = "reference-surface", value_name = "FILE", value_parser = source())]
     pub reference_shape: Option<Source>,
-    /// Compare with the limit of the subdivision surface whose cage is made of the polygons of --reference-surface, or without
-    /// that option of those of the mesh's own file
+    /// Compare with the limit of the subdivision surface whose cage is --reference-surface, or without it the mesh's own file
     #[arg(long, value_name = "SCHEME", value_parser = choice::<Subdivide>())]
     pub reference_subdivide: Option<Subdivide>,
 }
@@ -310,9 +309,9 @@ pub struct PartOptions {
     /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
-    /// Give the part of this name a surface of its own, or LOD that is 1/64 to 16 times as fine: several times as a whole, and for
-    /// each part once, as `NAME:surface=flat` or `NAME:surface=phong-aen,detail=2`. Where parts with different surfaces meet, the edge
-    /// has the one that comes first among those of `--surface`, and the finest detail
+    /// Give the part or group of this name a surface of its own, or LOD that is 1/64 to 16 times as fine, as `NAME:surface=flat`
+    /// or `NAME:surface=phong-aen,detail=2`. It may be given several times; the last that names a part counts. Where parts with
+    /// different surfaces meet, the edge has the one that comes first among those of `--surface`, and the finest detail
     #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
     part: Vec<(String, PartStyle)>,
     /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.
@@ -331,12 +330,11 @@ impl PartOptions {
 /// How large files may be, and how much memory they may take.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct LimitOption {
-    /// Refuse a file larger than this, and larger buffers and images that it refers to: a number of bytes, or one with the
-    /// unit KiB, MiB or GiB
+    /// Refuse a file larger than this, or larger buffers and images of it: a number of bytes, or one in KiB, MiB or GiB
     #[arg(long, value_name = "SIZE", default_value = "2GiB", value_parser = values::bytes)]
     pub max_size: u64,
     /// Refuse a mesh that would take more memory to load than this plus four times the size of its files, and scale textures down
-    /// to it: a number of bytes, or one with the unit KiB, MiB or GiB
+    /// to it; written as --max-size is
     #[arg(long, value_name = "SIZE", default_value = "512MiB", value_parser = values::bytes)]
     pub max_memory: u64,
 }

@@ -17,9 +17,9 @@ use inspect::user_shader::read_user_shader;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct FactorsOption {
-    /// Tessellate with the factors of a file in place of those that LOD computes (- for standard input): CSV with the header
-    /// patch,e0,e1,e2,inside (under rows patch,e0,e1,e2,base,width,flipped) and a line for each triangle, as the factors
-    /// command or another engine writes it. Standard error lists edges whose two sides have different factors, and names the convention under which all sides agree
+    /// Tessellate with the factors of a CSV file in place of those that LOD computes (- for standard input). It has the header
+    /// patch,e0,e1,e2,inside (under rows patch,e0,e1,e2,base,width,flipped) and a line for each triangle, as `pnaen factors`
+    /// writes it. Standard error lists edges whose sides have different factors, and the convention under which all agree
     #[arg(long = "factors", value_name = "CSV", conflicts_with_all = LOD_OPTIONS)]
     pub given: Option<PathBuf>,
 }
@@ -47,8 +47,9 @@ impl FactorsOption {
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct LodShaderOption {
-    /// Compute factors on the GPU by functions of your own in place of LOD's: a WGSL file with the function edge_factor, and perhaps
-    /// inside_factor. The manual's page on own shaders says what they get. Standard error lists edges whose two sides got different factors
+    /// Compute factors on the GPU by functions of your own in place of LOD's. It is a WGSL file with the function edge_factor,
+    /// and perhaps inside_factor. The manual's page on own shaders says what they get. Standard error lists edges whose sides got
+    /// different factors
     #[arg(long, value_name = "WGSL", conflicts_with_all = LOD_OPTIONS)]
     pub lod_shader: Option<PathBuf>,
 }
@@ -78,8 +79,8 @@ impl LodShaderOption {
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct SurfaceShaderOption {
-    /// Compute the control points of edges on the GPU by a function of your own in place of a surface's: a WGSL file with the
-    /// function edge_points. The manual's page on own shaders says what it gets. Standard error lists edges whose sides got
+    /// Compute the control points of edges on the GPU by a function of your own in place of a surface's. It is a WGSL file with
+    /// the function edge_points. The manual's page on own shaders says what it gets. Standard error lists edges whose sides got
     /// different control points
     #[arg(long, value_name = "WGSL", conflicts_with = "surface")]
     pub surface_shader: Option<PathBuf>,

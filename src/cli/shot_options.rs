@@ -38,8 +38,8 @@ pub struct ShotOptions {
     pub user_surface: SurfaceShaderOption,
     #[command(flatten)]
     pub picture: PictureOptions,
-    /// Panorama whose light shines in place of the studio's: a Radiance (.hdr) or OpenEXR (.exr) file, longitude across and
-    /// latitude down, with -Z in its middle
+    /// Panorama whose light shines in place of the studio's: a Radiance (.hdr) or OpenEXR (.exr) file. It has longitude across
+    /// and latitude down, with -Z in its middle
     #[arg(long, value_name = "FILE")]
     pub environment: Option<PathBuf>,
     #[command(flatten)]

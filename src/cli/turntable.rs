@@ -17,7 +17,7 @@ use load::Source;
 pub struct Args {
     #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
-    /// Folder for numbered PNG files, frame-0000.png and so on, which is made if it isn't there; or a .gif file
+    /// Folder for numbered PNG files, which is made if it isn't there; or a .gif file
     #[arg(short, long, value_name = "DIR|OUT.gif", value_parser = OsStringValueParser::new().try_map(place))]
     pub output: PathBuf,
     /// Number of pictures in one turn, 2 to 3600

@@ -16,8 +16,8 @@ const MOST: usize = 3600;
 /// Views of one mesh, for each of which a command writes a file.
 #[derive(Clone, Debug, Default, Args)]
 pub struct CamerasOption {
-    /// Write a file for each of many views: N from evenly around the mesh, or those of a file with a name and camera options for
-    /// each, as JSON or on a line
+    /// Write a file for each of many views: N from evenly around the mesh, or those of a file. It has a name and camera options
+    /// for each, as JSON or on a line
     #[arg(
         long,
         value_name = "N|FILE",

@@ -232,7 +232,7 @@ options! {
         name: "distances",
         label: "Near, far",
         placeholder: "NEAR,FAR",
-        text: "Distances to the eye under LOD by distance, in bounding radii of the mesh: the factor is --factor up to NEAR, 1 \
+        text: "Distances to the eye under LOD by distance, in bounding radii of the mesh. The factor is --factor up to NEAR, 1 \
                from FAR on, and linear in between. FAR is larger than NEAR.",
         saved_as: &["near", "far"],
         no_effect: |settings| only_if(reads(settings).distances, "Only LOD by distance has distances."),
@@ -337,8 +337,8 @@ options! {
         name: "environment-brightness",
         label: "Environment",
         placeholder: "EV",
-        text: "Brightness of the light from all around, of the studio or of a file, beside emission and the lights of the mesh's \
-               file: each step of 1 EV doubles it.",
+        text: "Brightness of the light from all around, but not of emission and the lights of the mesh's file: each step of 1 EV \
+               doubles it.",
         no_effect: not_in_studio,
     }
 
@@ -425,7 +425,7 @@ options! {
         name: "checker-squares",
         label: "Squares across",
         placeholder: "N",
-        text: "How many squares the checker has side by side in one unit of texture coordinates, which is the width of the image.",
+        text: "How many squares the checker has side by side in one unit of texture coordinates, an image's width.",
         no_effect: |settings| only_if(settings.overlays.colors == Colors::UvChecker, "Only the UV checker has squares."),
     }
 
@@ -516,8 +516,8 @@ options! {
         name: "crease-angle",
         label: "Crease angle",
         placeholder: "DEGREES",
-        text: "Where normals are made, triangles that meet at up to this angle are smooth, and others make a crease: 0 makes every \
-               triangle flat, and 180 everything smooth.",
+        text: "Where normals are made, triangles that meet at up to this angle are smooth, others make a crease: 0 makes all flat, and \
+               180 all smooth.",
     }
 
     /// It is saved with the file, as the camera is.
@@ -561,7 +561,7 @@ options! {
         name: "subdivide",
         label: "Subdivide",
         placeholder: "SCHEME",
-        text: "Take the polygons of FBX, OBJ, PLY, OFF, STL and 3MF files as the cage of a subdivision surface, and refine it.",
+        text: "Take the polygons of a file other than glTF as the cage of a subdivision surface, and refine it.",
     }
 
     LEVELS: field!(import.levels), Kind::Number(Range::new(0.0, MOST_LEVELS as f32, "").decimals(0)) => {
