@@ -4,8 +4,7 @@ use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
 use super::relief_buffers::{height_maps, relief_buffers};
 use super::{Gpu, GpuError};
-use geometry::mesh::{CurveItems, CurveStyle, Curves, Dominance, Mesh, PartStyle, Sharing, Topology};
-use geometry::tessellate::Surface;
+use geometry::mesh::{CurveItems, CurveStyle, Curves, Dominance, Mesh, PartStyle, Sharing, StylesUsed, Topology};
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
 pub const SEARCH_COUNTERS: u32 = 10;
@@ -47,28 +46,19 @@ pub struct MeshBuffers {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grouping {
     pub sharing: Sharing,
-    /// The surface of parts that have none of their own, if the mesh has others.
-    pub surface: Option<Surface>,
+    pub styles: StylesUsed,
 }
 
 impl Default for Grouping {
     fn default() -> Self {
-        Self { sharing: Sharing::AllSides, surface: None }
+        Self { sharing: Sharing::AllSides, styles: StylesUsed::Nothing }
     }
 }
 
 impl Grouping {
-    /// That of a mesh under a surface.
-    pub fn new(mesh: &Mesh, sharing: Sharing, surface: Surface) -> Self {
-        Self { sharing, surface: (!mesh.part_styles.is_empty()).then_some(surface) }
-    }
-
-    /// The curves of the mesh's edges.
+    /// The curves of a mesh's edges.
     pub fn curves(self, mesh: &Mesh, topology: &Topology) -> Curves {
-        match self.surface {
-            Some(surface) => Curves::of_surface(mesh, topology, self.sharing, surface),
-            None => Curves::build(mesh, topology, self.sharing),
-        }
+        Curves::styled(mesh, topology, self.sharing, self.styles)
     }
 }
 

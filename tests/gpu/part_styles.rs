@@ -185,3 +185,30 @@ fn parts_with_details_are_displaced_by_the_images_of_their_materials() {
         }
     }
 }
+
+#[test]
+fn the_mesh_as_it_is_has_no_styles() {
+    let loaded = three_parts(Shape::Torus, [style(Surface::Pn, 4.0), style(Surface::Phong, 2.0)]);
+    let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
+    let out = on_gpu(&mut scene, &inputs(&loaded, &Settings::from(Tessellation::untessellated())));
+    assert_eq!(out.triangles.len(), loaded.topology.patches.len());
+    let corners: Vec<_> = (0..loaded.topology.patches.len() as u32)
+        .flat_map(|patch| loaded.topology.patch_positions(patch).map(|place| place.to_array().map(f32::to_bits)))
+        .collect();
+    let found = |place: [f32; 3]| corners.contains(&place.map(f32::to_bits));
+    assert!(out.vertices.iter().all(|vertex| found(vertex.position)));
+    let own = Tessellation { factor: 2.0, ..Tessellation::untessellated() };
+    let out = on_gpu(&mut scene, &inputs(&loaded, &Settings::from(own)));
+    assert!(out.triangles.len() > 4 * loaded.topology.patches.len(), "its parts have their details again");
+}
+
+#[test]
+fn a_part_may_be_as_far_off_as_its_detail_allows() {
+    let loaded = three_parts(Shape::Torus, [PartStyle { surface: None, detail: 0.25 }; 2]);
+    let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
+    let inputs = inputs(&loaded, &Settings::from(Tessellation::default().by_error(0.5)));
+    on_gpu(&mut scene, &inputs);
+    let above = engine().patches_above(&mut scene, &inputs, 0.5).expect("a readback");
+    let worst = above.worst.expect("triangles").px;
+    assert!(above.patches == 0 && worst > 0.5, "{above:?}");
+}

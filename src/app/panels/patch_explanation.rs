@@ -181,24 +181,38 @@ impl SelectedPatch<'_> {
 const WHY: &str = "Why these factors";
 
 /// An LOD's formula with its numbers, and in a sentence.
-fn formula_text(formula: EdgeFormula) -> (String, String) {
+fn formula_text((formula, detail): (EdgeFormula, f32)) -> (String, String) {
+    let (times, why) = match detail {
+        1.0 => (String::new(), ""),
+        detail => (
+            format!(" x {}", factor(detail.into(), 2)),
+            " The finest detail of the parts beside the edge multiplies it.",
+        ),
+    };
     match formula {
-        EdgeFormula::Uniform => ("the one that is set".to_owned(), "All edges have the factor that is set.".to_owned()),
+        EdgeFormula::Uniform { factor: set } => {
+            let text = if times.is_empty() {
+                "the one that is set".to_owned()
+            } else {
+                format!("{}{times}", factor(set.into(), 2))
+            };
+            (text, format!("All edges have the factor that is set.{why}"))
+        }
         EdgeFormula::Length { px, segment } => {
             let [length, each] = [px, segment].map(|px| factor(px.into(), 1));
-            let quotient = factor(f64::from((px / segment).max(1.0)), 3);
-            let sign = if px < segment { "->" } else { "=" };
+            let quotient = factor(f64::from((px * detail / segment).max(1.0)), 3);
+            let sign = if px * detail < segment { "->" } else { "=" };
             let hover = format!(
-                "The edge's control polygon is {length} px long on screen, and a segment {each} px. A factor is 1 to 64."
+                "The edge's control polygon is {length} px long on screen, and a segment {each} px. A factor is 1 to 64.{why}"
             );
-            (format!("{length} px / {each} px {sign} {quotient}"), hover)
+            (format!("{length} px{times} / {each} px {sign} {quotient}"), hover)
         }
         EdgeFormula::Distance { radii, factors } => {
             let [a, b] = factors.map(|own| factor(own.into(), 2));
             let [near, far] = radii.map(|own| factor(own.into(), 2));
             let mean = factor(f64::from(factors[0] + factors[1]) / 2.0, 3);
             let hover = format!(
-                "The ends are {near} and {far} bounding radii from the eye: factors {a} and {b}. The edge gets the mean."
+                "The ends are {near} and {far} bounding radii from the eye: factors {a} and {b}. The edge gets the mean.{why}"
             );
             (format!("({a} + {b}) / 2 = {mean}"), hover)
         }

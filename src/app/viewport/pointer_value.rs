@@ -179,7 +179,7 @@ impl App {
         let u = (at.x.max(0.0) as u32).min(FIXED_ONE);
         let v = (at.y.max(0.0) as u32).min(FIXED_ONE - u);
         let (kind, net) = (self.settings.curvature_kind, patch_net(&mesh, &topology, &inputs, patch));
-        let curvature = patch_curvature(kind, inputs.tessellation.surface, &net, u, v);
+        let curvature = patch_curvature(kind, inputs.evaluated_surface(&mesh), &net, u, v);
         let unit = if kind == CurvatureKind::Gaussian { "unit²" } else { "unit" };
         Some(format!("{} / {unit}", short(curvature.into())))
     }

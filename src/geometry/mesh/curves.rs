@@ -4,7 +4,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Edge, Mesh, Topology};
+use super::{Edge, Mesh, Side, StylesUsed, Topology};
 use crate::casts::to_u32;
 use crate::surface_kind::Surface;
 
@@ -32,15 +32,13 @@ impl Sharing {
         matches!(self, Self::None | Self::NoneAveraged)
     }
 
-    /// Returns the same for edges of another surface: whether it is computed for each side stays. Sides of different surfaces
-    /// share all.
-    fn under(self, surface: Surface, differs: bool) -> Self {
+    /// Returns which sides share an edge of this surface, if all that are computed for the edge share one or tear. `differs` says whether
+    /// parts with different surfaces meet there: then all share.
+    fn of_edge(self, surface: Surface, differs: bool) -> Self {
         match self {
             Self::AllSides | Self::EqualNormals if surface.tears() && !differs => Self::EqualNormals,
             Self::AllSides | Self::EqualNormals => Self::AllSides,
-            Self::EachSide => Self::EachSide,
-            Self::None | Self::NoneAveraged if surface.is_averaged() || surface.has_creases() => Self::NoneAveraged,
-            Self::None | Self::NoneAveraged => Self::None,
+            Self::EachSide | Self::None | Self::NoneAveraged => self,
         }
     }
 }
@@ -85,22 +83,22 @@ impl Curves {
     /// Groups the sides of every edge into curves, whatever the styles of parts. Takes time linear in the number of sides, except
     /// for edges with many sides.
     pub fn build(mesh: &Mesh, topology: &Topology, sharing: Sharing) -> Self {
-        Self::build_some(mesh, topology, (sharing, None), 0..to_u32(topology.edges.len()))
+        Self::build_some(mesh, topology, (sharing, StylesUsed::Nothing), 0..to_u32(topology.edges.len()))
     }
 
-    /// The same for a surface, which parts of the mesh may replace by their own.
-    pub fn of_surface(mesh: &Mesh, topology: &Topology, sharing: Sharing, surface: Surface) -> Self {
-        Self::build_some(mesh, topology, (sharing, Some(surface)), 0..to_u32(topology.edges.len()))
+    /// The same, as the styles of the mesh's parts say.
+    pub fn styled(mesh: &Mesh, topology: &Topology, sharing: Sharing, used: StylesUsed) -> Self {
+        Self::build_some(mesh, topology, (sharing, used), 0..to_u32(topology.edges.len()))
     }
 
-    /// Does that for some edges alone, in ascending order. The other edges have no curves.
+    /// The same for some edges alone, in ascending order. The other edges have no curves.
     pub(crate) fn build_some(
         mesh: &Mesh,
         topology: &Topology,
-        (sharing, surface): (Sharing, Option<Surface>),
+        (sharing, used): (Sharing, StylesUsed),
         edges: impl Iterator<Item = u32>,
     ) -> Self {
-        let surface = surface.filter(|_| !mesh.part_styles.is_empty());
+        let used = if mesh.part_styles.is_empty() { StylesUsed::Nothing } else { used };
         let per_patch = sharing.is_per_patch();
         let mut curves = Curves { side_curves: vec![0; topology.sides.len()], per_patch, ..Curves::default() };
         if !per_patch {
@@ -109,25 +107,36 @@ impl Curves {
         for index in edges {
             let edge = &topology.edges[index as usize];
             let first = to_u32(curves.curves.len());
-            let style = surface.map(|surface| topology.edge_style(mesh, edge, surface));
-            let sharing = style.map_or(sharing, |(surface, _, differs)| sharing.under(surface, differs));
-            match sharing {
+            let (surface, of_edge) = match used {
+                StylesUsed::Nothing => (None, sharing),
+                // Which surface is the same doesn't matter: something else makes it.
+                StylesUsed::Details => (Some(Surface::OF_USER_SHADER), sharing),
+                StylesUsed::All(surface) => {
+                    let (style, differs) = topology.edge_style(mesh, edge, surface);
+                    (Some(surface), sharing.of_edge(style.surface, differs))
+                }
+            };
+            match of_edge {
                 Sharing::AllSides => {
                     let sides = topology.side_range(edge);
                     curves.push_shared(topology, edge, sides.clone(), sides);
                 }
                 Sharing::EqualNormals => curves.push_by_normals(mesh, topology, edge),
                 Sharing::EachSide | Sharing::None | Sharing::NoneAveraged => {
-                    curves.push_own(topology, edge, sharing != Sharing::None);
+                    curves.push_own(topology, edge, |side| match used {
+                        StylesUsed::All(surface) => {
+                            let own = topology.patch_style(mesh, side.patch(), surface).surface;
+                            own.is_averaged() || own.has_creases()
+                        }
+                        StylesUsed::Nothing | StylesUsed::Details => sharing != Sharing::None,
+                    });
                 }
             }
-            if let Some((surface, detail, _)) = style {
-                curves.styles.resize(curves.curves.len(), CurveStyle { surface, detail });
-            }
             if let Some(surface) = surface.filter(|_| per_patch) {
-                let own =
-                    topology.edge_sides(edge).iter().map(|side| topology.patch_style(mesh, side.patch(), surface));
-                curves.styles.splice(first as usize.., own.map(|(surface, detail)| CurveStyle { surface, detail }));
+                let of_side = |side: &Side| topology.patch_style(mesh, side.patch(), surface);
+                curves.styles.extend(topology.edge_sides(edge).iter().map(of_side));
+            } else if let Some(surface) = surface {
+                curves.styles.resize(curves.curves.len(), topology.edge_style(mesh, edge, surface).0);
             }
             if !per_patch {
                 // The next edge starts where this one ends.
@@ -185,14 +194,15 @@ impl Curves {
     }
 
     /// Adds a curve for each side. If nothing is shared it has a factor too, and runs in its patch's direction.
-    fn push_own(&mut self, topology: &Topology, edge: &Edge, with_neighbour: bool) {
+    fn push_own(&mut self, topology: &Topology, edge: &Edge, with_neighbour: impl Fn(&Side) -> bool) {
         let sides = topology.side_range(edge);
         for side in sides.clone() {
             let reversed = self.per_patch && topology.sides[side as usize].reversed();
             let turned = |[a, b]: [u32; 2]| if reversed { [b, a] } else { [a, b] };
             // The other side, if there is exactly one: the shader in the white paper averages its control points with
             // these.
-            let other = (with_neighbour && sides.len() == 2).then(|| sides.start + sides.start + 1 - side);
+            let has_other = sides.len() == 2 && with_neighbour(&topology.sides[side as usize]);
+            let other = has_other.then(|| sides.start + sides.start + 1 - side);
             let asked = std::iter::once(side).chain(other);
             if self.per_patch {
                 self.factor_curves.push(to_u32(self.curves.len()));

@@ -66,7 +66,7 @@ pub use dominance::Dominance;
 pub use heights::{MAX_MAPS, PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 pub use normal_faults::NormalFaults;
 pub use orientation::UpAxis;
-pub use part_style::PartStyle;
+pub use part_style::{PartStyle, StylesUsed};
 pub use shapes::Shape;
 pub use t_junctions::{TJunction, t_junctions};
 pub use weld_preview::{WeldPreview, weld_previews};

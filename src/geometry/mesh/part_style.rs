@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Mesh, Topology};
+use super::{CurveStyle, Mesh, Topology};
 use crate::choice::Choice;
 use crate::defaults::with_defaults;
 use crate::surface_kind::Surface;
@@ -29,7 +29,11 @@ impl PartStyle {
     /// This style with the nearest detail that there is.
     #[must_use]
     pub fn rounded(self) -> Self {
-        Self { detail: (self.detail / Self::LEAST).round().clamp(1.0, Self::MOST / Self::LEAST) * Self::LEAST, ..self }
+        // A NaN becomes the least.
+        Self {
+            detail: (self.detail / Self::LEAST).round().max(1.0).min(Self::MOST / Self::LEAST) * Self::LEAST,
+            ..self
+        }
     }
 }
 
@@ -74,37 +78,94 @@ impl Mesh {
             return PartStyle::default();
         }
         let part = self.part_of(triangle);
-        part.and_then(|part| self.part_styles.get(part as usize)).copied().unwrap_or_default()
-    }
-
-    /// The surfaces of its patches, if those of parts without one of their own have `surface`.
-    pub fn surfaces(&self, surface: Surface) -> impl Iterator<Item = Surface> {
-        std::iter::once(surface).chain(self.part_styles.iter().filter_map(|style| style.surface))
-    }
-
-    /// The surface as which all patches are evaluated: flat only if all of them are. The control points of flat ones among others
-    /// lie in their planes.
-    pub fn evaluated_surface(&self, surface: Surface) -> Surface {
-        self.surfaces(surface).find(|own| !own.is_flat()).unwrap_or(surface)
+        part.and_then(|part| self.part_styles.get(part as usize)).copied().unwrap_or_default().rounded()
     }
 }
 
+/// What of the styles of a mesh's parts counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum StylesUsed {
+    #[default]
+    Nothing,
+    /// Details alone: something else makes the surface.
+    Details,
+    /// Surfaces and details, where parts without a surface of their own have this one.
+    All(Surface),
+}
+
 impl Topology {
-    /// The surface of a patch and its detail, if parts without a surface of their own have `surface`.
-    pub(super) fn patch_style(&self, mesh: &Mesh, patch: u32, surface: Surface) -> (Surface, f32) {
+    /// The surface of a patch and its detail.
+    pub(super) fn patch_style(&self, mesh: &Mesh, patch: u32, surface: Surface) -> CurveStyle {
         let own = mesh.style_of(self.patches[patch as usize].triangle);
-        (own.surface.unwrap_or(surface), own.detail)
+        CurveStyle { surface: own.surface.unwrap_or(surface), detail: own.detail }
     }
 
-    /// The surface of an edge and its detail, which all of its sides take, if those of parts without one of their own have
-    /// `surface`: of different surfaces the one that comes first in [`Surface::ALL`], so that flat parts stay flat, and the finest
-    /// detail. Then whether parts with different surfaces meet there.
-    pub(super) fn edge_style(&self, mesh: &Mesh, edge: &super::Edge, surface: Surface) -> (Surface, f32, bool) {
+    /// What all sides of an edge take: of different surfaces the one that comes first in [`Surface::ALL`], so that flat parts stay
+    /// flat, and the finest detail. Then whether parts with different surfaces meet there.
+    pub(super) fn edge_style(&self, mesh: &Mesh, edge: &super::Edge, surface: Surface) -> (CurveStyle, bool) {
         let styles = self.edge_sides(edge).iter().map(|side| self.patch_style(mesh, side.patch(), surface));
-        let meets = |(least, finest, differs): (Surface, f32, bool), (own, detail): (Surface, f32)| {
-            (least.min(own), finest.max(detail), differs || own != least)
+        let meets = |(edge, differs): (CurveStyle, bool), own: CurveStyle| {
+            let met = CurveStyle { surface: edge.surface.min(own.surface), detail: edge.detail.max(own.detail) };
+            (met, differs || own.surface != edge.surface)
         };
-        let first = styles.clone().next().map_or((surface, 1.0, false), |(own, detail)| (own, detail, false));
-        styles.fold(first, meets)
+        let first = styles.clone().next().unwrap_or(CurveStyle { surface, detail: 1.0 });
+        styles.fold((first, false), meets)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Curves, PartRange, Shape, Sharing};
+
+    /// A torus whose first half is a part of this style.
+    fn half(style: PartStyle) -> (Mesh, Topology) {
+        let mut mesh = Shape::Torus.build();
+        mesh.part_ranges = vec![PartRange { triangles: 0..mesh.triangles.len() as u32 / 2, part: 0 }];
+        mesh.part_styles = vec![style];
+        let topology = Topology::new(&mesh);
+        (mesh, topology)
+    }
+
+    #[test]
+    fn styles_are_read_as_they_are_written() {
+        for surface in Surface::ALL.map(Some).into_iter().chain([None]) {
+            for detail in [PartStyle::LEAST, 0.5, 1.0, 3.25, PartStyle::MOST] {
+                let style = PartStyle { surface, detail };
+                assert_eq!(style.to_string().parse(), Ok(style));
+            }
+        }
+        for text in ["", "flat", "surface=", "surface=round", "detail=0", "detail=nan", "detail=17", "size=2"] {
+            assert!(text.parse::<PartStyle>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_program_that_embeds_may_give_any_detail() {
+        let least = PartStyle::LEAST;
+        for (given, expected) in [(f32::NAN, least), (-1.0, least), (0.0, least), (0.51, 33.0 * least), (1e9, 16.0)] {
+            let (mesh, _) = half(PartStyle { surface: None, detail: given });
+            assert_eq!(mesh.style_of(0).detail, expected);
+        }
+    }
+
+    #[test]
+    fn details_alone_change_no_group_and_as_published_each_side_follows_its_own_surface() {
+        let (mesh, topology) = half(PartStyle { surface: Some(Surface::Pn), detail: 2.0 });
+        for sharing in [Sharing::EachSide, Sharing::NoneAveraged] {
+            let (plain, own) = (
+                Curves::build(&mesh, &topology, sharing),
+                Curves::styled(&mesh, &topology, sharing, StylesUsed::Details),
+            );
+            assert_eq!((&own.sides, &own.curves), (&plain.sides, &plain.curves), "{sharing:?}");
+            assert_eq!(own.styles.len(), own.curves.len());
+        }
+        let own = Curves::styled(&mesh, &topology, Sharing::NoneAveraged, StylesUsed::All(Surface::PnAen));
+        for (side, curve) in topology.sides.iter().zip(&own.side_curves) {
+            let style = own.styles[*curve as usize];
+            let is_in_part = mesh.part_of(topology.patches[side.patch() as usize].triangle).is_some();
+            assert_eq!(style.surface, if is_in_part { Surface::Pn } else { Surface::PnAen });
+            assert_eq!(own.curves[*curve as usize].side_count, if is_in_part { 1 } else { 2 });
+        }
     }
 }

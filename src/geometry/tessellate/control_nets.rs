@@ -43,7 +43,7 @@ impl<'a> ControlNets<'a> {
         some: impl Iterator<Item = u32>,
     ) -> Self {
         let Tessellation { surface, alpha, normals, edges, .. } = inputs.tessellation;
-        let mut curves = Curves::build_some(mesh, topology, (sharing(surface, edges), Some(surface)), some);
+        let mut curves = Curves::build_some(mesh, topology, (sharing(surface, edges), inputs.styles()), some);
         if inputs.tessellation.partitioning.has_one_factor() {
             curves.styles.iter_mut().for_each(|style| style.detail = 1.0);
         }
@@ -69,7 +69,7 @@ impl<'a> ControlNets<'a> {
             [ab, ba]
         };
         let curve_nets = curves.curves.iter().enumerate().map(net).collect();
-        Self { mesh, topology, surface: mesh.evaluated_surface(surface), normals, edges, curves, curve_nets }
+        Self { mesh, topology, surface: inputs.evaluated_surface(mesh), normals, edges, curves, curve_nets }
     }
 
     /// Returns the curve of a patch's side, and whether the side runs in the opposite direction.

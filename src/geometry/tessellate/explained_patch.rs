@@ -24,12 +24,12 @@ use glam::{Vec2, Vec3};
 /// What LOD by error makes of a patch, and why.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExplainedPatch {
-    /// How far the triangles may be from the surface, in px.
+    /// How far the triangles may be from the surface, in px: LOD's tolerance, of a part with a detail so many times less.
     pub tolerance: f32,
     /// What was asked of the edges of sides 0, 1 and 2; `None` under other LODs.
     pub edges: Option<[ExplainedEdge; 3]>,
-    /// What the factors of sides 0, 1 and 2 are computed from; `None` under LOD by error.
-    pub formulas: Option<[EdgeFormula; 3]>,
+    /// What the factors of sides 0, 1 and 2 are computed from, and the detail of these sides; `None` under LOD by error.
+    pub formulas: Option<[(EdgeFormula, f32); 3]>,
     /// Whether LOD by error allows points to slide along the surface: see `flat_patch.rs`. The errors then are distances to
     /// the nearest point of the surface.
     pub is_flat: bool,
@@ -55,10 +55,10 @@ pub struct ExplainedEdge {
 /// What an LOD with a formula computes the factor of an edge from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EdgeFormula {
-    /// All edges have the factor that is set.
-    Uniform,
-    /// The length on screen, in px, of the control polygon of the edge's longest curve, and of a segment. Their quotient is the
-    /// factor, if it isn't below 1.
+    /// All edges have the factor that is set, times their detail.
+    Uniform { factor: f32 },
+    /// The length on screen, in px, of the control polygon of the edge's longest curve, and of a segment. Their quotient times the
+    /// edge's detail is the factor, if it isn't below 1.
     Length { px: f32, segment: f32 },
     /// How far the edge's ends are from the eye, in bounding radii, and their factors, whose mean the edge gets.
     Distance { radii: [f32; 2], factors: [f32; 2] },
@@ -182,7 +182,13 @@ pub fn explain_patch(
         measured.relief = SeenRelief::NONE;
     }
     let tolerance = searched.tessellation.tolerance;
-    let errors = pattern_errors(&measured, inputs.tessellation.convention, used);
+    let detail = mesh.style_of(topology.patches[patch as usize].triangle).detail;
+    // What is seen of a part with a detail is magnified.
+    let errors = pattern_errors(&measured, inputs.tessellation.convention, used).map(|own| PatternErrors {
+        rows: own.rows.map(|rows| rows.map(|px| px / detail)),
+        inside: own.inside / detail,
+    });
+    let tolerance = tolerance / detail;
     let mut minimum = minimum(searched.tessellation.partitioning, own);
     // The search doesn't try all factors. What is drawn may have fewer triangles than it found, because neighbours requested more
     // along the edges.
@@ -208,30 +214,30 @@ pub fn explain_patch(
 const FINE: f32 = 1.0 / 1024.0;
 
 /// Returns what the factor of a patch's side is computed from.
-fn edge_formula(nets: &ControlNets, inputs: &Inputs, patch: u32, side: usize) -> EdgeFormula {
+fn edge_formula(nets: &ControlNets, inputs: &Inputs, patch: u32, side: usize) -> (EdgeFormula, f32) {
     let Inputs { tessellation: Tessellation { lod, factor, pixels, near, far, .. }, ref view } = *inputs;
     let at = nets.patch_factor(patch, side) as usize;
     let curves = nets.curves.factor_curves[at]..nets.curves.factor_curves[at + 1];
     // All curves of an edge have its detail.
     let detail = nets.detail_of_curve(curves.start);
-    let (view, factor) = (&view.magnified(detail), factor * detail);
     let nets = curves.map(|curve| nets.curve_points(curve));
     let longest = |px: fn(&LodView, f32, [Vec3; 4]) -> f32| EdgeFormula::Length {
         px: nets.clone().map(|net| px(view, FINE, net) * FINE).fold(0.0, f32::max),
         segment: pixels,
     };
-    match lod {
-        Lod::Uniform | Lod::Error => EdgeFormula::Uniform,
+    let formula = match lod {
+        Lod::Uniform | Lod::Error => EdgeFormula::Uniform { factor },
         Lod::Paper => longest(paper_edge_factor),
         Lod::EdgeLength => longest(edge_length_factor),
         Lod::Distance => {
             let [a, _, _, b] = nets.clone().next().unwrap_or_default();
             EdgeFormula::Distance {
                 radii: [a, b].map(|end| end.distance(view.eye) / view.radius),
-                factors: [a, b].map(|end| point_distance_factor(view, factor, near, far, end)),
+                factors: [a, b].map(|end| point_distance_factor(view, factor * detail, near, far, end)),
             }
         }
-    }
+    };
+    (formula, detail)
 }
 
 /// Returns the minimum triangle count of every patch.

@@ -3,7 +3,7 @@
 use super::{Clip, Convention, Displacement, Lod, LodView, Normals, Partitioning, Surface};
 use crate::choice::choices;
 use crate::defaults::with_defaults;
-use crate::mesh::Sharing;
+use crate::mesh::{Mesh, Sharing, StylesUsed};
 
 choices! {
     /// Where the values come from that all sides of an edge must agree on: control points, the factor, and positions and
@@ -109,6 +109,26 @@ impl Inputs {
     /// A tessellation with the LOD that it uses, seen from `view`.
     pub fn new(tessellation: &Tessellation, view: LodView) -> Self {
         Self { tessellation: Tessellation { lod: tessellation.used_lod(), ..*tessellation }, view }
+    }
+
+    /// What of the styles of parts counts: nothing where the mesh is shown as it is.
+    pub fn styles(&self) -> StylesUsed {
+        match self.tessellation == Tessellation::untessellated() {
+            true => StylesUsed::Nothing,
+            false => StylesUsed::All(self.tessellation.surface),
+        }
+    }
+
+    /// The surfaces of a mesh's patches.
+    pub fn surfaces(&self, mesh: &Mesh) -> impl Iterator<Item = Surface> {
+        let styles = if self.styles() == StylesUsed::Nothing { &[][..] } else { &mesh.part_styles };
+        std::iter::once(self.tessellation.surface).chain(styles.iter().filter_map(|style| style.surface))
+    }
+
+    /// The surface as which all patches of a mesh are evaluated: flat only if all of them are. The control points of flat ones among
+    /// others lie in their planes.
+    pub fn evaluated_surface(&self, mesh: &Mesh) -> Surface {
+        self.surfaces(mesh).find(|own| !own.is_flat()).unwrap_or(self.tessellation.surface)
     }
 }
 

@@ -45,14 +45,13 @@ impl Solid {
     /// Returns whether no back face can be seen with these inputs: the tessellation has no cracks, and the near plane
     /// doesn't cut the mesh, which is the one that [`Self::find`] was given.
     pub fn hides_backs(&self, mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
-        let surfaces = || mesh.surfaces(inputs.tessellation.surface);
-        let tears = surfaces().any(Surface::tears) && self.has_split_normals;
+        let tears = inputs.surfaces(mesh).any(Surface::tears) && self.has_split_normals;
         // A displaced surface may show its back anywhere.
         let whole = !inputs.tessellation.displacement.is_on() && !tears;
         let holds =
             inputs.tessellation.edges == Edges::PerEdge && inputs.tessellation.convention.is_consistent() && whole;
         let is_beyond = |surface| is_beyond_near(inputs.view.clip_from_object, self.extent_of(surface, mesh, topology));
-        holds && surfaces().all(is_beyond)
+        holds && inputs.surfaces(mesh).all(is_beyond)
     }
 
     /// Returns the least and the greatest coordinates of all control points of a surface, in object units.

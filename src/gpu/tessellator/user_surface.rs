@@ -6,6 +6,7 @@ use super::Tessellator;
 use crate::buffer::empty;
 use crate::mesh_buffers::Grouping;
 use crate::{GpuError, LodShader, SurfaceShader, UserReport, UserShader};
+use geometry::mesh::StylesUsed;
 use geometry::tessellate::{Inputs, Surface, Tessellation, sharing, user_sharing};
 
 /// A function that gives control points.
@@ -68,8 +69,11 @@ impl Tessellator {
     /// Which sides of an edge share its curve.
     pub(super) fn grouping(&self, inputs: &Inputs) -> Grouping {
         let own = inputs.tessellation;
-        let sharing =
-            if self.user_surface.is_some() { user_sharing(own.edges) } else { sharing(own.surface, own.edges) };
-        Grouping::new(&self.mesh, sharing, own.surface)
+        let (sharing, styles) = match self.user_surface {
+            Some(_) => (user_sharing(own.edges), StylesUsed::Details),
+            None => (sharing(own.surface, own.edges), inputs.styles()),
+        };
+        // A change of what no part has groups nothing anew.
+        Grouping { sharing, styles: if self.mesh.part_styles.is_empty() { StylesUsed::Nothing } else { styles } }
     }
 }

@@ -4,7 +4,7 @@ use super::Engine;
 use crate::measure::{OutlineOf, SampleGrid, Silhouette};
 use crate::render::{Scene, SilhouetteCoverage, padded_clip};
 use geometry::progress::Progress;
-use geometry::tessellate::{Clip, Convention, Edges, Inputs, LodView, Partitioning, Surface, Tessellation};
+use geometry::tessellate::{Clip, Convention, Edges, Inputs, LodView, Partitioning, Tessellation};
 use gpu::{Gpu, GpuError, Readback, Tessellator, Timing, submit_untimed};
 
 /// Memory for the output of the tessellator that outlines are drawn with, in bytes.
@@ -140,11 +140,6 @@ impl Engine {
 /// What [`OutlineOf::ALL`] are tessellated with.
 fn inputs(own: &Tessellation, view: &SilhouetteView, grid: SampleGrid) -> [Inputs; 3] {
     let watertight = Tessellation { edges: Edges::PerEdge, convention: Convention::D3d11, ..*own };
-    let source = Tessellation {
-        surface: Surface::Flat,
-        partitioning: Partitioning::Integer,
-        ..watertight.with_one_factor(1.0).undisplaced()
-    };
     let surface = Tessellation {
         partitioning: Partitioning::Integer,
         clip: Clip::Frustum,
@@ -155,5 +150,5 @@ fn inputs(own: &Tessellation, view: &SilhouetteView, grid: SampleGrid) -> [Input
     let half_viewport = grid.padded().map(|side| 0.5 * side as f32).into();
     let clip_from_object = padded_clip(grid, view.seen.clip_from_object);
     let padded = view.seen.seen_through(clip_from_object, half_viewport);
-    [Inputs::new(own, view.lod), Inputs::new(&source, view.seen), Inputs::new(&surface, padded)]
+    [Inputs::new(own, view.lod), Inputs::new(&Tessellation::untessellated(), view.seen), Inputs::new(&surface, padded)]
 }

@@ -18,7 +18,7 @@ pub struct ScreenErrorMeasurement<'a> {
     /// The number of segments that each edge of a triangle is divided into for sampling.
     steps: u32,
     worst: Option<ScreenError>,
-    /// Patches with a larger distance than this, in px, are counted.
+    /// Patches with a larger distance than this, in px, are counted. Those of parts with a detail have a part of it.
     tolerance_px: f64,
     above: u64,
     /// The last patch that was counted.
@@ -100,7 +100,8 @@ impl<'a> ScreenErrorMeasurement<'a> {
             let (_, net, slides) = known.take().filter(|(of, ..)| *of == patch).unwrap_or_else(found);
             let worst = self.worst_on(corners, &net, slides);
             known = Some((patch, net, slides));
-            if worst.is_some_and(|worst| worst.px > self.tolerance_px) && above.last() != Some(&patch) {
+            let detail = || f64::from(self.limit.detail(patch));
+            if worst.is_some_and(|worst| worst.px * detail() > self.tolerance_px) && above.last() != Some(&patch) {
                 above.push(patch);
             }
             worst

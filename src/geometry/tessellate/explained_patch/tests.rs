@@ -4,7 +4,7 @@ use glam::camera::rh::proj::directx::perspective_infinite_reverse;
 use glam::{Mat4, Vec2, vec3};
 
 use super::*;
-use crate::mesh::{HeightMap, Heights, Shape};
+use crate::mesh::{HeightMap, Heights, PartRange, PartStyle, Shape};
 use crate::progress::Progress;
 use crate::tessellate::{Displacement, Lod, LodView, Surface, edge_factors, hull_factors, tessellate};
 
@@ -201,7 +201,11 @@ fn the_numbers_of_a_formula_give_the_factor_of_the_edge() {
     for lod in [Lod::Paper, Lod::EdgeLength, Lod::Distance, Lod::Uniform] {
         for kind in [Shape::Torus, Shape::CubeSplit] {
             let own = Tessellation { pixels: 30.0, factor: 9.0, near: 1.5, far: 4.0, ..Tessellation::default() };
-            let (mesh, topology, inputs) = shape(kind, own);
+            let (mut mesh, topology, inputs) = shape(kind, own);
+            if kind == Shape::Torus {
+                mesh.part_ranges = vec![PartRange { triangles: 0..mesh.triangles.len() as u32 / 2, part: 0 }];
+                mesh.part_styles = vec![PartStyle { surface: None, detail: 1.5 }];
+            }
             let inputs = Inputs { tessellation: Tessellation { lod, ..inputs.tessellation }, ..inputs };
             let nets = ControlNets::new(&mesh, &topology, &inputs);
             let given = edge_factors(&mesh, &topology, &inputs);
@@ -210,10 +214,10 @@ fn the_numbers_of_a_formula_give_the_factor_of_the_edge() {
             for (patch, &used) in (0..).zip(&out.patch_factors) {
                 let formulas =
                     explain_patch(&mesh, &topology, &inputs, patch, used).formulas.expect("it has a formula");
-                for (side, formula) in formulas.into_iter().enumerate() {
+                for (side, (formula, detail)) in formulas.into_iter().enumerate() {
                     let factor = match formula {
-                        EdgeFormula::Uniform => 9.0,
-                        EdgeFormula::Length { px, segment } => (px / segment).max(1.0),
+                        EdgeFormula::Uniform { factor } => factor * detail,
+                        EdgeFormula::Length { px, segment } => (px * detail / segment).max(1.0),
                         EdgeFormula::Distance { factors: [a, b], .. } => 0.5 * (a + b),
                     };
                     let expected = given[nets.patch_factor(patch, side) as usize];

@@ -14,6 +14,7 @@ use crate::render::target::depth_attachment;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::{NormalsAt, Settings, SplitSide};
 use geometry::mesh::{Material, Mesh};
+use geometry::tessellate::LodView;
 use gpu::{GpuError, Recorder, bind_group};
 
 /// How far rounding moves a vertex at most, in units in the last place of the mesh's largest coordinate.
@@ -153,7 +154,9 @@ fn layer_area(scene: &Scene, target: &Target, camera: &Camera, settings: &Settin
     let Some(bounds) = scene.tessellator.posed().see_through_bounds() else { return whole };
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
     let room = settings.reach(scene.tessellator.mesh()) + ROUNDING_ULPS * scene.ulp();
-    let areas = bounds.iter().map(|own| match own.of_surface(settings.tessellation.surface) {
+    let inputs = settings.inputs(LodView::default());
+    let surfaces = || inputs.surfaces(scene.tessellator.mesh());
+    let areas = bounds.iter().flat_map(|own| surfaces().map(|surface| own.of_surface(surface))).map(|own| match own {
         Some(bounds) => covered_area(&bounds.grown(room), clip_from_object, target.size),
         None => whole,
     });
