@@ -211,7 +211,7 @@ fn what_we_emit_is_the_same_as_ours() {
             }
         }
     }
-    assert_eq!(round_trips, 126);
+    assert_eq!(round_trips, 129);
     assert!(failed.is_empty(), "{} of {round_trips} aren't the same:\n{}", failed.len(), failed.join("\n"));
 }
 

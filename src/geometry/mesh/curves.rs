@@ -4,7 +4,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Edge, Mesh, Side, StylesUsed, Topology};
+use super::{CurveStyle, Edge, Mesh, Side, StylesUsed, Topology};
 use crate::casts::to_u32;
 use crate::surface_kind::Surface;
 
@@ -41,14 +41,6 @@ impl Sharing {
             Self::EachSide | Self::None | Self::NoneAveraged => self,
         }
     }
-}
-
-/// What the parts beside a curve have in place of what the tessellation says for all.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CurveStyle {
-    pub surface: Surface,
-    /// As [`PartStyle::detail`](super::PartStyle::detail).
-    pub detail: f32,
 }
 
 /// The sides of an edge that share control points.

@@ -61,12 +61,12 @@ pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
 pub use build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};
-pub use curves::{Curve, CurveItems, CurveStyle, Curves, Sharing};
+pub use curves::{Curve, CurveItems, Curves, Sharing};
 pub use dominance::Dominance;
 pub use heights::{MAX_MAPS, PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 pub use normal_faults::NormalFaults;
 pub use orientation::UpAxis;
-pub use part_style::{PartStyle, StylesUsed};
+pub use part_style::{CurveStyle, PartStyle, StylesUsed};
 pub use shapes::Shape;
 pub use t_junctions::{TJunction, t_junctions};
 pub use weld_preview::{WeldPreview, weld_previews};

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{CurveStyle, Mesh, Topology};
+use super::{Mesh, Topology};
 use crate::choice::Choice;
 use crate::defaults::with_defaults;
 use crate::surface_kind::Surface;
@@ -91,6 +91,14 @@ pub enum StylesUsed {
     Details,
     /// Surfaces and details, where parts without a surface of their own have this one.
     All(Surface),
+}
+
+/// What the parts beside a curve have in place of what the tessellation says for all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveStyle {
+    pub surface: Surface,
+    /// As [`PartStyle::detail`].
+    pub detail: f32,
 }
 
 impl Topology {
