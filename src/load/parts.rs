@@ -49,7 +49,8 @@ pub struct Part {
 pub(super) struct Parts {
     selected: ShownParts,
     found: Vec<Part>,
-    numbers: HashMap<Vec<u8>, usize>,
+    /// The numbers of parts by their paths: of those that aren't known to be further levels of detail, and of those that are.
+    numbers: [HashMap<Vec<u8>, usize>; 2],
     /// The number of the first level of detail, by what the names of levels have in common.
     first_levels: HashMap<String, String>,
     /// The part that the next faces belong to.
@@ -66,8 +67,21 @@ impl Parts {
     /// Says which part the next faces belong to, by its path, and how much of that is known to be the path of a further
     /// [level](Part::level).
     pub(super) fn enter(&mut self, name: &[u8], level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
+        let slashes = name.iter().take_while(|byte| **byte == b'/').count();
+        match name[slashes..].strip_prefix(MATERIAL.as_bytes()) {
+            // Only materials have such paths. A space keeps others apart: `material :Red`.
+            Some(own) => {
+                let level = if level > 0 { level + 1 } else { 0 };
+                self.enter_path(&[b"material :", own].concat(), level, budget)
+            }
+            None => self.enter_path(name, level, budget),
+        }
+    }
+
+    fn enter_path(&mut self, name: &[u8], level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
         budget.hold(PER_RANGE)?;
-        if let Some(&number) = self.numbers.get(name) {
+        let numbers = &mut self.numbers[usize::from(level > 0)];
+        if let Some(&number) = numbers.get(name) {
             self.current = Some(number);
             return Ok(());
         }
@@ -78,14 +92,13 @@ impl Parts {
         budget.hold(PER_PART + 4 * name.len() as u64)?;
         let mut path = String::new();
         join(&mut path, &String::from_utf8_lossy(name), DEFAULT_PART);
-        let number = self.numbers.get(path.as_bytes()).copied().unwrap_or(self.found.len());
+        let number = *numbers.entry(path.clone().into_bytes()).or_insert(self.found.len());
+        numbers.insert(name.to_vec(), number);
         if number == self.found.len() {
             let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
-            self.numbers.insert(path.clone().into_bytes(), number);
             let is_hidden = self.selected.hide(&path, level);
             self.found.push(Part { name: path, triangles: 0, is_hidden, level });
         }
-        self.numbers.insert(name.to_vec(), number);
         self.current = Some(number);
         Ok(())
     }
@@ -111,7 +124,7 @@ impl Parts {
             return Ok(());
         }
         builder.leave_out(|name, triangles| {
-            self.enter([MATERIAL, name].concat().as_bytes(), 0, budget)?;
+            self.enter_path([MATERIAL, name].concat().as_bytes(), 0, budget)?;
             Ok(self.leave_out(triangles as usize))
         })
     }
@@ -194,6 +207,22 @@ pub(super) fn node_path<'a>(nodes: impl Iterator<Item = (&'a str, bool)>) -> (St
     (path, level)
 }
 
+/// Returns the names that nodes have in paths which are further [levels](Part::level): nodes, their numbers, and their own names. One
+/// that has the name of one of the `others`, or of a level of another number, gets its number too, so that it can be named alone.
+pub(super) fn level_names<'a>(
+    others: impl Iterator<Item = &'a str>,
+    levels: impl Iterator<Item = (usize, usize, &'a str)>,
+) -> HashMap<usize, String> {
+    let shown = |name: &'a str| if name.is_empty() { DEFAULT_PART } else { name };
+    let mut taken: HashMap<&str, usize> = others.map(|name| (shown(name), 0)).collect();
+    let own = levels.map(|(node, number, name)| {
+        let name = shown(name);
+        let is_free = *taken.entry(name).or_insert(number) == number;
+        (node, if is_free { name.to_owned() } else { format!("{name} (level {number})") })
+    });
+    own.collect()
+}
+
 /// Returns where the names in a path end, from the outermost. Beyond so many, and so far, the rest is one name.
 pub(super) fn ends(path: &str) -> impl Iterator<Item = usize> {
     let above = path.match_indices('/').map(|(end, _)| end).take(MOST_ABOVE);
@@ -256,6 +285,29 @@ mod tests {
         assert_eq!(node_path([("", true), ("top", true)].into_iter()), ("top/default".to_owned(), 3));
         let deep = std::iter::repeat_n(("node", false), 1 << 20);
         assert_eq!(node_path(deep).0.matches("node").count(), MOST_ABOVE);
+    }
+
+    #[test]
+    fn a_level_is_no_part_of_the_same_path_and_a_name_makes_no_material() {
+        let mut parts = hiding(&[], &[]);
+        for (name, level) in [("Car", 3), ("Car", 0), ("/Car", 3), ("material:Red", 0), ("//material:Red/a", 12)] {
+            parts.enter(name.as_bytes(), level, &Budget::unlimited()).expect("memory is unlimited");
+            assert_eq!(parts.leave_out(1), level > 0, "{name} with {level}");
+        }
+        let found = parts.finish(&mut Mesh::default(), &mut Notes::default());
+        let found: Vec<_> = found.iter().map(|part| (part.name.as_str(), part.level, part.triangles)).collect();
+        assert_eq!(
+            found,
+            [("Car", 3, 2), ("Car", 0, 1), ("material :Red", 0, 1), ("material :Red/a", "material :Red".len(), 1)]
+        );
+    }
+
+    #[test]
+    fn levels_whose_names_are_taken_have_their_numbers() {
+        let levels = [(7, 1, "far"), (8, 1, "far"), (9, 2, "far"), (3, 1, "near"), (4, 2, "")];
+        let names = level_names(["near", "", "group"].into_iter(), levels.into_iter());
+        let expected = [(7, "far"), (8, "far"), (9, "far (level 2)"), (3, "near (level 1)"), (4, "default (level 2)")];
+        assert_eq!(names, expected.map(|(node, name)| (node, name.to_owned())).into());
     }
 
     #[test]

@@ -115,7 +115,10 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             Binder::new(binder, &vertices)
         });
         let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
-        let named = |node: usize| (&*self.scene.nodes[node].element.name, self.placed.is_level.contains(&node));
+        let named = |node: usize| match self.placed.levels.get(&node) {
+            Some(level) => (&**level, true),
+            None => (&*self.scene.nodes[node].element.name, false),
+        };
         // The scene's root isn't one of the file's nodes.
         let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;
