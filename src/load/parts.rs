@@ -3,13 +3,13 @@
 //! A part's name is its path: the names of what it lies in, from the outermost, and its own, with slashes between them. A name
 //! that has a slash is therefore several. Names that are empty don't count, and parts of one path are one part.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use serde::Serialize;
 
 use super::memory_budget::Budget;
 use super::notes::{Notes, counted};
-use super::selection::{MATERIAL, Selection, ShownParts, choice, is_material};
+use super::selection::{Hiding, MATERIAL, Selection, ShownParts, choice, is_material};
 use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::{MemoryRefused, Mesh};
@@ -21,11 +21,12 @@ const MAX_PARTS: usize = 1 << 16;
 pub(super) const DEFAULT_PART: &str = "default";
 
 /// How many names above a part's own are looked at, and how long they may be together, in bytes.
-const MOST_ABOVE: usize = 64;
+pub(super) const MOST_ABOVE: usize = 64;
 const LONGEST_ABOVE: usize = 1024;
 
-/// Memory for a part besides its name, in bytes.
-const PER_PART: u64 = 150;
+/// Memory for a part besides its name, and for each byte of that, in bytes: here, and in the tree of parts.
+const PER_PART: u64 = 400;
+const PER_LETTER: u64 = 16;
 
 /// Memory for triangles of a part that follow one another, in bytes: while they are collected, and in the mesh.
 const PER_RANGE: u64 = 32;
@@ -48,9 +49,12 @@ pub struct Part {
 #[derive(Debug, Default)]
 pub(super) struct Parts {
     selected: ShownParts,
+    hiding: Hiding,
     found: Vec<Part>,
-    /// The numbers of parts by their paths: of those that aren't known to be further levels of detail, and of those that are.
-    numbers: [HashMap<Vec<u8>, usize>; 2],
+    /// The numbers of parts by their paths: of materials, of others, and of what is known to be a further level of detail.
+    numbers: [HashMap<Vec<u8>, usize>; 3],
+    /// Whether the parts that are entered are materials.
+    are_materials: bool,
     /// The number of the first level of detail, by what the names of levels have in common.
     first_levels: HashMap<String, String>,
     /// The part that the next faces belong to.
@@ -61,26 +65,15 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn new(selected: &Selection) -> Self {
-        Self { selected: selected.parts.cloned().unwrap_or_default(), ..Self::default() }
+        let selected = selected.parts.cloned().unwrap_or_default();
+        Self { hiding: selected.hiding(), selected, ..Self::default() }
     }
 
     /// Says which part the next faces belong to, by its path, and how much of that is known to be the path of a further
     /// [level](Part::level).
-    pub(super) fn enter(&mut self, name: &[u8], level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
-        let slashes = name.iter().take_while(|byte| **byte == b'/').count();
-        match name[slashes..].strip_prefix(MATERIAL.as_bytes()) {
-            // Only materials have such paths. A space keeps others apart: `material :Red`.
-            Some(own) => {
-                let level = if level > 0 { level + 1 } else { 0 };
-                self.enter_path(&[b"material :", own].concat(), level, budget)
-            }
-            None => self.enter_path(name, level, budget),
-        }
-    }
-
-    fn enter_path(&mut self, name: &[u8], level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
+    pub(super) fn enter(&mut self, name: &[u8], mut level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
         budget.hold(PER_RANGE)?;
-        let numbers = &mut self.numbers[usize::from(level > 0)];
+        let numbers = &mut self.numbers[if self.are_materials { 0 } else { 1 + usize::from(level > 0) }];
         if let Some(&number) = numbers.get(name) {
             self.current = Some(number);
             return Ok(());
@@ -89,14 +82,19 @@ impl Parts {
             (self.current, self.beyond) = (None, self.beyond + 1);
             return Ok(());
         }
-        budget.hold(PER_PART + 4 * name.len() as u64)?;
+        budget.hold(PER_PART + PER_LETTER * name.len() as u64)?;
         let mut path = String::new();
         join(&mut path, &String::from_utf8_lossy(name), DEFAULT_PART);
+        if is_material(&path) && !self.are_materials {
+            // Only materials have such paths. A space keeps others apart: `material :Red`.
+            path.insert(MATERIAL.len() - 1, ' ');
+            level += usize::from(level > 0);
+        }
         let number = *numbers.entry(path.clone().into_bytes()).or_insert(self.found.len());
         numbers.insert(name.to_vec(), number);
         if number == self.found.len() {
             let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
-            let is_hidden = self.selected.hide(&path, level);
+            let is_hidden = self.hiding.hide(&path, level);
             self.found.push(Part { name: path, triangles: 0, is_hidden, level });
         }
         self.current = Some(number);
@@ -123,8 +121,9 @@ impl Parts {
         if builder.used_materials() < 2 && !selected.any(|name| is_material(name)) {
             return Ok(());
         }
+        self.are_materials = true;
         builder.leave_out(|name, triangles| {
-            self.enter_path([MATERIAL, name].concat().as_bytes(), 0, budget)?;
+            self.enter([MATERIAL, name].concat().as_bytes(), 0, budget)?;
             Ok(self.leave_out(triangles as usize))
         })
     }
@@ -207,18 +206,18 @@ pub(super) fn node_path<'a>(nodes: impl Iterator<Item = (&'a str, bool)>) -> (St
     (path, level)
 }
 
-/// Returns the names that nodes have in paths which are further [levels](Part::level): nodes, their numbers, and their own names. One
-/// that has the name of one of the `others`, or of a level of another number, gets its number too, so that it can be named alone.
+/// Returns the names in paths of nodes that are further [levels](Part::level), of which `levels` has the numbers. `nodes` are all nodes
+/// with their own names. One that a first level has too, or a level of another number, gets its number, so that it can be named alone.
 pub(super) fn level_names<'a>(
-    others: impl Iterator<Item = &'a str>,
-    levels: impl Iterator<Item = (usize, usize, &'a str)>,
+    levels: &BTreeMap<usize, usize>,
+    nodes: impl Iterator<Item = (usize, &'a str)>,
 ) -> HashMap<usize, String> {
-    let shown = |name: &'a str| if name.is_empty() { DEFAULT_PART } else { name };
-    let mut taken: HashMap<&str, usize> = others.map(|name| (shown(name), 0)).collect();
-    let own = levels.map(|(node, number, name)| {
-        let name = shown(name);
-        let is_free = *taken.entry(name).or_insert(number) == number;
-        (node, if is_free { name.to_owned() } else { format!("{name} (level {number})") })
+    let nodes = nodes.map(|(node, name)| (node, if name.is_empty() { DEFAULT_PART } else { name }));
+    let (further, first): (Vec<_>, Vec<_>) = nodes.partition(|(node, _)| levels.contains_key(node));
+    let mut taken: HashMap<&str, usize> = first.into_iter().map(|(_, name)| (name, 0)).collect();
+    let own = further.into_iter().map(|(node, name)| match levels[&node] {
+        number if *taken.entry(name).or_insert(number) == number => (node, name.to_owned()),
+        number => (node, format!("{name} (level {number})")),
     });
     own.collect()
 }
@@ -304,9 +303,10 @@ mod tests {
 
     #[test]
     fn levels_whose_names_are_taken_have_their_numbers() {
-        let levels = [(7, 1, "far"), (8, 1, "far"), (9, 2, "far"), (3, 1, "near"), (4, 2, "")];
-        let names = level_names(["near", "", "group"].into_iter(), levels.into_iter());
-        let expected = [(7, "far"), (8, "far"), (9, "far (level 2)"), (3, "near (level 1)"), (4, "default (level 2)")];
+        let nodes = ["near", "", "group", "near", "", "far", "far", "far"];
+        let levels = [(3, 1), (4, 2), (5, 1), (6, 1), (7, 2)].into();
+        let names = level_names(&levels, nodes.into_iter().enumerate());
+        let expected = [(3, "near (level 1)"), (4, "default (level 2)"), (5, "far"), (6, "far"), (7, "far (level 2)")];
         assert_eq!(names, expected.map(|(node, name)| (node, name.to_owned())).into());
     }
 

@@ -1,6 +1,6 @@
 //! What of a file is read, and how.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use super::import::Import;
 use geometry::mesh::PartStyle;
@@ -61,13 +61,52 @@ impl ShownParts {
         }
     }
 
+    /// Which parts are left out.
+    pub(super) fn hiding(&self) -> Hiding {
+        Hiding { hidden: Names::new(&self.hidden), only: Names::new(&self.only) }
+    }
+}
+
+/// Which parts are left out, as [`ShownParts`] has it.
+#[derive(Debug, Default)]
+pub(super) struct Hiding {
+    hidden: Names,
+    only: Names,
+}
+
+impl Hiding {
     /// Whether a part is left out, by its path. The start of the path that has this length, unless that is 0, is a further level
     /// of detail: it is shown only if a name means it, and not all of what it lies in.
     pub(super) fn hide(&self, path: &str, level: usize) -> bool {
         let above = path[..level].rsplit_once('/').map_or("", |(above, _)| above);
-        let is_named = |name: &String| is_part_of(path, name) && (level == 0 || !is_part_of(above, name));
-        let is_limited = level > 0 || self.only.iter().any(|name| is_material(name) == is_material(path));
-        self.hidden.iter().any(|name| is_part_of(path, name)) || is_limited && !self.only.iter().any(is_named)
+        let is_named = || self.only.meaning(path).iter().any(|name| level == 0 || !is_part_of(above, name));
+        let is_limited = level > 0 || self.only.0.iter().any(|name| is_material(name) == is_material(path));
+        !self.hidden.meaning(path).is_empty() || is_limited && !is_named()
+    }
+}
+
+/// Names that a user gave, of which those that mean a part are found quickly among many.
+#[derive(Debug, Default)]
+pub(super) struct Names(HashSet<String>);
+
+impl Names {
+    pub(super) fn new(names: &[String]) -> Self {
+        Self(names.iter().cloned().collect())
+    }
+
+    /// Returns those that mean a part, by its path.
+    pub(super) fn meaning(&self, path: &str) -> Vec<&String> {
+        let text = format!("/{path}/.");
+        let slashes: Vec<usize> = text.match_indices('/').map(|(slash, _)| slash).collect();
+        let is_meant = |name: &&String| is_part_of(path, name);
+        // If they are few, or the path is long, all names are compared with it.
+        if self.0.len() <= slashes.len() * slashes.len() {
+            return self.0.iter().filter(is_meant).collect();
+        }
+        let ends = || slashes.iter().copied().chain([text.len()]);
+        let starts = [0].into_iter().chain(slashes.iter().map(|slash| slash + 1));
+        let runs = starts.flat_map(|start| ends().filter(move |end| *end > start).map(move |end| start..end));
+        runs.filter_map(|run| self.0.get(&text[run])).filter(is_meant).collect()
     }
 }
 
@@ -83,7 +122,13 @@ pub fn is_material(name: &str) -> bool {
 /// with a slash begins with the first one, and one that ends in `/.` ends with the last one: it means a part without what lies in
 /// it.
 pub fn is_part_of(path: &str, name: &str) -> bool {
-    is_material(path) == is_material(name) && format!("//{path}/./").contains(&format!("/{name}/"))
+    let begins = |rest: &str, name: &str| {
+        let after = rest.strip_prefix(name);
+        after.is_some_and(|after| after.is_empty() || after.starts_with('/')) || name.strip_prefix(rest) == Some("/.")
+    };
+    let is_later = || path.match_indices('/').any(|(slash, _)| begins(&path[slash + 1..], name));
+    is_material(path) == is_material(name)
+        && name.strip_prefix('/').map_or_else(|| begins(path, name) || is_later(), |name| begins(path, name))
 }
 
 /// Returns which of something there are, as the end of a message; `none` says that there are none.

@@ -1,6 +1,6 @@
 //! Places the nodes of a scene: their global transforms, and which ones the file shows.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use glam::DMat4;
 use ufbx::{Element, Mesh, Node, Scene};
@@ -65,11 +65,8 @@ impl Placed {
         let local = rest.into_iter().map(LocalTransform::Placement).collect();
         let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
         let levels = groups.flat_map(|group| group.children.into_iter().enumerate().skip(1));
-        let levels: Vec<(usize, usize)> = levels.map(|(number, level)| (index(level), number)).collect();
-        let is_level: HashSet<usize> = levels.iter().map(|(node, _)| *node).collect();
-        let name = |node: usize| &*nodes[node].element.name;
-        let firsts = (0..nodes.len()).filter(|node| !is_level.contains(node)).map(name);
-        let levels = level_names(firsts, levels.iter().map(|&(node, number)| (node, number, name(node))));
+        let levels = levels.map(|(number, level)| (index(level), number)).collect();
+        let levels = level_names(&levels, nodes.into_iter().map(|node| &*node.element.name).enumerate());
         let scene = SceneNodes { parents, order, local, carries, morphed, grown: Vec::new() };
         Ok(Self { global: scene.global(), scene, shown, hidden, carries_mesh, levels })
     }

@@ -115,10 +115,9 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             Binder::new(binder, &vertices)
         });
         let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
-        let named = |node: usize| match self.placed.levels.get(&node) {
-            Some(level) => (&**level, true),
-            None => (&*self.scene.nodes[node].element.name, false),
-        };
+        let levels = &self.placed.levels;
+        let own = |node: usize| (&*self.scene.nodes[node].element.name, false);
+        let named = |node: usize| levels.get(&node).map_or_else(|| own(node), |level| (level.as_str(), true));
         // The scene's root isn't one of the file's nodes.
         let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;

@@ -1,7 +1,7 @@
 //! The nodes of a scene that have a mesh, as parts that can be left out, and the nodes that are levels of detail (MSFT_lod): one
 //! that has the extension is the first, and names the others.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use ::gltf::Semantic;
 use ::gltf::json::mesh::Primitive;
@@ -14,7 +14,7 @@ use super::nodes::{parents, walk};
 use super::reach::{Reach, attribute};
 use super::{GltfError, primitive};
 use crate::memory_budget::Budget;
-use crate::parts::{Parts, level_names, node_path};
+use crate::parts::{MOST_ABOVE, Parts, level_names, node_path};
 use crate::selection::Selection;
 use geometry::casts::{to_u32, to_usize};
 
@@ -45,13 +45,10 @@ pub(super) fn take(
     let parents = parents(&root.nodes, |_| {});
     for (i, node) in root.nodes.iter().enumerate().filter(|(i, _)| reach.shown[*i]) {
         let Some(mesh) = node.mesh.map(|mesh| &root.meshes[mesh.value()]) else { continue };
-        let named = |node: usize| match levels.get(&node) {
-            Some(level) => (&**level, true),
-            None => (root.nodes[node].name.as_deref().unwrap_or_default(), false),
-        };
-        let own = levels.get(&i).map_or_else(|| (own_name(root, i), false), |level| (&**level, true));
+        let own = |node: usize, name| levels.get(&node).map_or((name, false), |level| (level.as_str(), true));
+        let named = |node: usize| own(node, root.nodes[node].name.as_deref().unwrap_or_default());
         let above = std::iter::successors(parents[i], |&node| parents[node]).map(named);
-        let (path, level) = node_path(std::iter::once(own).chain(above));
+        let (path, level) = node_path(std::iter::once(own(i, own_name(root, i))).chain(above));
         list.enter(path.as_bytes(), level, budget).map_err(GltfError::too_large("the list of nodes"))?;
         of_node.extend(list.current().map(|part| (i, part)));
         let first = instances.get(&i).and_then(InstancingExtension::first);
@@ -85,27 +82,17 @@ pub(super) fn place_levels(root: &mut Root, levels: &[(usize, Vec<usize>)]) -> H
         Some(scene) => root.scenes[scene].nodes.iter().map(|node| node.value()).collect(),
         None => (0..parents.len()).filter(|node| parents[*node].is_none()).collect(),
     };
-    let order = walk(&root.nodes, &parents, &roots, &[]);
-    // Where the scene has each node, and what lies in it.
-    let mut places = vec![0..0; parents.len()];
-    order.iter().enumerate().for_each(|(at, node)| places[*node] = at..at + 1);
-    for node in order.iter().rev() {
-        if let Some(parent) = parents[*node] {
-            places[parent].end = places[parent].end.max(places[*node].end);
-        }
-    }
-    let shown: HashSet<usize> = order.iter().copied().collect();
+    let shown: HashSet<usize> = walk(&root.nodes, &parents, &roots, &[]).into_iter().collect();
     let levels = || levels.iter().filter(|(node, ids)| shown.contains(node) && !ids.is_empty());
     let firsts: HashSet<usize> = levels().map(|(node, _)| *node).collect();
-    let (mut others, mut known) = (Vec::new(), HashSet::new());
+    let mut others = BTreeMap::new();
     for (node, ids) in levels() {
-        let may_be =
-            |id: usize| id < parents.len() && !firsts.contains(&id) && !places[id].contains(&places[*node].start);
-        for (number, &id) in (1..).zip(ids).filter(|(_, id)| may_be(**id)) {
-            if !known.insert(id) {
+        let above = || std::iter::successors(parents[*node], |&above| parents[above]).take(MOST_ABOVE);
+        for (number, &id) in (1..).zip(ids).filter(|(_, id)| **id < parents.len() && !firsts.contains(id)) {
+            if others.contains_key(&id) || above().any(|above| above == id) {
                 continue;
             }
-            others.push((id, number));
+            others.insert(id, number);
             if shown.contains(&id) || parents[id].is_some() {
                 continue;
             }
@@ -117,8 +104,8 @@ pub(super) fn place_levels(root: &mut Root, levels: &[(usize, Vec<usize>)]) -> H
             }
         }
     }
-    let firsts = order.iter().filter(|node| !known.contains(node)).map(|node| own_name(root, *node));
-    level_names(firsts, others.into_iter().map(|(id, number)| (id, number, own_name(root, id))))
+    let named = (0..parents.len()).filter(|node| shown.contains(node) || others.contains_key(node));
+    level_names(&others, named.map(|node| (node, own_name(root, node))))
 }
 
 /// Returns how many triangles a mesh has, with those of strips that only connect parts.
