@@ -108,7 +108,7 @@ impl ShownParts {
         let lists_shown = is_shown && branch.level > 0 || !self.only.iter().all(is_other);
         // Names of what the tree doesn't have stay, such as those of materials of parts that are hidden.
         for names in [&mut self.only, &mut self.hidden] {
-            let all = Names::new(names);
+            let all = Names::new(&*names);
             let known: HashSet<&String> = leaves(tree).flat_map(|leaf| all.meaning(&leaf.path)).collect();
             names.retain(|name| is_other(name) || !known.contains(name));
         }

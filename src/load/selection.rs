@@ -50,14 +50,16 @@ impl ShownParts {
 
     /// What a part has in place of what the tessellation says for all.
     pub fn style(&self, name: &str) -> PartStyle {
-        self.styles.iter().rev().find(|(other, _)| other == name).map(|(_, style)| *style).unwrap_or_default()
+        let own = self.styles.iter().filter(|(other, _)| other == name);
+        own.fold(PartStyle::default(), |others, (_, style)| style.or(others))
     }
 
-    /// Gives a part a style of its own.
+    /// Gives a part a style of its own, in the place of the one that it had.
     pub fn set_style(&mut self, name: &str, style: PartStyle) {
+        let place = self.styles.iter().position(|(other, _)| other == name).unwrap_or(self.styles.len());
         self.styles.retain(|(other, _)| other != name);
         if style != PartStyle::default() {
-            self.styles.push((name.to_owned(), style));
+            self.styles.insert(place, (name.to_owned(), style));
         }
     }
 
@@ -90,8 +92,8 @@ impl Hiding {
 pub(super) struct Names(HashSet<String>);
 
 impl Names {
-    pub(super) fn new(names: &[String]) -> Self {
-        Self(names.iter().cloned().collect())
+    pub(super) fn new<'a>(names: impl IntoIterator<Item = &'a String>) -> Self {
+        Self(names.into_iter().cloned().collect())
     }
 
     /// Returns those that mean a part, by its path.

@@ -26,6 +26,13 @@ impl PartStyle {
     /// The finest detail.
     pub const MOST: f32 = 16.0;
 
+    /// This style, and what it doesn't say of another one.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        let detail = if self.detail == 1.0 { other.detail } else { self.detail };
+        Self { surface: self.surface.or(other.surface), detail }
+    }
+
     /// This style with the nearest detail that there is.
     #[must_use]
     pub fn rounded(self) -> Self {
