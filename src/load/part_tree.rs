@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use super::parts::{Part, ends};
-use super::selection::{Names, ShownParts, is_material};
+use super::selection::{ShownParts, hides, is_material};
 
 /// The greatest number of groups. What lies in others is in the last one before them, or in none.
 const MOST_GROUPS: usize = 1 << 14;
@@ -97,18 +97,15 @@ pub fn end(tree: &[Branch], at: usize) -> usize {
 impl ShownParts {
     /// Shows a branch, or leaves it out. Further levels of detail are shown only if the branch is one, or lies in one.
     pub fn set(&mut self, tree: &[Branch], at: usize, is_shown: bool) {
-        let (branch, changed, before) = (&tree[at], at..end(tree, at), self.hiding());
+        let (branch, changed, before) = (&tree[at], at..end(tree, at), self.names());
         let is_changed = |i: usize| changed.contains(&i) && (!is_shown || branch.level > 0 || tree[i].level == 0);
-        let shown = tree.iter().enumerate().map(|(i, own)| match is_changed(i) {
-            true => is_shown,
-            false => !before.hide(&own.path, own.level),
-        });
+        let is_hidden = |i: usize| hides(&before, &tree[i].path, tree[i].level);
+        let shown = (0..tree.len()).map(|i| if is_changed(i) { is_shown } else { !is_hidden(i) });
         let shown: Vec<bool> = shown.collect();
         let is_other = |name: &String| is_material(name) != is_material(&branch.path);
         let lists_shown = is_shown && branch.level > 0 || !self.only.iter().all(is_other);
         // Names of what the tree doesn't have stay, such as those of materials of parts that are hidden.
-        for names in [&mut self.only, &mut self.hidden] {
-            let all = Names::new(&*names);
+        for (names, all) in [&mut self.hidden, &mut self.only].into_iter().zip(&before) {
             let known: HashSet<&String> = leaves(tree).flat_map(|leaf| all.meaning(&leaf.path)).collect();
             names.retain(|name| is_other(name) || !known.contains(name));
         }
@@ -151,7 +148,7 @@ mod tests {
         let part = |(i, name): (u32, &&str)| Part {
             name: (*name).to_owned(),
             triangles: i,
-            is_hidden: shown.hiding().hide(name, 0),
+            is_hidden: hides(&shown.names(), name, 0),
             level: 0,
         };
         (1..).zip(names).map(part).collect()
@@ -204,7 +201,7 @@ mod tests {
             let tree = tree(&parts);
             let at = tree.iter().position(|branch| branch.path == path).expect("a branch");
             shown.set(&tree, at, is_shown);
-            (shown.clone(), names.map(|name| !shown.hiding().hide(name, 0)))
+            (shown.clone(), names.map(|name| !hides(&shown.names(), name, 0)))
         };
         let lists = |hidden: &[&str], only: &[&str]| {
             let [hidden, only] = [hidden, only].map(|names| names.iter().map(|name| (*name).to_owned()).collect());
@@ -240,13 +237,13 @@ mod tests {
             let part = |name: &&str| Part {
                 name: (*name).to_owned(),
                 triangles: 1,
-                is_hidden: shown.hiding().hide(name, level(name)),
+                is_hidden: hides(&shown.names(), name, level(name)),
                 level: level(name),
             };
             let tree = tree(&names.iter().map(part).collect::<Vec<_>>());
             let at = tree.iter().position(|branch| branch.path == path).expect("a branch");
             shown.set(&tree, at, is_shown);
-            (names.map(|name| !shown.hiding().hide(name, level(name))), shown.clone())
+            (names.map(|name| !hides(&shown.names(), name, level(name))), shown.clone())
         };
         assert_eq!(set("Car", false).0, [false, false, true]);
         let (now, lists) = set("Car", true);
@@ -273,15 +270,16 @@ mod tests {
         let names: Vec<String> = (0..20_000).map(|i| format!("group {}/part {i}/end", i / 2)).collect();
         let start = std::time::Instant::now();
         let mut shown = ShownParts { hidden: names.iter().step_by(2).cloned().collect(), ..ShownParts::default() };
-        let hiding = shown.hiding();
-        let part = |name: &String| Part { name: name.clone(), triangles: 1, is_hidden: hiding.hide(name, 0), level: 0 };
+        let before = shown.names();
+        let part =
+            |name: &String| Part { name: name.clone(), triangles: 1, is_hidden: hides(&before, name, 0), level: 0 };
         let found: Vec<Part> = names.iter().map(part).collect();
         let tree = tree(&found);
         assert_eq!((leaves(&tree).count(), tree.len()), (20_000, 20_000 + MOST_GROUPS));
         assert!(tree.iter().all(|branch| branch.name == branch.path));
         shown.set(&tree, end(&tree, 0), false);
-        let hiding = shown.hiding();
-        let hidden: Vec<_> = (0..).zip(&names).filter(|(_, name)| hiding.hide(name, 0)).map(|(i, _)| i).collect();
+        let after = shown.names();
+        let hidden: Vec<_> = (0..).zip(&names).filter(|(_, name)| hides(&after, name, 0)).map(|(i, _)| i).collect();
         // Every second one, and both of the second group.
         let expected: Vec<_> = (0..20_000).filter(|i| i % 2 == 0 || *i == 3).collect();
         assert_eq!(hidden, expected);

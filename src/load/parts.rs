@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use super::memory_budget::Budget;
 use super::notes::{Notes, counted};
-use super::selection::{Hiding, MATERIAL, Selection, ShownParts, choice, is_material};
+use super::selection::{MATERIAL, Names, Selection, ShownParts, choice, hides, is_material};
 use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::{MemoryRefused, Mesh};
@@ -49,7 +49,7 @@ pub struct Part {
 #[derive(Debug, Default)]
 pub(super) struct Parts {
     selected: ShownParts,
-    hiding: Hiding,
+    names: [Names; 2],
     found: Vec<Part>,
     /// The numbers of parts by their paths: of materials, of others, and of what is known to be a further level of detail.
     numbers: [HashMap<Vec<u8>, usize>; 3],
@@ -66,7 +66,7 @@ pub(super) struct Parts {
 impl Parts {
     pub(super) fn new(selected: &Selection) -> Self {
         let selected = selected.parts.cloned().unwrap_or_default();
-        Self { hiding: selected.hiding(), selected, ..Self::default() }
+        Self { names: selected.names(), selected, ..Self::default() }
     }
 
     /// Says which part the next faces belong to, by its path, and how much of that is known to be the path of a further
@@ -94,7 +94,7 @@ impl Parts {
         numbers.insert(name.to_vec(), number);
         if number == self.found.len() {
             let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
-            let is_hidden = self.hiding.hide(&path, level);
+            let is_hidden = hides(&self.names, &path, level);
             self.found.push(Part { name: path, triangles: 0, is_hidden, level });
         }
         self.current = Some(number);

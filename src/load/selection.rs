@@ -63,28 +63,19 @@ impl ShownParts {
         }
     }
 
-    /// Which parts are left out.
-    pub(super) fn hiding(&self) -> Hiding {
-        Hiding { hidden: Names::new(&self.hidden), only: Names::new(&self.only) }
+    /// The names of parts and groups that are left out, and of those that alone are read, for [`hides`].
+    pub(super) fn names(&self) -> [Names; 2] {
+        [&self.hidden, &self.only].map(Names::new)
     }
 }
 
-/// Which parts are left out, as [`ShownParts`] has it.
-#[derive(Debug, Default)]
-pub(super) struct Hiding {
-    hidden: Names,
-    only: Names,
-}
-
-impl Hiding {
-    /// Whether a part is left out, by its path. The start of the path that has this length, unless that is 0, is a further level
-    /// of detail: it is shown only if a name means it, and not all of what it lies in.
-    pub(super) fn hide(&self, path: &str, level: usize) -> bool {
-        let above = path[..level].rsplit_once('/').map_or("", |(above, _)| above);
-        let is_named = || self.only.meaning(path).iter().any(|name| level == 0 || !is_part_of(above, name));
-        let is_limited = level > 0 || self.only.0.iter().any(|name| is_material(name) == is_material(path));
-        !self.hidden.meaning(path).is_empty() || is_limited && !is_named()
-    }
+/// Whether a part is left out, by its path. The start of the path that has this length, unless that is 0, is a further level of
+/// detail: it is shown only if a name means it, and not all of what it lies in.
+pub(super) fn hides([hidden, only]: &[Names; 2], path: &str, level: usize) -> bool {
+    let above = path[..level].rsplit_once('/').map_or("", |(above, _)| above);
+    let is_named = || only.meaning(path).iter().any(|name| level == 0 || !is_part_of(above, name));
+    let is_limited = level > 0 || only.0.iter().any(|name| is_material(name) == is_material(path));
+    !hidden.meaning(path).is_empty() || is_limited && !is_named()
 }
 
 /// Names that a user gave, of which those that mean a part are found quickly among many.
