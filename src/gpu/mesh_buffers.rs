@@ -154,7 +154,7 @@ fn points(gpu: &Gpu, mesh: &Mesh, topology: &Topology) -> Result<wgpu::Buffer, G
         let detail = if mesh.part_styles.is_empty() {
             0
         } else {
-            detail_count(mesh.style_of(topology.patches[patch as usize].triangle).detail)
+            detail_count(mesh.style_of(topology.patches[patch as usize].triangle).detail.unwrap_or(1.0))
         };
         map + if is_textured { TEXTURED } else { 0 } + DETAIL_STEP * detail
     };

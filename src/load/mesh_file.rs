@@ -483,11 +483,12 @@ mod tests {
         let own = |styles: &[(&str, &str)]| styled(styles).expect("known parts")[..3].join(" ");
         let wheel = ("Wheel", "surface=flat");
         for styles in [[wheel, ("Car", "detail=2,surface=pn")], [("Car", "detail=2,surface=pn"), wheel]] {
-            assert_eq!(own(&styles), "surface=pn,detail=2 surface=flat,detail=2 detail=1");
+            assert_eq!(own(&styles), "surface=pn,detail=2 surface=flat,detail=2 ");
         }
-        assert_eq!(own(&[("Car", "detail=2"), ("/Car", "detail=4")]), "detail=4 detail=4 detail=1", "the last");
-        assert_eq!(own(&[("Car/Wheel", "detail=2"), ("Wheel", "detail=4")]), "detail=1 detail=2 detail=1", "longer");
-        assert_eq!(own(&[("Car/.", "detail=2"), ("Car", "detail=4")]), "detail=2 detail=4 detail=1");
+        assert_eq!(own(&[("Car", "detail=2"), ("/Car", "detail=4")]), "detail=4 detail=4 ", "the last");
+        assert_eq!(own(&[("Car/Wheel", "detail=2"), ("Wheel", "detail=4")]), " detail=2 ", "longer");
+        assert_eq!(own(&[("Car/.", "detail=2"), ("Car", "detail=4")]), "detail=2 detail=4 ");
+        assert_eq!(own(&[("Car/Wheel", "detail=1"), ("Car", "detail=4")]), "detail=4 detail=1 ", "1 is said too");
     }
 
     #[test]

@@ -134,3 +134,39 @@ pub fn choice(known: &[String], none: &str) -> String {
         Some(more) => format!("choose one of {} and {more} more, which `pnaen info` lists", names.join(", ")),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_style_takes_the_place_of_the_one_before_it() {
+        let style = |text: &str| text.parse::<PartStyle>().expect("a style");
+        let mut parts = ShownParts::default();
+        for (name, own) in [("a", "detail=2"), ("b", "surface=flat"), ("a", "detail=4")] {
+            parts.set_style(name, style(own));
+        }
+        assert_eq!(parts.styles, [("a".to_owned(), style("detail=4")), ("b".to_owned(), style("surface=flat"))]);
+        parts.set_style("a", PartStyle::default());
+        assert_eq!(parts.styles.len(), 1);
+        parts.styles.push(("b".to_owned(), style("detail=1")));
+        assert_eq!(parts.style("b"), style("surface=flat,detail=1"));
+    }
+
+    #[test]
+    fn names_among_many_are_those_that_are_found_one_by_one() {
+        let paths = ["a", "a/b", "b/a/b", "material:a/b", "a/a/c", "material:b"];
+        let names =
+            ["a", "b", "/a", "a/b", "/a/b", "b/.", "/b/.", "material:a/b", "material:b", "/material:b", ".", "a/"];
+        // As many more that mean nothing.
+        let names: Vec<String> =
+            names.iter().map(|name| (*name).to_owned()).chain((0..100).map(|i| format!("x{i}"))).collect();
+        let all = Names::new(&names);
+        for path in paths {
+            let found: HashSet<&String> = all.meaning(path).into_iter().collect();
+            let expected: HashSet<&String> = names.iter().filter(|name| is_part_of(path, name)).collect();
+            assert_eq!(found, expected, "{path}");
+            assert!(!expected.is_empty(), "{path}");
+        }
+    }
+}

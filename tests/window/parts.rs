@@ -58,7 +58,7 @@ fn a_part_gets_a_surface_and_a_detail_of_its_own() {
         click(&mut harness, menu);
         click(&mut harness, entry);
     }
-    let style = PartStyle { surface: Some(Surface::PhongAen), detail: 0.5 };
+    let style = PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.5) };
     let styles = |harness: &Harness<App>| harness.state().loaded().expect("a mesh").preparation.parts.styles.clone();
     assert!(matches!(&styles(&harness)[..], [(name, own)] if name.ends_with("Part7") && *own == style));
     assert_eq!(harness.state().loaded().expect("a mesh").mesh.part_styles[7], style);

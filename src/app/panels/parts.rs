@@ -272,7 +272,8 @@ fn style_entries(ui: &mut egui::Ui, style: PartStyle) -> Option<PartStyle> {
         }
     });
     ui.menu_button("Its detail", |ui| {
-        for (detail, label) in DETAILS {
+        entry(ui, PartStyle { detail: None, ..style }, "As set for all", "As fine as LOD makes the rest.");
+        for (detail, label) in DETAILS.map(|(detail, label)| (Some(detail), label)) {
             let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
             entry(ui, PartStyle { detail, ..style }, label, hover);
         }

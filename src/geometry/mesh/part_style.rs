@@ -15,8 +15,8 @@ with_defaults! {
         /// Its surface; none for that of the tessellation.
         pub surface: Option<Surface> = None,
         /// How many times as fine as the rest LOD makes it, [`Self::LEAST`] to [`Self::MOST`] in steps of that least: by so much its
-        /// lengths and errors in px count, and given factors are multiplied.
-        pub detail: f32 = 1.0,
+        /// lengths and errors in px count, and given factors are multiplied. None for 1.
+        pub detail: Option<f32> = None,
     }
 }
 
@@ -29,14 +29,14 @@ impl PartStyle {
     /// This style, and what it doesn't say of another one.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
-        let detail = if self.detail == 1.0 { other.detail } else { self.detail };
-        Self { surface: self.surface.or(other.surface), detail }
+        Self { surface: self.surface.or(other.surface), detail: self.detail.or(other.detail) }
     }
 
     /// This style with the nearest detail that there is.
     #[must_use]
     pub fn rounded(self) -> Self {
-        Self { detail: (self.detail / Self::LEAST).round().clamp(1.0, Self::MOST / Self::LEAST) * Self::LEAST, ..self }
+        let nearest = |detail: f32| (detail / Self::LEAST).round().clamp(1.0, Self::MOST / Self::LEAST) * Self::LEAST;
+        Self { detail: self.detail.map(nearest), ..self }
     }
 }
 
@@ -44,7 +44,7 @@ impl PartStyle {
 impl fmt::Display for PartStyle {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let surface = self.surface.map(|surface| format!("surface={}", surface.name()));
-        let detail = (self.detail != 1.0 || surface.is_none()).then(|| format!("detail={}", self.detail));
+        let detail = self.detail.map(|detail| format!("detail={detail}"));
         f.write_str(&Vec::from_iter(surface.into_iter().chain(detail)).join(","))
     }
 }
@@ -64,8 +64,8 @@ impl FromStr for PartStyle {
                 }
                 "detail" => {
                     let detail = value.trim().parse().ok().filter(|detail| (Self::LEAST..=Self::MOST).contains(detail));
-                    own.detail =
-                        detail.ok_or("a part's detail is a number from 1/64 (0.015625) to 16, such as detail=2")?;
+                    let reason = "a part's detail is a number from 1/64 (0.015625) to 16, such as detail=2";
+                    own.detail = Some(detail.ok_or(reason)?);
                 }
                 _ => return Err("a part has surface=NAME or detail=NUMBER or both, joined by a comma".to_owned()),
             }
@@ -100,7 +100,7 @@ impl Topology {
     /// The surface of a patch and its detail, if parts without a surface of their own have `surface`.
     pub(super) fn patch_style(&self, mesh: &Mesh, patch: u32, surface: Surface) -> (Surface, f32) {
         let own = mesh.style_of(self.patches[patch as usize].triangle);
-        (own.surface.unwrap_or(surface), own.detail)
+        (own.surface.unwrap_or(surface), own.detail.unwrap_or(1.0))
     }
 
     /// The surface of an edge and its detail, which all of its sides take, if those of parts without one of their own have
