@@ -66,7 +66,7 @@ pub(super) fn take(
 /// A node's name, or else that of its mesh.
 fn own_name(root: &Root, node: usize) -> &str {
     let node = &root.nodes[node];
-    let mesh = || node.mesh.and_then(|mesh| root.meshes[mesh.value()].name.as_deref());
+    let mesh = || node.mesh.and_then(|mesh| root.meshes.get(mesh.value())?.name.as_deref());
     node.name.as_deref().filter(|name| !name.is_empty()).or_else(mesh).unwrap_or_default()
 }
 
