@@ -62,26 +62,25 @@ pub fn tree(parts: &[Part]) -> Vec<Branch> {
             branch.triangles += u64::from(part.triangles);
         }
     }
-    let mut tree: Vec<Branch> = branches.into_values().collect();
-    name_all(&mut tree);
-    tree
+    named(branches.into_values().collect())
 }
 
 /// Gives branches their names.
-fn name_all(tree: &mut [Branch]) {
-    let paths: Vec<String> = leaves(tree).map(|leaf| format!("{}/./", leaf.path)).collect();
+fn named(mut tree: Vec<Branch>) -> Vec<Branch> {
+    let paths: Vec<String> = leaves(&tree).map(|leaf| format!("{}/./", leaf.path)).collect();
     let paths = paths.iter().filter(|path| !is_material(path));
     // What paths are after each of their first names, sorted.
     let rests = paths.flat_map(|path| path.match_indices('/').map(|(slash, _)| &path.as_bytes()[slash + 1..]));
     let mut rests: Vec<&[u8]> = rests.map(|rest| &rest[..rest.len().min(LONGEST)]).collect();
     rests.sort_unstable();
-    for branch in tree {
+    for branch in &mut tree {
         let own = format!("{}/", branch.path).into_bytes();
         let place = rests.partition_point(|rest| *rest < &own[..]);
         let is_elsewhere = own.len() > LONGEST || rests.get(place).is_some_and(|rest| rest.starts_with(&own));
         let slash = if is_elsewhere && !is_material(&branch.path) { "/" } else { "" };
         branch.name = [slash, &branch.path].concat();
     }
+    tree
 }
 
 /// Returns the parts of a tree.
@@ -100,8 +99,8 @@ impl ShownParts {
         let (branch, changed, before) = (&tree[at], at..end(tree, at), self.names());
         let is_changed = |i: usize| changed.contains(&i) && (!is_shown || branch.level > 0 || tree[i].level == 0);
         let is_hidden = |i: usize| hides(&before, &tree[i].path, tree[i].level);
-        let shown = (0..tree.len()).map(|i| if is_changed(i) { is_shown } else { !is_hidden(i) });
-        let shown: Vec<bool> = shown.collect();
+        let shown = |i: usize| if is_changed(i) { is_shown } else { !is_hidden(i) };
+        let shown: Vec<bool> = (0..tree.len()).map(shown).collect();
         let is_other = |name: &String| is_material(name) != is_material(&branch.path);
         let lists_shown = is_shown && branch.level > 0 || !self.only.iter().all(is_other);
         // Names of what the tree doesn't have stay, such as those of materials of parts that are hidden.

@@ -93,11 +93,10 @@ pub(super) fn place_levels(root: &mut Root, levels: &[(usize, Vec<usize>)]) -> H
                 continue;
             }
             others.insert(id, number);
-            if shown.contains(&id) || parents[id].is_some() {
-                continue;
-            }
+            let is_placed = shown.contains(&id) || parents[id].is_some();
             // What the scene doesn't show can't hold the node that it is placed below. Without scenes it shows all.
             match (parents[*node], scene) {
+                _ if is_placed => {}
                 (Some(parent), _) => root.nodes[parent].children.get_or_insert_default().push(Index::new(to_u32(id))),
                 (None, Some(scene)) => root.scenes[scene].nodes.push(Index::new(to_u32(id))),
                 (None, None) => {}
