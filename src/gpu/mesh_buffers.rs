@@ -141,12 +141,7 @@ fn points(gpu: &Gpu, mesh: &Mesh, topology: &Topology) -> Result<wgpu::Buffer, G
         let material = topology.material_of(patch);
         let map = heights.and_then(|heights| heights.map_of(material)).map_or(0, |map| map + 1);
         let is_textured = mesh.materials.get(material).is_some_and(|material| material.texture.is_some());
-        let detail = if mesh.part_styles.is_empty() {
-            0
-        } else {
-            detail_count(mesh.style_of(topology.patches[patch as usize].triangle).detail)
-        };
-        map + if is_textured { TEXTURED } else { 0 } + DETAIL_STEP * detail
+        map + if is_textured { TEXTURED } else { 0 } + DETAIL_STEP * detail_count(topology.detail_of(mesh, patch))
     };
     filled_by(gpu, "points", topology.points.len() + topology.patches.len(), |i| match topology.points.get(i) {
         Some(point) => point.extend(0.0).to_array(),

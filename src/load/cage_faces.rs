@@ -13,6 +13,7 @@ use geometry::mesh::build_limits::{Budget, MAX_TRIANGLES, MemoryRefused};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::subdivision::{Cage, Refinement, Scheme, Size};
+use geometry::progress::{Cancelled, Progress};
 
 /// Memory in bytes: of a corner of a cage with its point; of a refined point, and beside it while limits are computed; of a refined
 /// corner with its normal, its texture coordinates, and its details.
@@ -125,10 +126,10 @@ impl CageFaces {
     /// the reason is returned.
     ///
     /// # Errors
-    /// Those of `add`, and [`MemoryRefused`].
-    pub(super) fn refine<E: From<MemoryRefused>>(
+    /// Those of `add`, [`MemoryRefused`] and [`Cancelled`].
+    pub(super) fn refine<E: From<MemoryRefused> + From<Cancelled>>(
         self,
-        budget: &Budget,
+        (budget, progress): (&Budget, &Progress),
         details: Option<&mut DetailTable>,
         rig: Option<&mut RigBuilder>,
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
@@ -154,7 +155,7 @@ impl CageFaces {
         };
         let (why_not, held) = match refinement {
             Ok(refinement) => {
-                self.refined(&refinement, details, rig, budget, add)?;
+                self.refined(&refinement, details, rig, (budget, progress), add)?;
                 (None, memory)
             }
             Err((why_not, held)) => {
@@ -185,12 +186,12 @@ impl CageFaces {
         self.corners.iter().any(|at| at.corner.uv != Vec2::ZERO)
     }
 
-    fn refined<E: From<MemoryRefused>>(
+    fn refined<E: From<MemoryRefused> + From<Cancelled>>(
         &self,
         refinement: &Refinement,
         mut details: Option<&mut DetailTable>,
         rig: Option<&mut RigBuilder>,
-        budget: &Budget,
+        (budget, progress): (&Budget, &Progress),
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
     ) -> Result<(), E> {
         let refined = refinement.refine(&self.positions.iter().map(|position| position.as_dvec3()).collect::<Vec<_>>());
@@ -208,8 +209,10 @@ impl CageFaces {
             let [a, b] = detail(at).uvs.map(Vec2::as_dvec2);
             DVec4::new(a.x, a.y, b.x, b.y)
         });
-        let bound =
-            rig.map(|rig| rig.bind_refined(refinement, &self.bindings(details.as_deref()), budget)).transpose()?;
+        let bind = |rig: &mut RigBuilder| {
+            rig.bind_refined::<E>(refinement, &self.bindings(details.as_deref()), budget, progress)
+        };
+        let bound = rig.map(bind).transpose()?;
         let mut corners = Vec::new();
         for face in refinement.faces() {
             corners.clear();

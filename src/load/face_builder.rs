@@ -130,12 +130,16 @@ impl<'a> FaceBuilder<'a> {
     ) -> Result<(), ReadError> {
         let Some(cage) = self.cage.take() else { return Ok(()) };
         let mut own = self.colors.take();
-        let why_not =
-            cage.refine(self.memory, details.or(own.as_mut()), rig, |corners, OfFace { material, part, .. }| {
+        let why_not = cage.refine(
+            (self.memory, progress),
+            details.or(own.as_mut()),
+            rig,
+            |corners, OfFace { material, part, .. }| {
                 progress.check()?;
                 self.builder.enter_part(part);
                 self.store(material, corners, false)
-            })?;
+            },
+        )?;
         self.colors = own;
         self.is_refined = self.is_refined.map(|all| all && why_not.is_none()).or(Some(why_not.is_none()));
         self.notes.extend(why_not.map(|why| format!("A subdivision surface is shown as its control cage: {why}.")));

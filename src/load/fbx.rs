@@ -62,7 +62,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let mut notes = Notes::default();
     left_out::warn(&scene, &mut notes);
     let mut placed = Placed::new(&scene, file, &budget, &mut notes)?;
-    let clips = clips::read(&scene, &placed, &budget, &progress.part(0.3, 0.4), &mut notes)?;
+    let clips = clips::read(&scene, &placed, &file.selected, &budget, &progress.part(0.3, 0.4), &mut notes)?;
     placed.grow(&clips);
     let mut warnings = Vec::new();
     let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);

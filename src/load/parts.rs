@@ -3,13 +3,13 @@
 //! A part's name is its path: the names of what it lies in, from the outermost, and its own, with slashes between them. A name
 //! that has a slash is therefore several. Names that are empty don't count, and parts of one path are one part.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use serde::Serialize;
 
 use super::memory_budget::Budget;
 use super::notes::{Notes, counted};
-use super::selection::{MATERIAL, Selection, ShownParts, choice, is_material};
+use super::selection::{MATERIAL, Names, Selection, ShownParts, choice, hides, is_material};
 use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::{MemoryRefused, Mesh};
@@ -21,11 +21,12 @@ const MAX_PARTS: usize = 1 << 16;
 pub(super) const DEFAULT_PART: &str = "default";
 
 /// How many names above a part's own are looked at, and how long they may be together, in bytes.
-const MOST_ABOVE: usize = 64;
+pub(super) const MOST_ABOVE: usize = 64;
 const LONGEST_ABOVE: usize = 1024;
 
-/// Memory for a part besides its name, in bytes.
-const PER_PART: u64 = 150;
+/// Memory for a part besides its name, and for each byte of that, in bytes: here, and in the tree of parts.
+const PER_PART: u64 = 400;
+const PER_LETTER: u64 = 16;
 
 /// Memory for triangles of a part that follow one another, in bytes: while they are collected, and in the mesh.
 const PER_RANGE: u64 = 32;
@@ -48,8 +49,12 @@ pub struct Part {
 #[derive(Debug, Default)]
 pub(super) struct Parts {
     selected: ShownParts,
+    names: [Names; 2],
     found: Vec<Part>,
-    numbers: HashMap<Vec<u8>, usize>,
+    /// The numbers of parts by their paths: of materials, of others, and of what is known to be a further level of detail.
+    numbers: [HashMap<Vec<u8>, usize>; 3],
+    /// Whether the parts that are entered are materials.
+    are_materials: bool,
     /// The number of the first level of detail, by what the names of levels have in common.
     first_levels: HashMap<String, String>,
     /// The part that the next faces belong to.
@@ -60,14 +65,16 @@ pub(super) struct Parts {
 
 impl Parts {
     pub(super) fn new(selected: &Selection) -> Self {
-        Self { selected: selected.parts.cloned().unwrap_or_default(), ..Self::default() }
+        let selected = selected.parts.cloned().unwrap_or_default();
+        Self { names: selected.names(), selected, ..Self::default() }
     }
 
     /// Says which part the next faces belong to, by its path, and how much of that is known to be the path of a further
     /// [level](Part::level).
-    pub(super) fn enter(&mut self, name: &[u8], level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
+    pub(super) fn enter(&mut self, name: &[u8], mut level: usize, budget: &Budget) -> Result<(), MemoryRefused> {
         budget.hold(PER_RANGE)?;
-        if let Some(&number) = self.numbers.get(name) {
+        let numbers = &mut self.numbers[if self.are_materials { 0 } else { 1 + usize::from(level > 0) }];
+        if let Some(&number) = numbers.get(name) {
             self.current = Some(number);
             return Ok(());
         }
@@ -75,17 +82,21 @@ impl Parts {
             (self.current, self.beyond) = (None, self.beyond + 1);
             return Ok(());
         }
-        budget.hold(PER_PART + 4 * name.len() as u64)?;
+        budget.hold(PER_PART + PER_LETTER * name.len() as u64)?;
         let mut path = String::new();
         join(&mut path, &String::from_utf8_lossy(name), DEFAULT_PART);
-        let number = self.numbers.get(path.as_bytes()).copied().unwrap_or(self.found.len());
+        if is_material(&path) && !self.are_materials {
+            // Only materials have such paths. A space keeps others apart: `material :Red`.
+            path.insert(MATERIAL.len() - 1, ' ');
+            level += usize::from(level > 0);
+        }
+        let number = *numbers.entry(path.clone().into_bytes()).or_insert(self.found.len());
+        numbers.insert(name.to_vec(), number);
         if number == self.found.len() {
             let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
-            self.numbers.insert(path.clone().into_bytes(), number);
-            let is_hidden = self.selected.hide(&path, level);
+            let is_hidden = hides(&self.names, &path, level);
             self.found.push(Part { name: path, triangles: 0, is_hidden, level });
         }
-        self.numbers.insert(name.to_vec(), number);
         self.current = Some(number);
         Ok(())
     }
@@ -110,6 +121,7 @@ impl Parts {
         if builder.used_materials() < 2 && !selected.any(|name| is_material(name)) {
             return Ok(());
         }
+        self.are_materials = true;
         builder.leave_out(|name, triangles| {
             self.enter([MATERIAL, name].concat().as_bytes(), 0, budget)?;
             Ok(self.leave_out(triangles as usize))
@@ -194,6 +206,22 @@ pub(super) fn node_path<'a>(nodes: impl Iterator<Item = (&'a str, bool)>) -> (St
     (path, level)
 }
 
+/// Returns the names in paths of nodes that are further [levels](Part::level), of which `levels` has the numbers. `nodes` are all nodes
+/// with their own names. One that a first level has too, or a level of another number, gets its number, so that it can be named alone.
+pub(super) fn level_names<'a>(
+    levels: &BTreeMap<usize, usize>,
+    nodes: impl Iterator<Item = (usize, &'a str)>,
+) -> HashMap<usize, String> {
+    let nodes = nodes.map(|(node, name)| (node, if name.is_empty() { DEFAULT_PART } else { name }));
+    let (further, first): (Vec<_>, Vec<_>) = nodes.partition(|(node, _)| levels.contains_key(node));
+    let mut taken: HashMap<&str, usize> = first.into_iter().map(|(_, name)| (name, 0)).collect();
+    let own = further.into_iter().map(|(node, name)| match levels[&node] {
+        number if *taken.entry(name).or_insert(number) == number => (node, name.to_owned()),
+        number => (node, format!("{name} (level {number})")),
+    });
+    own.collect()
+}
+
 /// Returns where the names in a path end, from the outermost. Beyond so many, and so far, the rest is one name.
 pub(super) fn ends(path: &str) -> impl Iterator<Item = usize> {
     let above = path.match_indices('/').map(|(end, _)| end).take(MOST_ABOVE);
@@ -256,6 +284,30 @@ mod tests {
         assert_eq!(node_path([("", true), ("top", true)].into_iter()), ("top/default".to_owned(), 3));
         let deep = std::iter::repeat_n(("node", false), 1 << 20);
         assert_eq!(node_path(deep).0.matches("node").count(), MOST_ABOVE);
+    }
+
+    #[test]
+    fn a_level_is_no_part_of_the_same_path_and_a_name_makes_no_material() {
+        let mut parts = hiding(&[], &[]);
+        for (name, level) in [("Car", 3), ("Car", 0), ("/Car", 3), ("material:Red", 0), ("//material:Red/a", 12)] {
+            parts.enter(name.as_bytes(), level, &Budget::unlimited()).expect("memory is unlimited");
+            assert_eq!(parts.leave_out(1), level > 0, "{name} with {level}");
+        }
+        let found = parts.finish(&mut Mesh::default(), &mut Notes::default());
+        let found: Vec<_> = found.iter().map(|part| (part.name.as_str(), part.level, part.triangles)).collect();
+        assert_eq!(
+            found,
+            [("Car", 3, 2), ("Car", 0, 1), ("material :Red", 0, 1), ("material :Red/a", "material :Red".len(), 1)]
+        );
+    }
+
+    #[test]
+    fn levels_whose_names_are_taken_have_their_numbers() {
+        let nodes = ["near", "", "group", "near", "", "far", "far", "far"];
+        let levels = [(3, 1), (4, 2), (5, 1), (6, 1), (7, 2)].into();
+        let names = level_names(&levels, nodes.into_iter().enumerate());
+        let expected = [(3, "near (level 1)"), (4, "default (level 2)"), (5, "far"), (6, "far"), (7, "far (level 2)")];
+        assert_eq!(names, expected.map(|(node, name)| (node, name.to_owned())).into());
     }
 
     #[test]

@@ -17,7 +17,7 @@ use geometry::mesh::normals::GivenNormal;
 use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
 use geometry::mesh::subdivision::Refinement;
 use geometry::mesh::{Budget, CornerDetail, CornerDetails, Mesh};
-use geometry::progress::Progress;
+use geometry::progress::{Cancelled, Progress};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
 pub(super) const MAX_BOUND: usize = 1 << 24;
@@ -239,13 +239,18 @@ impl RigBuilder {
     /// used, and its normal is computed from the one that its corner gets. Returns the points' numbers.
     ///
     /// # Errors
-    /// [`MemoryRefused`].
-    pub(super) fn bind_refined(
+    /// [`MemoryRefused`] and [`Cancelled`].
+    pub(super) fn bind_refined<E: From<MemoryRefused> + From<Cancelled>>(
         &mut self,
         refinement: &Refinement,
         cage: &[u32],
         budget: &Budget,
-    ) -> Result<Vec<u32>, MemoryRefused> {
+        progress: &Progress,
+    ) -> Result<Vec<u32>, E> {
+        let ask = |count: usize, each: u64| {
+            progress.check()?;
+            Ok::<(), E>(budget.hold(count as u64 * each)?)
+        };
         let binding = |&id: &u32| self.bound.get(id as usize).map_or_else(Binding::default, |bound| bound.binding);
         let cage: Vec<Binding> = cage.iter().map(binding).collect();
         let vector = |vector: [f32; 3]| Vec3::from(vector).as_dvec3();
@@ -253,15 +258,16 @@ impl RigBuilder {
         let positions = refinement.limit(&positions).values();
         // What isn't used of a vertex's joints comes last, and has no weight.
         let hung = |own: &Binding| own.joints.into_iter().zip(own.weights.map(f64::from)).collect();
-        let joints = refinement.limit_of_some(&cage.iter().map(hung).collect::<Vec<_>>());
+        // Memory for joints is held with the points.
+        let joints = refinement.limit_of_some(&cage.iter().map(hung).collect::<Vec<_>>(), |count| ask(count, 0))?;
         // A target moves positions under an even number, and turns normals under an odd one.
         let displaced = |own: &Binding| {
             let deltas = &self.rig.deltas[own.first_delta as usize..][..own.delta_count as usize];
             let both = |delta: &Delta| [(2 * delta.weight, delta.position), (2 * delta.weight + 1, delta.normal)];
             deltas.iter().flat_map(both).map(|(number, own)| (number, vector(own))).collect()
         };
-        let displaced = refinement.limit_of_some(&cage.iter().map(displaced).collect::<Vec<_>>());
-        budget.hold(displaced.iter().map(|list| list.len() as u64).sum::<u64>() * PER_DELTA)?;
+        let displaced: Vec<Vec<(u32, DVec3)>> = cage.iter().map(displaced).collect();
+        let displaced = refinement.limit_of_some(&displaced, |count| ask(count, PER_DELTA))?;
         let points = positions.into_iter().zip(joints).zip(displaced);
         Ok(points.map(|((position, joints), displaced)| self.bind_point(position, joints, &displaced)).collect())
     }

@@ -52,13 +52,17 @@ fn parts_are_filtered_shown_alone_and_framed() {
 #[test]
 fn a_part_gets_a_surface_and_a_detail_of_its_own() {
     let (_folder, mut harness) = uniform_of("parts.obj", eleven_parts());
+    scroll_to(&mut harness, "Filter parts by name");
+    click(&mut harness, "Filter parts by name");
+    harness.get_by_label("Filter parts by name").type_text("Part7");
+    settle(&mut harness);
     for (menu, entry) in [("Its surface", "Phong AEN"), ("Its detail", "1/2")] {
         harness.get_by_label("Part7").click_secondary();
         settle(&mut harness);
         click(&mut harness, menu);
         click(&mut harness, entry);
     }
-    let style = PartStyle { surface: Some(Surface::PhongAen), detail: 0.5 };
+    let style = PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.5) };
     let styles = |harness: &Harness<App>| harness.state().loaded().expect("a mesh").preparation.parts.styles.clone();
     assert!(matches!(&styles(&harness)[..], [(name, own)] if name.ends_with("Part7") && *own == style));
     assert_eq!(harness.state().loaded().expect("a mesh").mesh.part_styles[7], style);

@@ -15,7 +15,7 @@ use geometry::names::{shortened, shown};
 use geometry::tessellate::Surface;
 use inspect::render::framed_size;
 use load::ShownParts;
-use load::part_tree::{Branch, end, leaves, name};
+use load::part_tree::{Branch, end, leaves};
 use load::selection::{MATERIAL, is_material, is_part_of};
 
 /// The greatest length of a name in a list, in characters.
@@ -116,21 +116,21 @@ impl App {
         let mut parts = self.preparation().parts;
         match action {
             PartAction::Set(at, is_shown) => parts.set(tree, at, is_shown),
-            PartAction::Solo(at) => parts.show_only(vec![name(tree, &tree[at])]),
+            PartAction::Solo(at) => parts.show_only(vec![tree[at].name.clone()]),
             PartAction::ShowAll => parts.show_only(Vec::new()),
             PartAction::Frame(at) => self.frame_part(tree, at),
-            PartAction::Style(at, style) => parts.set_style(&name(tree, &tree[at]), style),
-            PartAction::CopyName(at) => context.copy_text(name(tree, &tree[at])),
+            PartAction::Style(at, style) => parts.set_style(&tree[at].name, style),
+            PartAction::CopyName(at) => context.copy_text(tree[at].name.clone()),
         }
         self.prepare(context, |preparation| preparation.parts = parts);
     }
 
     fn frame_part(&mut self, tree: &[Branch], at: usize) {
         let Some(document) = &self.document else { return };
-        let (mesh, parts, own) = (document.shown().0, &document.loaded.contents.parts, name(tree, &tree[at]));
-        let of_parts = mesh.part_ranges.iter().filter(|range| is_part_of(&parts[range.part as usize].name, &own));
+        let (mesh, parts, own) = (document.shown().0, &document.loaded.contents.parts, &tree[at].name);
+        let of_parts = mesh.part_ranges.iter().filter(|range| is_part_of(&parts[range.part as usize].name, own));
         let of_materials =
-            mesh.materials.iter().filter(|material| is_part_of(&[MATERIAL, &material.name].concat(), &own));
+            mesh.materials.iter().filter(|material| is_part_of(&[MATERIAL, &material.name].concat(), own));
         let ranges = of_materials.map(|own| &own.triangles).chain(of_parts.map(|own| &own.triangles));
         if let Some(bounds) = mesh.bounds_of(ranges.flat_map(Range::clone)) {
             let size = framed_size(self.viewport.picture.size(), &self.settings);
@@ -177,7 +177,7 @@ fn part_row(
         if is_group { format!("{} parts, ", branch.parts) } else { String::new() },
         counted(branch.triangles, "triangle")
     );
-    let is_alone = selected.hidden.is_empty() && selected.only.len() == 1 && selected.only[0] == name(tree, branch);
+    let is_alone = selected.hidden.is_empty() && selected.only.len() == 1 && selected.only[0] == branch.name;
     let mut is_shown = branch.shown > 0;
     let mut action = None;
     let height = ui.spacing().interact_size.y;
@@ -209,7 +209,7 @@ fn part_row(
             let is_partly_shown = is_shown && branch.shown < branch.parts;
             let switch = egui::Checkbox::new(&mut is_shown, label).indeterminate(is_partly_shown);
             let switch = ui.add(switch).on_hover_text(hover);
-            let style = selected.style(&name(tree, branch));
+            let style = selected.style(&branch.name);
             if style != PartStyle::default() {
                 let marked = ui.label("*").on_hover_text(format!("It has {style} of its own (--part)."));
                 marked.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, style.to_string()));
@@ -248,7 +248,7 @@ fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize, selected: &ShownP
     };
     let mut chosen = entries.into_iter().filter_map(chosen).last();
     if !is_material(&branch.path) {
-        let style = style_entries(ui, selected.style(&name(tree, branch)));
+        let style = style_entries(ui, selected.style(&branch.name));
         chosen = style.map(|style| PartAction::Style(at, style)).or(chosen);
     }
     if chosen.is_some() {
@@ -272,7 +272,8 @@ fn style_entries(ui: &mut egui::Ui, style: PartStyle) -> Option<PartStyle> {
         }
     });
     ui.menu_button("Its detail", |ui| {
-        for (detail, label) in DETAILS {
+        entry(ui, PartStyle { detail: None, ..style }, "As set for all", "As fine as LOD makes the rest.");
+        for (detail, label) in DETAILS.map(|(detail, label)| (Some(detail), label)) {
             let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
             entry(ui, PartStyle { detail, ..style }, label, hover);
         }

@@ -15,8 +15,8 @@ with_defaults! {
         /// Its surface; none for that of the tessellation.
         pub surface: Option<Surface> = None,
         /// How many times as fine as the rest LOD makes it, [`Self::LEAST`] to [`Self::MOST`] in steps of that least: by so much its
-        /// lengths and errors in px count, and given factors are multiplied.
-        pub detail: f32 = 1.0,
+        /// lengths and errors in px count, and given factors are multiplied. None for 1.
+        pub detail: Option<f32> = None,
     }
 }
 
@@ -26,14 +26,18 @@ impl PartStyle {
     /// The finest detail.
     pub const MOST: f32 = 16.0;
 
+    /// This style, and what it doesn't say of another one.
+    #[must_use]
+    pub fn or(self, other: Self) -> Self {
+        Self { surface: self.surface.or(other.surface), detail: self.detail.or(other.detail) }
+    }
+
     /// This style with the nearest detail that there is.
     #[must_use]
     pub fn rounded(self) -> Self {
         // A NaN becomes the least.
-        Self {
-            detail: (self.detail / Self::LEAST).round().max(1.0).min(Self::MOST / Self::LEAST) * Self::LEAST,
-            ..self
-        }
+        let steps = |detail: f32| (detail / Self::LEAST).round().max(1.0).min(Self::MOST / Self::LEAST);
+        Self { detail: self.detail.map(|detail| steps(detail) * Self::LEAST), ..self }
     }
 }
 
@@ -41,7 +45,7 @@ impl PartStyle {
 impl fmt::Display for PartStyle {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let surface = self.surface.map(|surface| format!("surface={}", surface.name()));
-        let detail = (self.detail != 1.0 || surface.is_none()).then(|| format!("detail={}", self.detail));
+        let detail = self.detail.map(|detail| format!("detail={detail}"));
         f.write_str(&Vec::from_iter(surface.into_iter().chain(detail)).join(","))
     }
 }
@@ -61,8 +65,8 @@ impl FromStr for PartStyle {
                 }
                 "detail" => {
                     let detail = value.trim().parse().ok().filter(|detail| (Self::LEAST..=Self::MOST).contains(detail));
-                    own.detail =
-                        detail.ok_or("a part's detail is a number from 1/64 (0.015625) to 16, such as detail=2")?;
+                    let reason = "a part's detail is a number from 1/64 (0.015625) to 16, such as detail=2";
+                    own.detail = Some(detail.ok_or(reason)?);
                 }
                 _ => return Err("a part has surface=NAME or detail=NUMBER or both, joined by a comma".to_owned()),
             }
@@ -102,10 +106,15 @@ pub struct CurveStyle {
 }
 
 impl Topology {
+    /// How many times as fine as others LOD makes a patch.
+    pub fn detail_of(&self, mesh: &Mesh, patch: u32) -> f32 {
+        mesh.style_of(self.patches[patch as usize].triangle).detail.unwrap_or(1.0)
+    }
+
     /// The surface of a patch and its detail.
     pub(super) fn patch_style(&self, mesh: &Mesh, patch: u32, surface: Surface) -> CurveStyle {
         let own = mesh.style_of(self.patches[patch as usize].triangle);
-        CurveStyle { surface: own.surface.unwrap_or(surface), detail: own.detail }
+        CurveStyle { surface: own.surface.unwrap_or(surface), detail: own.detail.unwrap_or(1.0) }
     }
 
     /// What all sides of an edge take: of different surfaces the one that comes first in [`Surface::ALL`], so that flat parts stay
@@ -138,9 +147,10 @@ mod tests {
     #[test]
     fn styles_are_read_as_they_are_written() {
         for surface in Surface::ALL.map(Some).into_iter().chain([None]) {
-            for detail in [PartStyle::LEAST, 0.5, 1.0, 3.25, PartStyle::MOST] {
+            for detail in [None, Some(PartStyle::LEAST), Some(0.5), Some(1.0), Some(3.25), Some(PartStyle::MOST)] {
                 let style = PartStyle { surface, detail };
-                assert_eq!(style.to_string().parse(), Ok(style));
+                let is_written = style != PartStyle::default();
+                assert!(!is_written || style.to_string().parse() == Ok(style), "{style}");
             }
         }
         for text in ["", "flat", "surface=", "surface=round", "detail=0", "detail=nan", "detail=17", "size=2"] {
@@ -152,14 +162,14 @@ mod tests {
     fn a_program_that_embeds_may_give_any_detail() {
         let least = PartStyle::LEAST;
         for (given, expected) in [(f32::NAN, least), (-1.0, least), (0.0, least), (0.51, 33.0 * least), (1e9, 16.0)] {
-            let (mesh, _) = half(PartStyle { surface: None, detail: given });
-            assert_eq!(mesh.style_of(0).detail, expected);
+            let (mesh, _) = half(PartStyle { surface: None, detail: Some(given) });
+            assert_eq!(mesh.style_of(0).detail, Some(expected));
         }
     }
 
     #[test]
     fn details_alone_change_no_group_and_as_published_each_side_follows_its_own_surface() {
-        let (mesh, topology) = half(PartStyle { surface: Some(Surface::Pn), detail: 2.0 });
+        let (mesh, topology) = half(PartStyle { surface: Some(Surface::Pn), detail: Some(2.0) });
         for sharing in [Sharing::EachSide, Sharing::NoneAveraged] {
             let (plain, own) = (
                 Curves::build(&mesh, &topology, sharing),

@@ -182,7 +182,7 @@ pub fn explain_patch(
         measured.relief = SeenRelief::NONE;
     }
     let tolerance = searched.tessellation.tolerance;
-    let detail = mesh.style_of(topology.patches[patch as usize].triangle).detail;
+    let detail = topology.detail_of(mesh, patch);
     // What is seen of a part with a detail is magnified.
     let errors = pattern_errors(&measured, inputs.tessellation.convention, used).map(|own| PatternErrors {
         rows: own.rows.map(|rows| rows.map(|px| px / detail)),

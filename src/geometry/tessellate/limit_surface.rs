@@ -29,7 +29,7 @@ impl<'a> LimitSurface<'a> {
 
     /// Returns how many times as fine as others LOD makes a patch.
     pub fn detail(&self, patch: u32) -> f32 {
-        self.nets.mesh.style_of(self.nets.topology.patches[patch as usize].triangle).detail
+        self.nets.topology.detail_of(self.nets.mesh, patch)
     }
 
     /// Returns the point of a patch at weights `u` and `v` (w is the rest of 1), in object units. `net` is the patch's

@@ -168,10 +168,7 @@ impl MeshLod<'_> {
     /// Returns a patch as it is seen.
     pub(super) fn seen_patch(&self, patch: u32) -> SeenPatch {
         let net = self.nets.patch(patch);
-        let view = &self
-            .inputs
-            .view
-            .magnified(self.nets.mesh.style_of(self.nets.topology.patches[patch as usize].triangle).detail);
+        let view = &self.inputs.view.magnified(self.nets.topology.detail_of(self.nets.mesh, patch));
         let mut seen = seen_patch(view, &net);
         if self.is_plain(patch) {
             seen.off_plane = plane_error(view, &net);

@@ -11,13 +11,14 @@ use ufbx::{
 use super::beyond::{Curves, Span, within};
 use super::convert::{placement, quaternion, vec3};
 use super::looks::name;
-use super::morphs::{channels, shape_weights};
+use super::morphs::{channels, rest_weight, shape_weights};
 use super::nodes::{Placed, is_on, is_set};
 use super::parse::{half, refused};
 use crate::attachment::LocalTransform;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::read_error::ReadError;
+use crate::selection::Selection;
 use geometry::casts::{to_f32, to_u32};
 use geometry::mesh::rig::{Channel, Clip, Interpolation, Keys, Placement, Property};
 use geometry::progress::Progress;
@@ -42,12 +43,13 @@ const MAX_SEGMENTS: usize = 1 << 10;
 pub(super) fn read(
     scene: &Scene,
     placed: &Placed,
+    selected: &Selection,
     budget: &Budget,
     progress: &Progress,
     notes: &mut Notes,
 ) -> Result<Vec<Clip>, ReadError> {
     let mut reader =
-        Reader { scene, placed, budget, numbers_left: MAX_NUMBERS, samples_left: MAX_BEYOND, hides: false };
+        Reader { scene, placed, selected, budget, numbers_left: MAX_NUMBERS, samples_left: MAX_BEYOND, hides: false };
     let mut clips = Vec::new();
     for (i, stack) in scene.anim_stacks.into_iter().enumerate() {
         progress.set(i as f32 / scene.anim_stacks.len() as f32);
@@ -70,6 +72,7 @@ pub(super) fn read(
 struct Reader<'a> {
     scene: &'a Scene,
     placed: &'a Placed,
+    selected: &'a Selection<'a>,
     budget: &'a Budget,
     numbers_left: usize,
     /// How many samples beyond key frames may follow.
@@ -232,7 +235,8 @@ impl Reader<'_> {
             }
             keys.times.push(at);
             for (channel, own) in &moved {
-                shape_weights(channel, interpolated(own, time).unwrap_or(channel.weight), &mut keys.values);
+                let weight = interpolated(own, time).unwrap_or_else(|| rest_weight(channel, self.selected));
+                shape_weights(channel, weight, &mut keys.values);
             }
         }
         Ok((!keys.times.is_empty()).then_some(Channel { target: to_u32(node), property: Property::Weights, keys }))

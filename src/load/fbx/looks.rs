@@ -63,6 +63,9 @@ impl<'a> LookSource<'a> {
     pub(super) fn new(material: &'a ufbx::Material, mesh: &Mesh) -> Self {
         let (pbr, features) = (&material.pbr, &material.features);
         let map = |map: &'a MaterialMap| map_source(map, mesh);
+        // ufbx doesn't know the name that Autodesk's SDK gives this property.
+        let is_height = |own: &&ufbx::MaterialTexture| own.material_prop.as_ref() == "DisplacementColor";
+        let sdk_height = || material.textures.iter().find(is_height).map(|own| texture_source(&own.texture, mesh));
         let base = map(&pbr.base_color);
         let emission = map(&pbr.emission_color);
         let is_glossiness = features.roughness_as_glossiness.enabled;
@@ -107,7 +110,7 @@ impl<'a> LookSource<'a> {
             normal: map(&pbr.normal_map),
             emission,
             occlusion: map(&pbr.ambient_occlusion),
-            height: map(&material.fbx.displacement).or_else(|| map(&pbr.displacement_map)),
+            height: map(&material.fbx.displacement).or_else(|| map(&pbr.displacement_map)).or_else(sdk_height),
             height_factor: to_f32(number(&material.fbx.displacement_factor, 1.0)),
             undrawn: undrawn(material),
         }
@@ -187,7 +190,10 @@ fn undrawn(material: &ufbx::Material) -> Vec<&'static str> {
 
 /// Returns where a map's texture lies on a mesh; none without one.
 fn map_source<'a>(map: &'a MaterialMap, mesh: &Mesh) -> Option<MapSource<'a>> {
-    let texture = map.texture.as_ref().filter(|_| map.texture_enabled)?;
+    Some(texture_source(map.texture.as_ref().filter(|_| map.texture_enabled)?, mesh))
+}
+
+fn texture_source<'a>(texture: &'a Texture, mesh: &Mesh) -> MapSource<'a> {
     let is_named = |set: &ufbx::UvSet| set.name.as_ref() == texture.uv_set.as_ref();
     let set = mesh.uv_sets.iter().position(is_named).unwrap_or(0);
     let mut transform = MapUvs::default().transform;
@@ -199,7 +205,7 @@ fn map_source<'a>(map: &'a MaterialMap, mesh: &Mesh) -> Option<MapSource<'a>> {
         let turned = [a, -b, b + c, -d, e, 1.0 - e - f].map(to_f32);
         transform = if turned.iter().all(|x| x.is_finite()) { turned } else { transform };
     }
-    Some(MapSource { texture, uvs: MapUvs { set, transform } })
+    MapSource { texture, uvs: MapUvs { set, transform } }
 }
 
 /// Returns the number of a map; what isn't finite, or isn't there, is the default.

@@ -31,10 +31,14 @@ fn channel_name(channel: &BlendChannel) -> String {
 pub(super) fn rest_weights(mesh: &Mesh, selected: &Selection) -> Vec<f32> {
     let mut weights = Vec::new();
     for channel in channels(mesh) {
-        let weight = selected.morph(&channel_name(channel)).map_or(channel.weight, f64::from);
-        shape_weights(channel, weight, &mut weights);
+        shape_weights(channel, rest_weight(channel, selected), &mut weights);
     }
     weights
+}
+
+/// Returns the weight of a channel at rest: the chosen one, or else the file's.
+pub(super) fn rest_weight(channel: &BlendChannel, selected: &Selection) -> f64 {
+    selected.morph(&channel_name(channel)).map_or(channel.weight, f64::from)
 }
 
 /// Adds the weight of each shape of a channel. Between the weights of two shapes both are blended linearly; at 0 there is none.

@@ -1,6 +1,6 @@
 //! Places the nodes of a scene: their global transforms, and which ones the file shows.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use glam::DMat4;
 use ufbx::{Element, Mesh, Node, Scene};
@@ -11,6 +11,7 @@ use crate::attachment::{LocalTransform, SceneNodes};
 use crate::memory_budget::Budget;
 use crate::model_file::ModelFile;
 use crate::notes::Notes;
+use crate::parts::level_names;
 use crate::read_error::ReadError;
 use geometry::mesh::rig::{Clip, Placement};
 
@@ -29,8 +30,8 @@ pub(super) struct Placed {
     pub hidden: usize,
     /// Which nodes have a mesh, shown or not, on them or below them.
     pub carries_mesh: Vec<bool>,
-    /// The nodes that are levels of detail other than the first.
-    pub is_level: HashSet<usize>,
+    /// The nodes that are levels of detail other than the first, with their names.
+    pub levels: HashMap<usize, String>,
 }
 
 impl Placed {
@@ -63,9 +64,11 @@ impl Placed {
         let morphed = morphed.collect();
         let local = rest.into_iter().map(LocalTransform::Placement).collect();
         let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
-        let is_level = groups.flat_map(|group| group.children.into_iter().skip(1)).map(|level| index(level)).collect();
+        let levels = groups.flat_map(|group| group.children.into_iter().enumerate().skip(1));
+        let levels = levels.map(|(number, level)| (index(level), number)).collect();
+        let levels = level_names(&levels, nodes.into_iter().map(|node| &*node.element.name).enumerate());
         let scene = SceneNodes { parents, order, local, carries, morphed, grown: Vec::new() };
-        Ok(Self { global: scene.global(), scene, shown, hidden, carries_mesh, is_level })
+        Ok(Self { global: scene.global(), scene, shown, hidden, carries_mesh, levels })
     }
 
     /// Lets nodes [grow](SceneNodes::grow).

@@ -79,7 +79,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let memory = (triangles as u64).saturating_mul(12);
         budget.check(memory)?;
         faces.expect(triangles, 0);
-        let unit = scene.settings.original_unit_meters / scene.settings.unit_meters;
+        // Placed nodes are in metres, unless another unit was chosen.
+        let unit = if file.selected.import.unit.is_none() { scene.settings.unit_meters } else { 1.0 };
         let mut materials = Materials::new(files, to_f32(unit));
         let corners = meshes().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
         let details = if is_detailed { DetailTable::bytes_for(to_usize(corners)) } else { 0 };
@@ -115,7 +116,9 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             Binder::new(binder, &vertices)
         });
         let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
-        let named = |node: usize| (&*self.scene.nodes[node].element.name, self.placed.is_level.contains(&node));
+        let levels = &self.placed.levels;
+        let own = |node: usize| (&*self.scene.nodes[node].element.name, false);
+        let named = |node: usize| levels.get(&node).map_or_else(|| own(node), |level| (level.as_str(), true));
         // The scene's root isn't one of the file's nodes.
         let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;

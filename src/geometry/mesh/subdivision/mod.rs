@@ -141,22 +141,31 @@ impl Refinement {
     }
 
     /// The limit of values that only some points of the cage have, each under a number, such as weights of joints: what isn't zero at
-    /// each refined point, by growing numbers.
+    /// each refined point, by growing numbers. Before what belongs to a number is added to the lists, `ask` gets how much that is.
+    ///
+    /// # Errors
+    /// Those of `ask`.
     ///
     /// # Panics
     /// If there isn't a list for each point of the cage.
-    pub fn limit_of_some<T: Linear + PartialEq>(&self, values: &[Vec<(u32, T)>]) -> Vec<Vec<(u32, T)>> {
+    pub fn limit_of_some<T: Linear + PartialEq, E>(
+        &self,
+        values: &[Vec<(u32, T)>],
+        mut ask: impl FnMut(usize) -> Result<(), E>,
+    ) -> Result<Vec<Vec<(u32, T)>>, E> {
         let numbers: BTreeSet<u32> = values.iter().flatten().map(|(number, _)| *number).collect();
         let mut refined = vec![Vec::new(); self.points()];
         for number in numbers {
             let own =
                 |list: &Vec<(u32, T)>| list.iter().find(|own| own.0 == number).map_or_else(T::default, |own| own.1);
             let points = self.refine(&values.iter().map(own).collect::<Vec<T>>());
-            for (list, value) in refined.iter_mut().zip(self.limit(&points).values()) {
+            let limit = self.limit(&points).values();
+            ask(limit.iter().filter(|value| **value != T::default()).count())?;
+            for (list, value) in refined.iter_mut().zip(limit) {
                 list.extend((value != T::default()).then_some((number, value)));
             }
         }
-        refined
+        Ok(refined)
     }
 
     /// The face of the cage that a refined face is a part of.

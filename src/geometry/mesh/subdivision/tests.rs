@@ -424,7 +424,17 @@ fn values_of_some_points_are_refined_as_those_of_all_are() {
         // Number 7 is at every point, number 3 at every third one, and number 5 counts for nothing.
         let of_third = |point: usize| if point.is_multiple_of(3) { 2.0 } else { 0.0 };
         let list = |point: usize| [(7, 1.0), (5, 0.0), (3, of_third(point))].to_vec();
-        let refined = refinement.limit_of_some(&(0..shape.positions.len()).map(list).collect::<Vec<_>>());
+        let lists: Vec<_> = (0..shape.positions.len()).map(list).collect();
+        let mut asked = Vec::new();
+        let refined = refinement.limit_of_some(&lists, |count| {
+            asked.push(count);
+            Ok::<(), usize>(())
+        });
+        let refined = refined.expect("nothing is refused");
+        let counts = [3, 5, 7].map(|number| refined.iter().flatten().filter(|own| own.0 == number).count());
+        assert_eq!((asked, counts[2]), (counts.to_vec(), refinement.points()));
+        let refused = refinement.limit_of_some(&lists, |count| if count > counts[0] { Err(count) } else { Ok(()) });
+        assert_eq!(refused.err(), (counts[2] > counts[0]).then_some(counts[2]));
         let thirds = refinement.refine(&(0..shape.positions.len()).map(of_third).collect::<Vec<f64>>());
         assert_eq!(refined.len(), refinement.points());
         for (list, third) in refined.iter().zip(refinement.limit(&thirds).values()) {

@@ -155,6 +155,40 @@ fn chosen_weights_of_shapes_are_those_at_rest() {
 }
 
 #[test]
+fn a_chosen_weight_stays_in_a_clip_that_moves_another_shape() {
+    // Beside the shape that the clip moves, a second one moves the second corner.
+    let channel = vec![one("Version", 100), one("DeformPercent", 0.0), one("FullWeights", vec![100.0])];
+    let shape = vec![
+        one("Version", 100),
+        one("Indexes", vec![1]),
+        one("Vertices", vec![0.0, 0.0, 2.0]),
+        one("Normals", vec![0.0, 0.0, 0.0]),
+    ];
+    let objects = [
+        object("Deformer", 44, "SubDeformer::smile", "BlendShapeChannel", channel),
+        object("Geometry", 45, "Geometry::smile", "Shape", shape),
+    ];
+    let mut entries = morphed_square();
+    let into = |entries: &mut [Entry], name: &str, more: Vec<Entry>| {
+        let list = entries.iter_mut().find(|entry| entry.name == name).expect("a list");
+        list.children.extend(more);
+    };
+    into(&mut entries, "Objects", objects.into());
+    into(&mut entries, "Connections", [Link(44, 40, ""), Link(45, 44, "")].map(|link| link.entry()).into());
+    let shown = ShownParts { morphs: [("smile".to_owned(), 0.5)].into(), ..ShownParts::default() };
+    let selected = Selection { parts: Some(&shown), ..Selection::default() };
+    let progress = Progress::new();
+    let file = ModelFile { selected, ..ModelFile::from_test("test", &progress) };
+    let loaded = read_here(text(&entries), &file).expect("a file without a fault");
+    for (time, risen) in [(0.0, 0.0), (2.0, 4.0)] {
+        for (rest, posed) in at(&loaded, time) {
+            let height = if rest.x * (1.0 - rest.y) == 1.0 { 1.0 } else { risen * rest.x * rest.y };
+            assert_near(posed, Vec3::new(rest.x, rest.y, height), &format!("{rest} at {time} s"));
+        }
+    }
+}
+
+#[test]
 fn a_node_moves_what_hangs_below_it_within_the_units_of_the_file() {
     // In centimetres with Z up: the parent rises by 300, and the child, 100 beside it, turns about its own pivot.
     let square = [0.0, 0.0, 0.0, 10.0, 0.0, 0.0, 10.0, 10.0, 0.0, 0.0, 10.0, 0.0];

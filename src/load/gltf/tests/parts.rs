@@ -84,6 +84,69 @@ fn other_levels_of_detail_are_placed_beside_the_first_and_shown_if_they_are_name
     assert_eq!(read(&["group"]).0, ["group/near"]);
 }
 
+/// The paths of the parts that are shown if these names alone are, and where the corners are.
+fn shown_of(draft: &Draft, only: &[&str]) -> (Vec<String>, Vec<glam::Vec3>) {
+    let mut named = ShownParts::default();
+    named.show_only(only.iter().map(|name| (*name).to_owned()).collect());
+    let selected = Selection { parts: Some(&named), ..Selection::default() };
+    let loaded = read_selected(draft, selected).expect("triangles");
+    let shown = loaded.contents.parts.iter().filter(|part| !part.is_hidden).map(|part| part.name.clone());
+    (shown.collect(), loaded.corners.iter().map(|corner| corner.position).collect())
+}
+
+#[test]
+fn levels_of_one_name_or_without_one_are_told_apart_whichever_comes_first() {
+    for (name, own) in [("Car", "Car"), ("", "default")] {
+        for [first, level] in [[0, 1], [1, 0]] {
+            let mut draft = named();
+            draft.root["extensionsUsed"] = json!(["MSFT_lod"]);
+            draft.root["nodes"] = json!([{ "name": name, "mesh": 1 }, { "name": name, "mesh": 1 }]);
+            draft.root["nodes"][first]["extensions"] = json!({ "MSFT_lod": { "ids": [level] } });
+            draft.root["nodes"][level]["translation"] = json!([0, 7, 0]);
+            draft.root["scenes"] = json!([{ "nodes": [first] }]);
+            let (shown, corners) = shown_of(&draft, &[]);
+            assert_eq!((shown, corners.len()), (vec![own.to_owned()], 3), "{name} at {first}");
+            assert!(corners.iter().all(|corner| corner.y < 6.0), "{name} at {first}");
+            let other = format!("{own} (level 1)");
+            let (shown, corners) = shown_of(&draft, &[&other]);
+            assert_eq!((shown, corners.len()), (vec![other], 3), "{name} at {level}");
+            assert!(corners.iter().all(|corner| corner.y > 6.0), "{name} at {level}");
+        }
+    }
+}
+
+#[test]
+fn levels_that_name_each_other_or_hold_the_first_are_none_and_without_scenes_there_are_levels() {
+    let read = |nodes, scenes: Option<serde_json::Value>| {
+        let mut draft = named();
+        draft.root["extensionsUsed"] = json!(["MSFT_lod"]);
+        draft.root["nodes"] = nodes;
+        match scenes {
+            Some(scenes) => draft.root["scenes"] = scenes,
+            None => ["scene", "scenes"].iter().for_each(|name| {
+                draft.root.as_object_mut().expect("a document").remove(*name);
+            }),
+        }
+        shown_of(&draft, &[]).0
+    };
+    let node = |name: &str, ids: &[usize], children: &[usize]| {
+        let mut node = json!({ "name": name, "mesh": 1 });
+        if !ids.is_empty() {
+            node["extensions"] = json!({ "MSFT_lod": { "ids": ids } });
+        }
+        if !children.is_empty() {
+            node["children"] = json!(children);
+        }
+        node
+    };
+    let both = json!([node("a", &[1], &[]), node("b", &[0], &[])]);
+    assert_eq!(read(both, Some(json!([{ "nodes": [0, 1] }]))), ["a", "b"]);
+    let inside = json!([node("a", &[], &[1]), node("b", &[], &[2]), node("c", &[0, 3], &[]), node("d", &[], &[])]);
+    assert_eq!(read(inside, Some(json!([{ "nodes": [0] }]))), ["a", "a/b", "a/b/c"]);
+    let two = json!([node("a", &[1], &[]), node("b", &[], &[])]);
+    assert_eq!(read(two, None), ["a"]);
+}
+
 #[test]
 fn hidden_nodes_may_be_broken_and_hiding_all_is_said() {
     let mut draft = named();
