@@ -10,6 +10,7 @@ use inspect::render::layout::CRACK_COLOR;
 use inspect::settings::{Colors, Settings, SplitSide, SurfaceUnit};
 use load::Source;
 use pnaen::app::App;
+use pnaen::commands::{Action, FileAction, all};
 
 use crate::editing::{assert_draws, copied};
 use crate::{choose, click, open_list, press, settle, uniform, uniform_of, window};
@@ -131,6 +132,35 @@ fn a_mesh_is_compared_with_its_own_subdivision_limit() {
     click(&mut harness, "File");
     click(&mut harness, compare);
     assert!(harness.query_by_label_contains("can't be a reference surface").is_some());
+}
+
+#[test]
+fn a_limit_that_is_read_while_the_mesh_is_prepared_anew_is_that_of_the_new_mesh() {
+    // Reading its limit takes longer than preparing the cube.
+    const SIDE: usize = 32;
+    let points = (0..=SIDE).flat_map(|y| (0..=SIDE).map(move |x| format!("v {} {y} 0\n", 100 + x)));
+    let faces = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| 9 + y * (SIDE + 1) + x));
+    let faces = faces.map(|first| format!("f {first} {} {} {}\n", first + 1, first + SIDE + 2, first + SIDE + 1));
+    let sheet: String = points.chain(faces).collect();
+    let (_folder, mut harness) = uniform_of("parts.obj", format!("o cube\n{CUBE}o sheet\n{sheet}"));
+    choose(&mut harness, "Surface", "Flat");
+    let context = harness.ctx.clone();
+    let hide = |harness: &mut Harness<App>, part: &str| {
+        harness.state_mut().prepare(&context, |own| own.parts.hidden = vec![part.to_owned()]);
+    };
+    hide(&mut harness, "cube");
+    settle(&mut harness);
+    let compare = Action::File(FileAction::CompareWithOwnLimit);
+    let commands = all(&harness.state().availability());
+    let compare = commands.iter().find(|command| command.action == compare).expect("a command");
+    harness.state_mut().give(&context, compare);
+    hide(&mut harness, "sheet");
+    settle(&mut harness);
+    assert!(harness.state().has_own_limit());
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Deviation);
+    // The cube's own limit, and not that of the sheet, which is 100 units away.
+    let largest = harness.state().deviation(SplitSide::Right).expect("measured");
+    assert!((largest - 0.75_f64.sqrt()).abs() < 0.01, "{largest}");
 }
 
 /// The distance between the inscribed and the circumscribed sphere of an icosahedron, of radius 1.
