@@ -13,7 +13,7 @@ use pnaen::app::App;
 use pnaen::commands::{Action, FileAction, all};
 
 use crate::editing::{assert_draws, copied};
-use crate::{choose, click, open_list, press, settle, uniform, uniform_of, window};
+use crate::{choose, click, open_list, press, settle, uniform, uniform_of, vase, window};
 
 #[test]
 fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {
@@ -126,12 +126,18 @@ fn a_mesh_is_compared_with_its_own_subdivision_limit() {
     click(&mut harness, "File");
     click(&mut harness, "Forget reference surface");
     assert!(!harness.state().has_own_limit());
-    // A shape has no polygons of its own.
-    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
-    settle(&mut harness);
-    click(&mut harness, "File");
-    click(&mut harness, compare);
-    assert!(harness.query_by_label_contains("can't be a reference surface").is_some());
+    // A shape and a glTF file have no polygons of their own.
+    let why_not = |harness: &Harness<App>| {
+        let availability = harness.state().availability();
+        let command = all(&availability).into_iter().find(|command| command.name == compare).expect("a command");
+        command.why_not(&availability)
+    };
+    assert_eq!(why_not(&harness), None);
+    for source in [Source::Shape(Shape::Torus), vase()] {
+        harness.state_mut().open(&context, source);
+        settle(&mut harness);
+        assert!(why_not(&harness).is_some_and(|why| why.contains("no polygons to subdivide")));
+    }
 }
 
 #[test]
