@@ -117,9 +117,13 @@ impl SurfaceOptions {
         let takes_heights = !self.height.is_empty() || own.displacement.is_on();
         let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);
         refuse(is_lost, "--height-scale and --midlevel need --height, or --displacement")?;
-        let has_strength = own.surface.is_phong() || other.is_some_and(Surface::is_phong);
+        let has_strength =
+            own.surface.is_phong() || other.is_some_and(Surface::is_phong) || self.weld.parts.shown().has_phong();
         let is_lost = !has_strength && own.alpha != usual.alpha;
-        refuse(is_lost, "--alpha needs --surface phong or phong-aen, whose strength it is")?;
+        refuse(
+            is_lost,
+            "--alpha needs phong or phong-aen, whose strength it is, as --surface or as the surface of a --part",
+        )?;
         let is_lost = self.max_triangles.is_some() && !own.lod.is_by_error();
         refuse(is_lost, "--max-triangles needs --lod error, whose tolerance it raises")
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::import::Import;
 use geometry::mesh::PartStyle;
 use geometry::names::shown;
+use geometry::tessellate::Surface;
 
 /// Weights of morph targets of glTF, and of blend shapes of FBX, by their names. Targets of one name have one weight.
 pub type MorphWeights = BTreeMap<String, f32>;
@@ -51,6 +52,11 @@ impl ShownParts {
     /// What a part has in place of what the tessellation says for all.
     pub fn style(&self, name: &str) -> PartStyle {
         self.styles.iter().rev().find(|(other, _)| other == name).map(|(_, style)| *style).unwrap_or_default()
+    }
+
+    /// Whether a part has a surface of its own that is Phong's, which has a strength.
+    pub fn has_phong(&self) -> bool {
+        self.styles.iter().any(|(_, style)| style.surface.is_some_and(Surface::is_phong))
     }
 
     /// Gives a part a style of its own.

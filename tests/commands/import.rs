@@ -47,6 +47,12 @@ fn parts_are_listed_and_left_out() {
         stats(&[&parts, "--part", "-right:surface=flat,detail=0.5", "--factor", "4", "--partitioning", "integer"]);
     let usual = stats(&[&parts, "--factor", "4", "--partitioning", "integer"]);
     assert!(number(&styled, "/triangles_out") < number(&usual, "/triangles_out"), "{styled}");
+    // Phong tessellation has its strength there too.
+    let out = folder.path("out.obj");
+    let of_part =
+        |style: &str, code| failure(&["tessellate", &parts, "-o", &out, "--alpha", "0.5", "--part", style], code);
+    of_part("-right:surface=phong", 0);
+    assert!(of_part("-right:detail=2", 2).contains("--alpha needs phong"));
     sentence(&["info", &parts, "--part", "bonnet:detail=2"], &["bonnet", "left door", "-right"]);
     sentence(&["info", &plain, "--part", "a:surface=flat"], &["no named parts", "--part"]);
     for text in ["-right", "-right:", "-right:surface=round", "-right:detail=0", "-right:detail=nan", "-right:size=2"] {
