@@ -99,7 +99,7 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
         let loaded = inspect::engine::load(&job.source, &preparation, progress);
         let before = absent.len();
         if let Err(LoadError::Absent { what, known, .. }) = &loaded {
-            absent.extend(without_absent(&mut preparation.parts, what, known));
+            absent.extend(without_absent(&mut preparation.parts, *what, known));
         }
         if absent.len() == before {
             return Ok((loaded?, absent));
@@ -108,21 +108,17 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
 }
 
 /// Takes out of the parts or the morph targets those that aren't among the known ones.
-fn without_absent(own: &mut ShownParts, what: &str, known: &[String]) -> Vec<Named> {
-    let named = |option: &'static str| move |name: String| Named { option, name };
-    match what {
+fn without_absent(own: &mut ShownParts, what: &'static str, known: &[String]) -> Vec<Named> {
+    let is_absent = |name: &str| !known.iter().any(|known| is_part_of(known, name));
+    let names: Vec<String> = match what {
         "part" => {
-            let is_absent = |name: &str| !known.iter().any(|known| is_part_of(known, name));
-            let hidden = own.hidden.extract_if(.., |name| is_absent(name)).map(named("hide-part"));
             let styles = own.styles.extract_if(.., |(name, _)| is_absent(name)).map(|(name, _)| name);
-            hidden.chain(styles.map(named("part"))).collect()
+            own.hidden.extract_if(.., |name| is_absent(name)).chain(styles).collect()
         }
-        "morph target" => {
-            let morphs = own.morphs.extract_if(.., |name, _| !known.contains(name)).map(|(name, _)| name);
-            morphs.map(named("morph")).collect()
-        }
+        "morph target" => own.morphs.extract_if(.., |name, _| !known.contains(name)).map(|(name, _)| name).collect(),
         _ => Vec::new(),
-    }
+    };
+    names.into_iter().map(|name| (what, name)).collect()
 }
 
 /// A picture as it is on the page: no larger than it is shown there on a dense screen, a PNG file in base64.

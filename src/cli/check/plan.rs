@@ -46,12 +46,8 @@ pub(super) struct Job {
     pub is_kept: bool,
 }
 
-/// A part or a morph target that an option names.
-#[derive(PartialEq)]
-pub(super) struct Named {
-    pub option: &'static str,
-    pub name: String,
-}
+/// A part or a morph target that an option names: which of them, and its name.
+pub(super) type Named = (&'static str, String);
 
 impl Job {
     pub(super) fn inputs(&self) -> Inputs<'_> {
@@ -203,17 +199,16 @@ fn job(
 
 /// The parts and morph targets that an option names and only some assets may have, each with a sentence for the case that none has.
 fn named(config: &Config, option: &OptionValue) -> Vec<(Named, String)> {
-    let (own, what, after) = match &*option.name {
-        "hide-part" => ("hide-part", "part", None),
-        "part" => ("part", "part", Some(':')),
-        "morph" => ("morph", "morph target", Some('=')),
+    let (what, after) = match &*option.name {
+        "hide-part" => ("part", None),
+        "part" => ("part", Some(':')),
+        "morph" => ("morph target", Some('=')),
         _ => return Vec::new(),
     };
     let name =
-        |value: &String| after.and_then(|after| value.rsplit_once(after)).map_or(&**value, |(name, _)| name).to_owned();
+        |value: &str| after.and_then(|after| value.rsplit_once(after)).map_or(value, |(name, _)| name).to_owned();
     let said = |name: &str| config.wrong(option, &format!("no asset has the {what} {}", shown(name))).to_string();
-    let names = option.values.iter().flatten().map(name);
-    names.map(|name| (said(&name), name)).map(|(said, name)| (Named { option: own, name }, said)).collect()
+    option.values.iter().flatten().map(|value| ((what, name(value)), said(&name(value)))).collect()
 }
 
 /// Makes the paths of an option relative to the configuration's folder. Returns the files; none of an option that names no files.
