@@ -317,6 +317,34 @@ fn an_arrow_that_is_seen_from_its_end_is_upright_and_drags() {
 }
 
 #[test]
+fn a_drag_of_the_sections_arrow_from_a_place_that_comes_behind_the_eye_leaves_the_camera() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Icosphere)));
+    choose(&mut harness, "Section", "-Z");
+    harness.get_by_role_and_label(Role::Slider, "Section at").set_value_accesskit(0.9);
+    settle(&mut harness);
+    press(&mut harness, Key::Num1);
+    let from = arrow(&harness).center();
+    harness.hover_at(from);
+    harness.run_steps(1);
+    harness.drag_at(from);
+    for points in [50.0, 100.0, 150.0] {
+        harness.run_steps(2);
+        harness.hover_at(from + egui::vec2(0.0, points));
+    }
+    settle(&mut harness);
+    let at = harness.state().settings().section_at;
+    assert!((at - 0.15).abs() < 0.01, "{at}");
+    // The start of the drag is 0.8 before the middle of the sphere.
+    while harness.state().camera().distance > 0.75 {
+        press(&mut harness, Key::PageUp);
+    }
+    let camera = *harness.state().camera();
+    harness.hover_at(from + egui::vec2(60.0, 190.0));
+    harness.run_steps(2);
+    assert_eq!((*harness.state().camera(), harness.state().settings().section_at), (camera, at));
+}
+
+#[test]
 fn the_sections_arrow_is_seen_in_both_themes() {
     for theme in [Theme::Dark, Theme::Light] {
         let mut harness = uniform(Some(Source::Shape(Shape::Icosphere)));
