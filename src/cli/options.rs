@@ -314,9 +314,9 @@ pub struct PartOptions {
     /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
-    /// Give the part of this name a surface of its own, or LOD that is 1/64 to 16 times as fine: several times as a whole, and for
-    /// each part once, as `NAME:surface=flat` or `NAME:surface=phong-aen,detail=2`. Where parts with different surfaces meet, the edge
-    /// has the one that comes first among those of `--surface`, and the finest detail
+    /// Give the part or group of this name a surface of its own, LOD 1/64 to 16 times as fine, or both, such as
+    /// `NAME:surface=flat,detail=0.5`; may be given several times. Materials can't have them. Edges between parts take the surface
+    /// that comes first in the list of `--surface`, and the finest detail
     #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
     part: Vec<(String, PartStyle)>,
     /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.
