@@ -326,6 +326,13 @@ pub struct PartOptions {
 }
 
 impl PartOptions {
+    /// Says on standard error that styles of parts have no effect, if some are given that don't.
+    pub(crate) fn say_idle(&self, is_idle: fn(&PartStyle) -> bool, said: &str) {
+        if self.part.iter().any(|(_, style)| is_idle(style)) {
+            note(said);
+        }
+    }
+
     pub fn shown(&self) -> ShownParts {
         let (hidden, only) = (self.hide_part.clone(), self.show_part.clone());
         ShownParts { hidden, only, styles: self.part.clone(), morphs: self.morph.iter().cloned().collect() }

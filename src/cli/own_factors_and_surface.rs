@@ -5,15 +5,18 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::options::LOD_OPTIONS;
-use super::{CliError, note, refuse};
-use geometry::mesh::{Mesh, Topology};
+use super::options::{LOD_OPTIONS, PartOptions};
+use super::{CliError, SurfaceOptions, note, refuse};
+use geometry::mesh::{Mesh, PartStyle, Topology};
 use geometry::tessellate::{HullFactors, Tessellation};
 use gpu::{Given, SurfaceShader};
 use inspect::gates::{Gate, GateKind};
 use inspect::measure::Agreement;
 use inspect::shot::{FactorsFile, read_factors, said};
 use inspect::user_shader::read_user_shader;
+
+/// Whether a part has a detail of its own.
+const HAS_DETAIL: fn(&PartStyle) -> bool = |style| style.detail != 1.0;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct FactorsOption {
@@ -33,11 +36,15 @@ impl FactorsOption {
         &self,
         mesh: &Mesh,
         topology: &Topology,
-        tessellation: &Tessellation,
+        surface: &SurfaceOptions,
     ) -> Result<Option<GivenFactors>, CliError> {
-        let convention = tessellation.convention;
+        let Tessellation { convention, partitioning, .. } = surface.tessellation();
         let Some(path) = &self.given else { return Ok(None) };
-        let factors = read_factors(path, mesh, topology, tessellation.partitioning)?;
+        surface
+            .weld
+            .parts
+            .say_idle(HAS_DETAIL, "the detail of --part has no effect: the factors are those of --factors");
+        let factors = read_factors(path, mesh, topology, partitioning)?;
         let agreement = Agreement::new(topology, &factors, convention);
         said(topology, &agreement, convention).iter().for_each(|line| note(line));
         let about = FactorsFile::new(path, topology, &agreement, convention);
@@ -55,10 +62,12 @@ pub struct LodShaderOption {
 
 impl LodShaderOption {
     /// Reads the file, if one was named.
-    pub fn read(&self, tessellation: &Tessellation) -> Result<Option<Given>, CliError> {
+    pub fn read(&self, surface: &SurfaceOptions) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
+        let parts = &surface.weld.parts;
+        parts.say_idle(HAS_DETAIL, "the detail of --part has no effect: the factors are those of --lod-shader");
         refuse(
-            tessellation.partitioning.has_one_factor(),
+            surface.tessellation().partitioning.has_one_factor(),
             "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
         )?;
         Ok(Some(Given::Shader(read_user_shader(path)?)))
@@ -87,7 +96,11 @@ pub struct SurfaceShaderOption {
 
 impl SurfaceShaderOption {
     /// Reads the file, if one was named.
-    pub fn read(&self) -> Result<Option<Arc<SurfaceShader>>, CliError> {
+    pub fn read(&self, parts: &PartOptions) -> Result<Option<Arc<SurfaceShader>>, CliError> {
+        if self.surface_shader.is_some() {
+            let has_surface = |style: &PartStyle| style.surface.is_some();
+            parts.say_idle(has_surface, "the surface of --part has no effect: all parts have that of --surface-shader");
+        }
         Ok(self.surface_shader.as_deref().map(read_user_shader).transpose()?)
     }
 
