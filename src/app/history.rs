@@ -169,7 +169,7 @@ impl App {
         };
         use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
         // A limit that was being read anew is stale.
-        let reads_limit = own_limit && (!self.has_own_limit() || self.reads_reference());
+        let reads_limit = own_limit && (!self.has_own_limit() || self.jobs.has(Work::Companion(ReferenceShape)));
         [ReferenceShape, LeftMesh, Matcap, Environment]
             .into_iter()
             .for_each(|companion| self.jobs.stop(Work::Companion(companion)));

@@ -7,16 +7,13 @@ use std::sync::Arc;
 
 use super::options::{LOD_OPTIONS, PartOptions};
 use super::{CliError, SurfaceOptions, note, refuse};
-use geometry::mesh::{Mesh, PartStyle, Topology};
+use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{HullFactors, Tessellation};
 use gpu::{Given, SurfaceShader};
 use inspect::gates::{Gate, GateKind};
 use inspect::measure::Agreement;
 use inspect::shot::{FactorsFile, read_factors, said};
 use inspect::user_shader::read_user_shader;
-
-/// Whether a part has a detail of its own.
-const HAS_DETAIL: fn(&PartStyle) -> bool = |style| style.detail != 1.0;
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct FactorsOption {
@@ -40,10 +37,8 @@ impl FactorsOption {
     ) -> Result<Option<GivenFactors>, CliError> {
         let Tessellation { convention, partitioning, .. } = surface.tessellation();
         let Some(path) = &self.given else { return Ok(None) };
-        surface
-            .weld
-            .parts
-            .say_idle(HAS_DETAIL, "the detail of --part has no effect: the factors are those of --factors");
+        let parts = &surface.weld.parts;
+        parts.say_idle(|own| own.detail != 1.0, "the detail of --part has no effect under --factors");
         let factors = read_factors(path, mesh, topology, partitioning)?;
         let agreement = Agreement::new(topology, &factors, convention);
         said(topology, &agreement, convention).iter().for_each(|line| note(line));
@@ -65,7 +60,7 @@ impl LodShaderOption {
     pub fn read(&self, surface: &SurfaceOptions) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
         let parts = &surface.weld.parts;
-        parts.say_idle(HAS_DETAIL, "the detail of --part has no effect: the factors are those of --lod-shader");
+        parts.say_idle(|own| own.detail != 1.0, "the detail of --part has no effect under --lod-shader");
         refuse(
             surface.tessellation().partitioning.has_one_factor(),
             "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
@@ -98,8 +93,7 @@ impl SurfaceShaderOption {
     /// Reads the file, if one was named.
     pub fn read(&self, parts: &PartOptions) -> Result<Option<Arc<SurfaceShader>>, CliError> {
         if self.surface_shader.is_some() {
-            let has_surface = |style: &PartStyle| style.surface.is_some();
-            parts.say_idle(has_surface, "the surface of --part has no effect: all parts have that of --surface-shader");
+            parts.say_idle(|own| own.surface.is_some(), "the surface of --part has no effect under --surface-shader");
         }
         Ok(self.surface_shader.as_deref().map(read_user_shader).transpose()?)
     }
@@ -113,15 +107,6 @@ impl SurfaceShaderOption {
         refuse(
             gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance),
             "--fail-on above-tolerance measures on the CPU, where the surface of --surface-shader isn't known: choose other gates",
-        )
-    }
-
-    /// Refuses to compare with the limit surface.
-    pub(crate) fn check_deviation(&self) -> Result<(), CliError> {
-        refuse(
-            self.surface_shader.is_some(),
-            "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
-             one with --reference-surface",
         )
     }
 }

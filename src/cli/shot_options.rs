@@ -170,9 +170,11 @@ impl ShotOptions {
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();
         let exact = loaded.source.shape().filter(|_| is_plain).and_then(ReferenceShape::from_shape);
-        if exact.is_none() {
-            self.user_surface.check_deviation()?;
-        }
+        refuse(
+            exact.is_none() && self.user_surface.surface_shader.is_some(),
+            "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
+             one with --reference-surface",
+        )?;
         Ok(exact.map(|exact| (loaded.source.to_string(), Arc::new(exact))))
     }
 

@@ -99,7 +99,8 @@ impl App {
             Action::FoldAllSections => self.panels.open.set_all(false),
             Action::Warnings => self.dialogs.shows_warnings = true,
             Action::FreezeLodCamera => self.toggle_frozen(),
-            Action::Ruler => self.toggle_ruler(),
+            // Clicks take places until it is stopped.
+            Action::Ruler => self.viewport.ruler = self.viewport.ruler.is_none().then(Default::default),
             Action::Previews => self.switch_previews(),
             Action::AddBookmark if self.viewport.bookmarks.contains(&self.viewport.camera) => {}
             Action::AddBookmark => self.viewport.bookmarks.push(self.viewport.camera),

@@ -178,17 +178,13 @@ impl App {
     /// mesh was turned or scaled a file.
     pub(in crate::app) fn follow_reference_shape(&mut self, context: &egui::Context, is_turned: bool) {
         let chosen = self.reference_shape.as_ref().map(|chosen| (chosen.from.clone(), false));
-        let read = self.reads_reference().then(|| self.jobs.reference.clone());
+        let is_read = self.jobs.has(Work::Companion(CompanionFile::ReferenceShape));
+        let read = is_read.then(|| self.jobs.reference.clone());
         if let Some((from, is_chosen)) = read.or(chosen)
             && from.as_ref().is_none_or(|source| is_turned && source.shape().is_none())
         {
             self.read_reference(context, from, is_chosen);
         }
-    }
-
-    /// Whether a reference surface is being read.
-    pub(in crate::app) fn reads_reference(&self) -> bool {
-        self.jobs.has(Work::Companion(CompanionFile::ReferenceShape))
     }
 
     /// The source of the reference surface that was chosen for the mesh, if it has one of its own.
@@ -242,12 +238,6 @@ impl App {
         self.read_companion(context, CompanionFile::LeftMesh, title, source.title(), load, |app, loaded| {
             app.left_mesh = Some(Opened::new(Some(source), loaded));
         });
-    }
-
-    /// Loads the mesh of another file again, which is turned and scaled as the mesh is.
-    pub(in crate::app) fn follow_left_mesh(&mut self, context: &egui::Context) {
-        let source = self.left_mesh.as_ref().and_then(|left| left.from.clone());
-        source.into_iter().for_each(|source| self.open_left_mesh(context, source));
     }
 
     /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.
