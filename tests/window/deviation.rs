@@ -117,6 +117,15 @@ fn a_mesh_is_compared_with_its_own_subdivision_limit() {
     harness.state_mut().redo(&context);
     settle(&mut harness);
     assert!(harness.state().has_own_limit());
+    // Undo that reads the limit again leaves the colours.
+    press(&mut harness, egui::Key::V);
+    click(&mut harness, "File");
+    click(&mut harness, "Forget reference surface");
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert!(harness.state().has_own_limit());
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Material);
+    press(&mut harness, egui::Key::V);
     // The file is written anew, longer on one side.
     std::fs::write(folder.path().join("cube.obj"), CUBE.replace("v -1", "v -1.5")).expect("a writable folder");
     harness.state_mut().reload(&context);
