@@ -168,6 +168,8 @@ impl App {
             return;
         };
         use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
+        // A limit that was being read anew is stale.
+        let reads_limit = own_limit && (!self.has_own_limit() || self.jobs.has(Work::Companion(ReferenceShape)));
         [ReferenceShape, LeftMesh, Matcap, Environment]
             .into_iter()
             .for_each(|companion| self.jobs.stop(Work::Companion(companion)));
@@ -179,9 +181,6 @@ impl App {
         }
         if self.has_own_limit() != own_limit {
             self.close_companion(ReferenceShape);
-            if own_limit {
-                self.read_reference(context, None, true);
-            }
         }
         for (companion, source) in CompanionFile::ALL.into_iter().zip(files) {
             if self.companion(companion) != source {
@@ -195,6 +194,10 @@ impl App {
         self.put_settings(settings);
         let preparation = Preparation { import: settings.import, ..preparation };
         self.prepare(context, |own| *own = preparation);
+        if reads_limit {
+            // It is that of the mesh as it is prepared now.
+            self.read_reference(context, None, false);
+        }
         self.takes_back = true;
     }
 

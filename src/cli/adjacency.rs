@@ -58,6 +58,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let given = args.against.as_deref().map(read_bytes).transpose()?;
     let preparation = Preparation { heights: args.height.clone(), ..args.weld.preparation() };
     let loaded = load_apart(&args.file, &preparation, &written)?;
+    args.weld.parts.say_idle(|_| true, "--part has no effect on indices, which are the same for all surfaces");
     if let Some(path) = &args.corners {
         write_corners(&loaded, path)?;
     }

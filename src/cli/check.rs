@@ -25,7 +25,7 @@ use inspect::engine::Engine;
 use lab::check::{Asset, Cache, PICTURES, Report, junit, page, pictures, sarif};
 use load::Source;
 
-use plan::Job;
+use plan::{Job, Named};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -131,23 +131,23 @@ fn checked(args: &Args, jobs: &[Job], stop: &AtomicBool) -> Result<Report, CliEr
     if !left.is_empty() {
         let engine = Engine::chosen(&args.adapter.choice())?;
         let measured = measured(args, jobs, &left, &engine, cache.as_ref(), stop);
-        say_absent_parts(jobs, &measured);
+        say_absent(jobs, &measured);
         found.extend(measured.into_iter().map(|(index, (asset, _))| (index, asset)));
     }
     let left_out = jobs.len() - found.len();
     Ok(Report { assets: found.into_values().collect(), left_out })
 }
 
-/// An asset, and which parts that are to be left out it doesn't have, if that is known.
-type Measured = (Asset, Option<Vec<String>>);
+/// An asset, and what options name and it doesn't have, if that is known.
+type Measured = (Asset, Option<Vec<Named>>);
 
-/// Says on standard error which parts are to be left out and belong to none of the assets for which that holds.
-fn say_absent_parts(jobs: &[Job], measured: &BTreeMap<usize, Measured>) {
+/// Says on standard error which parts and morph targets are named and belong to none of the assets for which that holds.
+fn say_absent(jobs: &[Job], measured: &BTreeMap<usize, Measured>) {
     let mut absent_everywhere: BTreeMap<&str, bool> = BTreeMap::new();
     for (index, job) in jobs.iter().enumerate() {
         let absent = measured.get(&index).and_then(|(_, absent)| absent.as_ref());
-        for (part, said) in &job.hidden {
-            let is_absent = absent.is_some_and(|absent| absent.contains(part));
+        for (named, said) in &job.named {
+            let is_absent = absent.is_some_and(|absent| absent.contains(named));
             *absent_everywhere.entry(said).or_insert(true) &= is_absent;
         }
     }

@@ -103,7 +103,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if topology.patches.is_empty() {
         return Err(CliError::NothingToCompare { file: args.mesh.to_string() });
     }
-    let given = args.given.read(mesh, topology, &args.surface.tessellation())?.map(|(factors, _)| factors);
+    let given = args.given.read(mesh, topology, &args.surface)?.map(|(factors, _)| factors);
     let camera = args.surface.view.camera(&args.surface, (mesh, own.moment, &own.bounds), args.surface.viewport())?;
     let inputs = own.inputs(own.lod_view(&camera))?;
     let tessellated = own.tessellated(&inputs, given.as_deref(), |_, triangles| match triangles > MOST {

@@ -111,6 +111,7 @@ fn options_with_other_values_are_written() {
     let settings = Settings::opening().with(Tessellation {
         displacement: Displacement::PerPatch,
         height_scale: -0.5,
+        alpha: 0.5,
         ..Settings::opening().tessellation
     });
     let target = Vec3::new(-1.5, 0.0, 1e-7);
@@ -127,6 +128,7 @@ fn options_with_other_values_are_written() {
     assert_eq!(args.shot.reference.reference_subdivide, Some(Subdivide::Loop));
     let heights = Some(HeightSource::File("./material".into()));
     assert_eq!(args.shot.surface.preparation(), Preparation { heights, ..preparation.clone() });
+    assert_eq!(args.shot.surface.tessellation().alpha, 0.5, "a part is Phong's");
     assert_eq!((args.shot.select, args.shot.surface.view.orthographic), (Some(7), true));
     assert_eq!(args.shot.surface.view.target, Some(camera.target));
     assert_eq!((args.shot.surface.view.field_of_view, args.shot.surface.view.roll), (25.5, -12.25));

@@ -49,7 +49,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let shader = args.user_lod.lod_shader.as_deref();
     let read = [file_of(&args.file), shader, args.cameras.file()].into_iter();
     keep_apart(read.chain(files_of_heights(&args.surface.height)), written.iter().copied())?;
-    let user_lod = args.user_lod.read(&args.surface.tessellation())?;
+    let user_lod = args.user_lod.read(&args.surface)?;
     let mesh = Posed::load(&args.surface, &args.file, &written)?;
     let topology = &mesh.posed.topology;
     let lod_view = |view: &View| Ok(mesh.lod_view(&mesh.camera(view)?));

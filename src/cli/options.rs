@@ -117,9 +117,13 @@ impl SurfaceOptions {
         let takes_heights = !self.height.is_empty() || own.displacement.is_on();
         let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);
         refuse(is_lost, "--height-scale and --midlevel need --height, or --displacement")?;
-        let has_strength = own.surface.is_phong() || other.is_some_and(Surface::is_phong);
+        let has_strength =
+            own.surface.is_phong() || other.is_some_and(Surface::is_phong) || self.weld.parts.shown().has_phong();
         let is_lost = !has_strength && own.alpha != usual.alpha;
-        refuse(is_lost, "--alpha needs --surface phong or phong-aen, whose strength it is")?;
+        refuse(
+            is_lost,
+            "--alpha needs phong or phong-aen, whose strength it is, as --surface or as the surface of a --part",
+        )?;
         let is_lost = self.max_triangles.is_some() && !own.lod.is_by_error();
         refuse(is_lost, "--max-triangles needs --lod error, whose tolerance it raises")
     }
@@ -309,9 +313,9 @@ pub struct PartOptions {
     /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
-    /// Give the part or group of this name a surface of its own, or LOD that is 1/64 to 16 times as fine, as `NAME:surface=flat`
-    /// or `NAME:surface=phong-aen,detail=2`. It may be given several times; the last that names a part counts. Where parts with
-    /// different surfaces meet, the edge has the one that comes first among those of `--surface`, and the finest detail
+    /// Give the part or group of this name a surface of its own, LOD 1/64 to 16 times as fine, or both, such as
+    /// `NAME:surface=flat,detail=0.5`; may be given several times. Materials can't have them. Edges between parts take the surface
+    /// that comes first in the list of `--surface`, and the finest detail
     #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
     part: Vec<(String, PartStyle)>,
     /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.
@@ -321,6 +325,13 @@ pub struct PartOptions {
 }
 
 impl PartOptions {
+    /// Says on standard error that styles of parts have no effect, if some are given that don't.
+    pub(crate) fn say_idle(&self, is_idle: fn(&PartStyle) -> bool, said: &str) {
+        if self.part.iter().any(|(_, style)| is_idle(style)) {
+            note(said);
+        }
+    }
+
     pub fn shown(&self) -> ShownParts {
         let (hidden, only) = (self.hide_part.clone(), self.show_part.clone());
         ShownParts { hidden, only, styles: self.part.clone(), morphs: self.morph.iter().cloned().collect() }

@@ -5,8 +5,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::options::LOD_OPTIONS;
-use super::{CliError, note, refuse};
+use super::options::{LOD_OPTIONS, PartOptions};
+use super::{CliError, SurfaceOptions, note, refuse};
 use geometry::mesh::{Mesh, Topology};
 use geometry::tessellate::{HullFactors, Tessellation};
 use gpu::{Given, SurfaceShader};
@@ -33,11 +33,13 @@ impl FactorsOption {
         &self,
         mesh: &Mesh,
         topology: &Topology,
-        tessellation: &Tessellation,
+        surface: &SurfaceOptions,
     ) -> Result<Option<GivenFactors>, CliError> {
-        let convention = tessellation.convention;
+        let Tessellation { convention, partitioning, .. } = surface.tessellation();
         let Some(path) = &self.given else { return Ok(None) };
-        let factors = read_factors(path, mesh, topology, tessellation.partitioning)?;
+        let parts = &surface.weld.parts;
+        parts.say_idle(|own| own.detail != 1.0, "the detail of --part has no effect under --factors");
+        let factors = read_factors(path, mesh, topology, partitioning)?;
         let agreement = Agreement::new(topology, &factors, convention);
         said(topology, &agreement, convention).iter().for_each(|line| note(line));
         let about = FactorsFile::new(path, topology, &agreement, convention);
@@ -56,10 +58,12 @@ pub struct LodShaderOption {
 
 impl LodShaderOption {
     /// Reads the file, if one was named.
-    pub fn read(&self, tessellation: &Tessellation) -> Result<Option<Given>, CliError> {
+    pub fn read(&self, surface: &SurfaceOptions) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
+        let parts = &surface.weld.parts;
+        parts.say_idle(|own| own.detail != 1.0, "the detail of --part has no effect under --lod-shader");
         refuse(
-            tessellation.partitioning.has_one_factor(),
+            surface.tessellation().partitioning.has_one_factor(),
             "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",
         )?;
         Ok(Some(Given::Shader(read_user_shader(path)?)))
@@ -88,7 +92,10 @@ pub struct SurfaceShaderOption {
 
 impl SurfaceShaderOption {
     /// Reads the file, if one was named.
-    pub fn read(&self) -> Result<Option<Arc<SurfaceShader>>, CliError> {
+    pub fn read(&self, parts: &PartOptions) -> Result<Option<Arc<SurfaceShader>>, CliError> {
+        if self.surface_shader.is_some() {
+            parts.say_idle(|own| own.surface.is_some(), "the surface of --part has no effect under --surface-shader");
+        }
         Ok(self.surface_shader.as_deref().map(read_user_shader).transpose()?)
     }
 
@@ -101,15 +108,6 @@ impl SurfaceShaderOption {
         refuse(
             gates.iter().any(|gate| gate.kind == GateKind::AboveTolerance),
             "--fail-on above-tolerance measures on the CPU, where the surface of --surface-shader isn't known: choose other gates",
-        )
-    }
-
-    /// Refuses to compare with the limit surface.
-    pub(crate) fn check_deviation(&self) -> Result<(), CliError> {
-        refuse(
-            self.surface_shader.is_some(),
-            "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
-             one with --reference-surface",
         )
     }
 }

@@ -130,10 +130,10 @@ impl ShotOptions {
     /// Like [`Self::subject`], for a mesh that was loaded as these options say.
     pub(super) fn subject_of(&self, loaded: Loaded) -> Result<(Subject, Option<FactorsFile>), CliError> {
         let limits = self.surface.weld.limit.limits();
-        let user_lod = self.user_lod.read(&self.surface.tessellation())?;
-        let surface_shader = self.user_surface.read()?;
+        let user_lod = self.user_lod.read(&self.surface)?;
+        let surface_shader = self.user_surface.read(&self.surface.weld.parts)?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
-        let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface.tessellation())?;
+        let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface)?;
         let reference_surface = self.reference_surface(&loaded)?;
         let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
         let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
@@ -170,9 +170,11 @@ impl ShotOptions {
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();
         let exact = loaded.source.shape().filter(|_| is_plain).and_then(ReferenceShape::from_shape);
-        if exact.is_none() {
-            self.user_surface.check_deviation()?;
-        }
+        refuse(
+            exact.is_none() && self.user_surface.surface_shader.is_some(),
+            "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
+             one with --reference-surface",
+        )?;
         Ok(exact.map(|exact| (loaded.source.to_string(), Arc::new(exact))))
     }
 

@@ -75,11 +75,11 @@ pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) 
     let shaders = [args.user_lod.lod_shader.as_deref(), args.user_surface.surface_shader.as_deref()];
     let read = [file_of(&args.file), factors, args.cameras.file()].into_iter().chain(shaders);
     keep_apart(read.chain(files_of_heights(&args.surface.height)), written.iter().copied())?;
-    let user_lod = args.user_lod.read(&args.surface.tessellation())?;
-    let surface_shader = args.user_surface.read()?;
+    let user_lod = args.user_lod.read(&args.surface)?;
+    let surface_shader = args.user_surface.read(&args.surface.weld.parts)?;
     let ready = Ready { args, mesh: Posed::load(&args.surface, &args.file, &written)? };
     let Loaded { mesh, topology, .. } = &ready.mesh.posed;
-    let given = args.given.read(mesh, topology, &args.surface.tessellation())?;
+    let given = args.given.read(mesh, topology, &args.surface)?;
     let given = given.map(|(factors, _)| factors);
     let views = views.iter().map(|view| Ok((view, ready.mesh.camera(view)?))).collect::<Result<Vec<_>, CliError>>()?;
     let failed = match args.device {

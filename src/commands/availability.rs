@@ -32,6 +32,8 @@ needs! {
     Document => "No mesh is open.",
     /// A mesh that a file has, with axes and a unit, and not a shape that is made in code.
     File => MADE_IN_CODE,
+    /// Polygons of the mesh's file, which can be the cage of a subdivision surface.
+    Cage => "Shapes and glTF files have triangles alone, and no polygons to subdivide.",
     /// Another mesh in the folder, or among those that were dropped together.
     Neighbours => "There is no other mesh in this file's folder.",
     /// A picture of the document.

@@ -64,7 +64,7 @@ fn file() -> Vec<Command> {
             "Opens the mesh before this one in the folder, or among the files that were dropped together.";
         "Reference surface…" in File 2 => beside(CompanionFile::ReferenceShape),
             "Opens the mesh that deviation and charts compare with, such as the high-poly original.";
-        "Compare with its subdivision limit" in File 2 needs Document => FileAction::CompareWithOwnLimit,
+        "Compare with its subdivision limit" in File 2 needs Document Cage => FileAction::CompareWithOwnLimit,
             "Takes the polygons of the mesh's file as the cage of a subdivision surface, and its limit as reference surface.";
         "Forget reference surface" in File 2 needs ReferenceShape => FileAction::Close(CompanionFile::ReferenceShape),
             "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.";

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, HashSet};
 use super::import::Import;
 use geometry::mesh::PartStyle;
 use geometry::names::shown;
+use geometry::tessellate::Surface;
 
 /// Weights of morph targets of glTF, and of blend shapes of FBX, by their names. Targets of one name have one weight.
 pub type MorphWeights = BTreeMap<String, f32>;
@@ -52,6 +53,11 @@ impl ShownParts {
     pub fn style(&self, name: &str) -> PartStyle {
         let own = self.styles.iter().filter(|(other, _)| other == name);
         own.fold(PartStyle::default(), |others, (_, style)| style.or(others))
+    }
+
+    /// Whether a part has a surface of its own that is Phong's, which has a strength.
+    pub fn has_phong(&self) -> bool {
+        self.styles.iter().any(|(_, style)| style.surface.is_some_and(Surface::is_phong))
     }
 
     /// Gives a part a style of its own, in the place of the one that it had.

@@ -359,6 +359,31 @@ fn a_section_may_hide_parts_that_only_some_of_its_assets_have() {
 }
 
 #[test]
+fn a_section_may_give_styles_to_parts_and_weights_to_targets_that_only_some_of_its_assets_have() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path("assets")).expect("a writable folder");
+    let part = |name: &str| format!("o {name}\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n");
+    for (name, parts) in [("both.obj", part("body") + &part("screen")), ("one.obj", part("body"))] {
+        std::fs::write(folder.path(&format!("assets/{name}")), parts).expect("a writable folder");
+    }
+    let config = "[options]\nfactor = 1\npartitioning = \"integer\"\npart = [\"screen:detail=2\", \"lamp:detail=2\"]\n\
+                  morph = \"body=0.5\"\n";
+    std::fs::write(folder.path("pnaen.toml"), config).expect("a writable folder");
+    let (code, json, errors) = check(&folder, &["--format", "json"]);
+    assert_eq!(code, Some(0), "{errors}");
+    for said in
+        ["pnaen.toml, line 4: no asset has the part lamp", "pnaen.toml, line 5: no asset has the morph target body"]
+    {
+        assert!(errors.contains(said), "{errors}");
+    }
+    assert!(!errors.contains("screen"), "{errors}");
+    let report: Value = serde_json::from_str(&json).expect("JSON");
+    for index in 0..2 {
+        assert!(report.pointer(&format!("/assets/{index}/views/0/numbers/triangles_in")).is_some(), "{json}");
+    }
+}
+
+#[test]
 fn odd_arguments_are_said() {
     let folder = Folder::new();
     let path = |name: &str| folder.path(name);

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, output, sentence, stats, vase};
+use crate::{Folder, both, failure, number, output, sentence, stats, vase};
 
 /// A square in the ground plane of a file whose z axis points up, 2 wide and 3 deep in millimetres.
 const GROUND: &str = "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\nf 1 2 3 4\n";
@@ -22,6 +22,29 @@ fn normals_are_made_with_the_crease_angle() {
     let errors = failure(&["info", vase(), "--crease-angle", "181"], 2);
     assert!(errors.contains("from 0 to 180"), "{errors}");
     failure(&["info", vase(), "--mesh-normals", "smooth"], 2);
+}
+
+#[test]
+fn styles_of_parts_that_have_no_effect_are_said() {
+    let folder = Folder::new();
+    let parts = folder.write("parts.obj", "v 0 0 0\nv 2 0 0\nv 2 3 0\nv 0 3 0\no door\nf 1 2 3\no window\nf 1 3 4\n");
+    let [json, csv, out] = ["out.json", "out.csv", "out.obj"].map(|name| folder.path(name));
+    let [lod, surface] =
+        ["lod/distance", "surface/pn"].map(|name| format!("{}/assets/{name}.wgsl", env!("CARGO_MANIFEST_DIR")));
+    let said = |arguments: &[&str], style: &str| {
+        let part = format!("door:{style}");
+        both(&[arguments, &["--part", &part]].concat()).1.contains("--part has no effect")
+    };
+    assert!(said(&["info", &parts], "surface=flat"));
+    assert!(said(&["adjacency", &parts, "-o", &json], "detail=2"));
+    let tessellate = ["tessellate", &parts, "-o", &out];
+    assert!(!said(&tessellate, "surface=flat,detail=2"));
+    let factors = ["factors", &parts, "-o", &csv, "--lod-shader", &lod];
+    assert!(said(&factors, "detail=2") && !said(&factors, "surface=flat"));
+    let given = [&tessellate[..], &["--factors", &csv]].concat();
+    assert!(said(&given, "detail=2") && !said(&given, "surface=flat"));
+    let shaded = [&tessellate[..], &["--surface-shader", &surface]].concat();
+    assert!(said(&shaded, "surface=flat") && !said(&shaded, "detail=2"));
 }
 
 #[test]
@@ -47,6 +70,12 @@ fn parts_are_listed_and_left_out() {
         stats(&[&parts, "--part", "-right:surface=flat,detail=2", "--factor", "4", "--partitioning", "integer"]);
     let usual = stats(&[&parts, "--factor", "4", "--partitioning", "integer"]);
     assert!(number(&styled, "/triangles_out") > number(&usual, "/triangles_out"), "edges take the finest: {styled}");
+    // Phong tessellation has its strength there too.
+    let out = folder.path("out.obj");
+    let of_part =
+        |style: &str, code| failure(&["tessellate", &parts, "-o", &out, "--alpha", "0.5", "--part", style], code);
+    of_part("-right:surface=phong", 0);
+    assert!(of_part("-right:detail=2", 2).contains("--alpha needs phong"));
     sentence(&["info", &parts, "--part", "bonnet:detail=2"], &["bonnet", "left door", "-right"]);
     sentence(&["info", &plain, "--part", "a:surface=flat"], &["no named parts", "--part"]);
     for text in ["-right", "-right:", "-right:surface=round", "-right:detail=0", "-right:detail=nan", "-right:size=2"] {

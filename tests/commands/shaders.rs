@@ -88,6 +88,7 @@ fn shaders_that_displace_by_the_view_say_what_finds_levels_at_points() {
         let readme = std::fs::read_to_string(format!("{out}/README.md")).expect("a file");
         let said = levels.unwrap_or("`kept_levels`");
         assert!(readme.contains(said) && readme.contains("zeros"), "README.md doesn't say {said}");
+        assert!(readme.contains("styles of `--part` aren't exported"), "{readme}");
         for name in there {
             let text = std::fs::read_to_string(format!("{out}/{name}")).expect("a file");
             assert!(["@D@", "@N@", "@U@", "@V@"].iter().all(|mark| !text.contains(mark)), "{name} has a mark left");

@@ -80,6 +80,11 @@ fn how_far_a_tessellated_cage_is_from_its_limit_surface_is_measured() {
     std::fs::write(&file, [CUBE, QUADS, "v 3 0 0\nf 1 2 9\n"].concat()).expect("a writable folder");
     let refused = failure(&[&["render", &*file, "-o", "a.png", "--subdivide", "none"][..], &reference].concat(), 1);
     assert!(refused.contains("can't be a reference surface") && refused.contains("3 faces meet"), "{refused}");
+    // What else is said about the file isn't why.
+    std::fs::write(&file, [CUBE, QUADS, "v 3 0 0\nf 1 2 9\nf 1 2\n"].concat()).expect("a writable folder");
+    let flawed = failure(&[&["render", &*file, "-o", "a.png", "--subdivide", "none"][..], &reference].concat(), 1);
+    assert!(flawed.contains("fewer than 3 corners"), "{flawed}");
+    assert_eq!(flawed.lines().last(), refused.lines().last());
 }
 
 /// Writes the cube, and returns its path.

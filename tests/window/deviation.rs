@@ -10,9 +10,10 @@ use inspect::render::layout::CRACK_COLOR;
 use inspect::settings::{Colors, Settings, SplitSide, SurfaceUnit};
 use load::Source;
 use pnaen::app::App;
+use pnaen::commands::{Action, FileAction, all};
 
 use crate::editing::{assert_draws, copied};
-use crate::{choose, click, open_list, press, settle, uniform, uniform_of, window};
+use crate::{choose, click, open_list, press, settle, uniform, uniform_of, vase, window};
 
 #[test]
 fn deviation_has_numbers_and_a_legend_and_a_click_frames_the_worst_point() {
@@ -116,6 +117,15 @@ fn a_mesh_is_compared_with_its_own_subdivision_limit() {
     harness.state_mut().redo(&context);
     settle(&mut harness);
     assert!(harness.state().has_own_limit());
+    // Undo that reads the limit again leaves the colours.
+    press(&mut harness, egui::Key::V);
+    click(&mut harness, "File");
+    click(&mut harness, "Forget reference surface");
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert!(harness.state().has_own_limit());
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Material);
+    press(&mut harness, egui::Key::V);
     // The file is written anew, longer on one side.
     std::fs::write(folder.path().join("cube.obj"), CUBE.replace("v -1", "v -1.5")).expect("a writable folder");
     harness.state_mut().reload(&context);
@@ -125,12 +135,47 @@ fn a_mesh_is_compared_with_its_own_subdivision_limit() {
     click(&mut harness, "File");
     click(&mut harness, "Forget reference surface");
     assert!(!harness.state().has_own_limit());
-    // A shape has no polygons of its own.
-    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
+    // A shape and a glTF file have no polygons of their own.
+    let why_not = |harness: &Harness<App>| {
+        let availability = harness.state().availability();
+        let command = all(&availability).into_iter().find(|command| command.name == compare).expect("a command");
+        command.why_not(&availability)
+    };
+    assert_eq!(why_not(&harness), None);
+    for source in [Source::Shape(Shape::Torus), vase()] {
+        harness.state_mut().open(&context, source);
+        settle(&mut harness);
+        assert!(why_not(&harness).is_some_and(|why| why.contains("no polygons to subdivide")));
+    }
+}
+
+#[test]
+fn a_limit_that_is_read_while_the_mesh_is_prepared_anew_is_that_of_the_new_mesh() {
+    // Reading its limit takes longer than preparing the cube.
+    const SIDE: usize = 32;
+    let points = (0..=SIDE).flat_map(|y| (0..=SIDE).map(move |x| format!("v {} {y} 0\n", 100 + x)));
+    let faces = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| 9 + y * (SIDE + 1) + x));
+    let faces = faces.map(|first| format!("f {first} {} {} {}\n", first + 1, first + SIDE + 2, first + SIDE + 1));
+    let sheet: String = points.chain(faces).collect();
+    let (_folder, mut harness) = uniform_of("parts.obj", format!("o cube\n{CUBE}o sheet\n{sheet}"));
+    choose(&mut harness, "Surface", "Flat");
+    let context = harness.ctx.clone();
+    let hide = |harness: &mut Harness<App>, part: &str| {
+        harness.state_mut().prepare(&context, |own| own.parts.hidden = vec![part.to_owned()]);
+    };
+    hide(&mut harness, "cube");
     settle(&mut harness);
-    click(&mut harness, "File");
-    click(&mut harness, compare);
-    assert!(harness.query_by_label_contains("can't be a reference surface").is_some());
+    let compare = Action::File(FileAction::CompareWithOwnLimit);
+    let commands = all(&harness.state().availability());
+    let compare = commands.iter().find(|command| command.action == compare).expect("a command");
+    harness.state_mut().give(&context, compare);
+    hide(&mut harness, "sheet");
+    settle(&mut harness);
+    assert!(harness.state().has_own_limit());
+    assert_eq!(harness.state().settings().overlays.colors, Colors::Deviation);
+    // The cube's own limit, and not that of the sheet, which is 100 units away.
+    let largest = harness.state().deviation(SplitSide::Right).expect("measured");
+    assert!((largest - 0.75_f64.sqrt()).abs() < 0.01, "{largest}");
 }
 
 /// The distance between the inscribed and the circumscribed sphere of an icosahedron, of radius 1.

@@ -1,11 +1,15 @@
 //! The weights of the file's morph targets: slid, reset, undone, and in the command that draws the same.
 
+use std::time::{Duration, Instant};
+
 use documents::moving::moving;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use load::Source;
 use pnaen::app::App;
 
+use crate::driver::PATIENCE;
 use crate::{click, scroll_to, settle, uniform, uniform_of, vase};
 
 /// The least x of the mesh: the beam's upper end, which is 1 wide, swells by 0.8 of that at a weight of 1.
@@ -41,6 +45,33 @@ fn morph_targets_are_weighed_undone_and_reset() {
     assert!(near(least(&harness), -0.9));
     click(&mut harness, "Reset morph targets");
     assert!(near(least(&harness), -0.6) && chosen(&harness).is_empty() && weight(&harness) == Some(0.25));
+}
+
+#[test]
+fn a_drag_loads_the_mesh_anew_while_a_reference_surface_is_being_read() {
+    // Reading it takes longer than loading the beam.
+    const SIDE: usize = 450;
+    let points = (0..=SIDE).flat_map(|y| (0..=SIDE).map(move |x| format!("v {x} {y} 0\n")));
+    let faces = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| 1 + y * (SIDE + 1) + x));
+    let faces = faces.map(|first| format!("f {first} {} {} {}\n", first + 1, first + SIDE + 2, first + SIDE + 1));
+    let (folder, mut harness) = uniform_of("moving.glb", moving());
+    let sheet = folder.path().join("sheet.obj");
+    std::fs::write(&sheet, points.chain(faces).collect::<String>()).expect("a writable folder");
+    scroll_to(&mut harness, "Reset morph targets");
+    let slider = harness.get_by_role_and_label(Role::Slider, "Swell").rect();
+    let place = slider.left_center() + egui::vec2(0.4 * slider.width(), 0.0);
+    harness.hover_at(place);
+    harness.run_steps(1);
+    let context = harness.ctx.clone();
+    harness.state_mut().open_reference_shape(&context, Source::File(sheet));
+    harness.drag_at(place);
+    let start = Instant::now();
+    while (least(&harness) + 0.6).abs() < 1e-5 {
+        assert!(start.elapsed() < PATIENCE, "the mesh isn't loaded anew");
+        std::thread::sleep(Duration::from_millis(2));
+        harness.step();
+    }
+    assert!(harness.state().reference_shape().is_none(), "it isn't read yet");
 }
 
 #[test]

@@ -9,7 +9,8 @@ use geometry::tessellate::Surface;
 use load::ShownParts;
 use pnaen::app::App;
 
-use crate::{click, scroll_to, settle, switch, uniform_of};
+use crate::editing::copied;
+use crate::{click, press, scroll_to, settle, switch, uniform_of};
 
 /// A file of eleven parts, each a square of its own.
 fn eleven_parts() -> String {
@@ -52,6 +53,7 @@ fn parts_are_filtered_shown_alone_and_framed() {
 #[test]
 fn a_part_gets_a_surface_and_a_detail_of_its_own() {
     let (_folder, mut harness) = uniform_of("parts.obj", eleven_parts());
+    assert!(harness.query_by_label("Phong strength").is_none());
     scroll_to(&mut harness, "Filter parts by name");
     click(&mut harness, "Filter parts by name");
     harness.get_by_label("Filter parts by name").type_text("Part7");
@@ -67,6 +69,12 @@ fn a_part_gets_a_surface_and_a_detail_of_its_own() {
     assert!(matches!(&styles(&harness)[..], [(name, own)] if name.ends_with("Part7") && *own == style));
     assert_eq!(harness.state().loaded().expect("a mesh").mesh.part_styles[7], style);
     harness.get_by_label("surface=phong-aen,detail=0.5");
+    harness.get_by_role_and_label(Role::Slider, "Phong strength").set_value_accesskit(0.5);
+    settle(&mut harness);
+    assert_eq!(harness.state().settings().tessellation.alpha, 0.5);
+    let command = copied(&mut harness);
+    assert!(command.contains("--alpha 0.5"), "{command}");
+    press(&mut harness, egui::Key::Escape);
     click(&mut harness, "Show only Part7");
     assert_eq!(styles(&harness).len(), 1, "what is shown doesn't change it");
 }

@@ -4,7 +4,8 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers, Theme};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use geometry::mesh::Shape;
+use geometry::mesh::{PartStyle, Shape};
+use geometry::tessellate::Surface;
 use geometry::view::project;
 use inspect::render::layout::{AXIS_COLORS, CRACK_COLOR, LOD_CAMERA_COLOR};
 use inspect::render::{Camera, Standpoint};
@@ -15,7 +16,7 @@ use pnaen::app::App;
 use crate::editing::{assert_draws, copied, press_with};
 use crate::{
     PATIENCE, choose, click, copy_vase, open, open_all_sections, press, resumed, settle, switch, unfolded, uniform,
-    window,
+    uniform_of, window,
 };
 
 /// How many px of the picture have about this sRGB colour.
@@ -317,6 +318,35 @@ fn an_arrow_that_is_seen_from_its_end_is_upright_and_drags() {
 }
 
 #[test]
+fn a_drag_of_the_sections_arrow_from_a_place_that_comes_behind_the_eye_leaves_the_camera() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Icosphere)));
+    choose(&mut harness, "Section", "-Z");
+    harness.get_by_role_and_label(Role::Slider, "Section at").set_value_accesskit(0.9);
+    settle(&mut harness);
+    press(&mut harness, Key::Num1);
+    let from = arrow(&harness).center();
+    harness.hover_at(from);
+    harness.run_steps(1);
+    harness.drag_at(from);
+    for points in [50.0, 100.0, 150.0] {
+        harness.run_steps(2);
+        harness.hover_at(from + egui::vec2(0.0, points));
+    }
+    settle(&mut harness);
+    let at = harness.state().settings().section_at;
+    assert!((at - 0.15).abs() < 0.01, "{at}");
+    // The start of the drag is 0.8 before the middle of the sphere.
+    for _ in 0..10 {
+        press(&mut harness, Key::PageUp);
+    }
+    let camera = *harness.state().camera();
+    assert!(camera.distance < 0.75, "{}", camera.distance);
+    harness.hover_at(from + egui::vec2(60.0, 190.0));
+    harness.run_steps(2);
+    assert_eq!((*harness.state().camera(), harness.state().settings().section_at), (camera, at));
+}
+
+#[test]
 fn the_sections_arrow_is_seen_in_both_themes() {
     for theme in [Theme::Dark, Theme::Light] {
         let mut harness = uniform(Some(Source::Shape(Shape::Icosphere)));
@@ -367,6 +397,28 @@ fn a_preview_is_shown_while_the_camera_moves_and_the_full_picture_follows() {
     let previews = harness.state().previews();
     press(&mut harness, Key::ArrowRight);
     assert_eq!(harness.state().previews(), previews);
+}
+
+#[test]
+fn a_part_keeps_its_own_surface_in_previews() {
+    // More triangles than previews on a driver for software draw as they are.
+    const SIDE: usize = 60;
+    let points = (0..=SIDE).flat_map(|y| (0..=SIDE).map(move |x| format!("v {x} {y} 0\n")));
+    let faces = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| 1 + y * (SIDE + 1) + x));
+    let faces = faces.map(|first| format!("f {first} {} {} {}\n", first + 1, first + SIDE + 2, first + SIDE + 1));
+    let sheet: String = points.chain(faces).collect();
+    let (_folder, mut harness) = uniform_of("sheet.obj", format!("o sheet\n{sheet}"));
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(16.0);
+    let (context, style) = (harness.ctx.clone(), PartStyle { surface: Some(Surface::Flat), ..PartStyle::default() });
+    harness.state_mut().prepare(&context, |own| own.parts.set_style("sheet", style));
+    settle(&mut harness);
+    // A simplified mesh would be made in the meantime.
+    for _ in 0..2 {
+        move_until_previewed(&mut harness, Key::ArrowRight);
+        assert!(harness.query_by_label_contains("Preview: a simplified mesh").is_none());
+        settle(&mut harness);
+        std::thread::sleep(std::time::Duration::from_millis(500));
+    }
 }
 
 #[test]

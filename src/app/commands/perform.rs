@@ -10,6 +10,7 @@ use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS,
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
 use inspect::settings::{ColorSource, Declaration, Settings, options};
+use load::format::Format;
 use load::{HeightSource, Import, Source};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
@@ -25,9 +26,12 @@ impl App {
         let lets_lod = self.given.is_none() && !self.uses_lod_shader();
         let document = self.document.as_ref();
         let (bookmarks, clips) = (self.viewport.bookmarks.len(), self.clip_names());
+        let has_cage =
+            matches!(self.source(), Some(Source::File(path)) if Format::from_name(path) != Some(Format::Gltf));
         let needs = [
             (Need::Document, document.is_some()),
             (Need::File, self.source().is_some_and(|source| source.shape().is_none())),
+            (Need::Cage, has_cage),
             (Need::Neighbours, document.is_some_and(|document| document.neighbours.is_some())),
             (Need::Picture, self.viewport.picture.drawn.is_some()),
             (Need::NoWriting, !self.is_writing()),
@@ -95,7 +99,8 @@ impl App {
             Action::FoldAllSections => self.panels.open.set_all(false),
             Action::Warnings => self.dialogs.shows_warnings = true,
             Action::FreezeLodCamera => self.toggle_frozen(),
-            Action::Ruler => self.toggle_ruler(),
+            // Clicks take places until it is stopped.
+            Action::Ruler => self.viewport.ruler = self.viewport.ruler.is_none().then(Default::default),
             Action::Previews => self.switch_previews(),
             Action::AddBookmark if self.viewport.bookmarks.contains(&self.viewport.camera) => {}
             Action::AddBookmark => self.viewport.bookmarks.push(self.viewport.camera),

@@ -217,7 +217,9 @@ impl App {
             self.follow_reference_shape(context, is_turned);
         }
         if keep_view && is_turned {
-            self.follow_left_mesh(context);
+            // The mesh of another file is turned and scaled as this one is.
+            let left = self.left_mesh.as_ref().and_then(|left| left.from.clone());
+            left.into_iter().for_each(|source| self.open_left_mesh(context, source));
             self.forget_before();
         }
         let is_first = before.is_none();

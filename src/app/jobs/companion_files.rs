@@ -159,6 +159,7 @@ impl App {
         let subdivide = if from.is_some() { Subdivide::File } else { self.own_scheme() };
         let what = from.as_ref().unwrap_or(&own).title();
         let wanted = from.clone();
+        self.jobs.reference = (from.clone(), is_chosen);
         let load = move |progress: &Progress| {
             let found = engine::load_reference(wanted.as_ref(), (&own, &preparation), subdivide, progress);
             found.map(Arc::new).map_err(|error| error.to_string())
@@ -173,13 +174,16 @@ impl App {
         self.read_companion(context, CompanionFile::ReferenceShape, title, what, load, take);
     }
 
-    /// Loads the reference surface again after the mesh was: the limit of its own cage, or if the mesh was turned or scaled a
-    /// file.
+    /// Loads the reference surface again after the mesh was, also one that is still being read: the limit of its own cage, or if the
+    /// mesh was turned or scaled a file.
     pub(in crate::app) fn follow_reference_shape(&mut self, context: &egui::Context, is_turned: bool) {
-        let chosen = self.reference_shape.as_ref().map(|chosen| chosen.from.clone());
-        let follows = |from: &Option<Source>| from.as_ref().is_none_or(|source| is_turned && source.shape().is_none());
-        if let Some(from) = chosen.filter(follows) {
-            self.read_reference(context, from, false);
+        let chosen = self.reference_shape.as_ref().map(|chosen| (chosen.from.clone(), false));
+        let is_read = self.jobs.has(Work::Companion(CompanionFile::ReferenceShape));
+        let read = is_read.then(|| self.jobs.reference.clone());
+        if let Some((from, is_chosen)) = read.or(chosen)
+            && from.as_ref().is_none_or(|source| is_turned && source.shape().is_none())
+        {
+            self.read_reference(context, from, is_chosen);
         }
     }
 
@@ -234,12 +238,6 @@ impl App {
         self.read_companion(context, CompanionFile::LeftMesh, title, source.title(), load, |app, loaded| {
             app.left_mesh = Some(Opened::new(Some(source), loaded));
         });
-    }
-
-    /// Loads the mesh of another file again, which is turned and scaled as the mesh is.
-    pub(in crate::app) fn follow_left_mesh(&mut self, context: &egui::Context) {
-        let source = self.left_mesh.as_ref().and_then(|left| left.from.clone());
-        source.into_iter().for_each(|source| self.open_left_mesh(context, source));
     }
 
     /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.

@@ -103,6 +103,9 @@ pub(crate) struct Jobs {
     pub last_load: Option<Load>,
     /// The file of light that is being read, or was read last.
     pub light: Option<PathBuf>,
+    /// The source of the reference surface that is being read, or was read last; none for the limit of the mesh's own cage. Then
+    /// whether deviation is shown once it is read.
+    pub reference: (Option<Source>, bool),
 }
 
 impl Jobs {

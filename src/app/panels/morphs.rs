@@ -32,7 +32,7 @@ impl App {
             weights.clear();
         }
         // A drag is followed from load to load: if each step stopped the load before it, none would be seen.
-        if weights != before && self.is_opening() && ui.ctx().egui_is_using_pointer() {
+        if weights != before && self.jobs.load().is_some() && ui.ctx().egui_is_using_pointer() {
             self.panels.dragged_morphs = Some(weights);
         } else {
             self.prepare(ui.ctx(), |preparation| preparation.parts.morphs = weights);

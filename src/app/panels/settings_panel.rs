@@ -115,7 +115,13 @@ impl App {
         if !self.surface_shader_rows(ui) {
             option_row(ui, &options::SURFACE, &mut self.settings, "");
         }
-        shown_option_row(ui, &options::ALPHA, &mut self.settings);
+        let mut shown = self.settings;
+        if self.preparation().parts.has_phong() {
+            // The strength is that of parts, whatever the surface of the others is.
+            shown.tessellation.surface = Surface::Phong;
+        }
+        shown_option_row(ui, &options::ALPHA, &mut shown);
+        self.settings.tessellation.alpha = shown.tessellation.alpha;
         if self.settings.split.is_some() && self.panels.edited == SplitSide::Right {
             self.left_mesh_row(ui);
             self.left_row(ui);

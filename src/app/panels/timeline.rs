@@ -47,7 +47,11 @@ impl App {
     fn clip_list(&mut self, ui: &mut Ui) {
         let before = self.viewport.playback.clip;
         let mut chosen = before;
-        let texts: Vec<_> = self.clips().iter().take(LISTED).map(clip_texts).collect();
+        // A name short enough for the list, and a hover text.
+        let texts = |clip: &Clip| {
+            (shortened(&clip.name, 18), format!("{}: {:.3} s.", shortened(&clip.name, 200), clip.duration))
+        };
+        let texts: Vec<_> = self.clips().iter().take(LISTED).map(texts).collect();
         let clips = texts.iter().enumerate().map(|(i, (name, hover))| (Some(i), name.as_str(), hover.as_str()));
         let rest = (None, "Rest pose", "The mesh as it is without any clip.");
         let choices: Vec<_> = std::iter::once(rest).chain(clips).collect();
@@ -100,9 +104,4 @@ impl App {
         let response = ui.add_enabled(duration > 0.0, slider).labelled_by(label.id);
         response.on_hover_text(hover).on_disabled_hover_text(why_not);
     }
-}
-
-/// A clip's name, short enough for the list, and its hover text.
-fn clip_texts(clip: &Clip) -> (String, String) {
-    (shortened(&clip.name, 18), format!("{}: {:.3} s.", shortened(&clip.name, 200), clip.duration))
 }

@@ -120,10 +120,11 @@ impl SavedState {
     /// Returns the JSON text, with a line end.
     pub(super) fn written(&self) -> String {
         let files: Vec<Value> = self.files.iter().map(SavedFile::written).collect();
+        let is_open = |&section: &Section| (section.title().to_owned(), Value::from(self.open.has(section)));
         let mut written = json!({
             "settings": written_settings(&self.settings),
             "window": self.frame.written(),
-            "sections": written_open(&self.open),
+            "sections": Section::ALL.iter().map(is_open).collect::<Value>(),
             "files": files,
         });
         KEPT.iter().zip(&self.companions).for_each(|((_, name), path)| written[*name] = json!(path));
@@ -156,10 +157,6 @@ fn read_open(value: &Value) -> OpenSections {
         open.set(section, Fields(value).switch(section.title(), open.has(section)));
     }
     open
-}
-
-fn written_open(open: &OpenSections) -> Value {
-    Section::ALL.iter().map(|&section| (section.title().to_owned(), Value::from(open.has(section)))).collect()
 }
 
 impl WindowGeometry {

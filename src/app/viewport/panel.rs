@@ -346,7 +346,9 @@ impl App {
         let widest = notes.iter().map(|(galley, _)| galley.size().x).fold(0.0, f32::max);
         // In a narrow picture they are above the progress.
         let progress = progress_place(rect);
-        let is_companion = !self.shows_progress() || rect.left() + 10.0 + widest + 12.0 < progress.left();
+        let shows_progress =
+            self.under_way().is_some() || self.viewport.picture.cancelled.is_some() || self.shows_nothing();
+        let is_companion = !shows_progress || rect.left() + 10.0 + widest + 12.0 < progress.left();
         let bottom = if is_companion { rect.bottom() } else { progress.top() };
         let mut position = egui::pos2(rect.left() + 10.0, bottom - 10.0);
         for (galley, text) in notes {
@@ -371,11 +373,6 @@ impl App {
         let response = ui.interact(place, ui.scope_id().with("greeting"), Sense::empty());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, GREETING));
         paint_note(ui, place, text);
-    }
-
-    /// Whether there is a box with the progress of something, at the lower border of the picture.
-    fn shows_progress(&self) -> bool {
-        self.under_way().is_some() || self.viewport.picture.cancelled.is_some() || self.shows_nothing()
     }
 
     /// Notes about what is under way: the progress of loading, writing and drawing.

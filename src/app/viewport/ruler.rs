@@ -47,11 +47,6 @@ impl Ruler {
 }
 
 impl App {
-    /// Starts to measure distances: clicks take places until it is stopped.
-    pub(in crate::app) fn toggle_ruler(&mut self) {
-        self.viewport.ruler = self.viewport.ruler.is_none().then(Ruler::default);
-    }
-
     /// The ends of the distance that is measured, in object units.
     pub fn ruler(&self) -> Option<[Option<Vec3>; 2]> {
         self.viewport.ruler.map(|ruler| ruler.ends)

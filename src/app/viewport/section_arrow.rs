@@ -79,7 +79,9 @@ impl App {
         });
         match dragged.or(asked) {
             Some(to) => self.settings.section_at = to,
-            None => self.move_camera(ui, &response, picture),
+            None if from.is_none() => self.move_camera(ui, &response, picture),
+            // The place that it is dragged from is behind the eye now.
+            None => {}
         }
         for stroke in handle_strokes(&response) {
             ui.painter().circle_filled(middle, 1.5 * stroke.width, stroke.color);

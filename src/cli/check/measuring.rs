@@ -10,31 +10,31 @@ use image::DynamicImage;
 use image::imageops::FilterType;
 
 use super::golden::Compared;
-use super::plan::Job;
+use super::plan::{Job, Named};
 use crate::cli::{CliError, file_error, file_of, note};
 use geometry::names::on_one_line;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded, Preparation};
 use inspect::shot::png_bytes;
 use lab::check::{Asset, Cache, GOLDEN, GateResult, View};
-use load::LoadError;
 use load::files::file_reason;
 use load::selection::is_part_of;
+use load::{LoadError, ShownParts};
 
 /// The most px along a side of a picture on the page.
 const MOST_PX: u32 = 704;
 
-/// The files that were read of an asset, and the parts that are to be left out and that it doesn't have.
-type Read = (Vec<PathBuf>, Vec<String>);
+/// The files that were read of an asset, and what options name and it doesn't have.
+type Read = (Vec<PathBuf>, Vec<Named>);
 
-/// What is found about an asset, and which parts that are to be left out it doesn't have, if that is known. An asset that can't be checked
-/// has the reason; so has one at which the program panics.
+/// What is found about an asset, and what options name and it doesn't have, if that is known. An asset that can't be checked has the
+/// reason; so has one at which the program panics.
 pub(super) fn measured(
     job: &Job,
     engine: &Engine,
     pictures: bool,
     cache: Option<&Cache>,
-) -> (Asset, Option<Vec<String>>) {
+) -> (Asset, Option<Vec<Named>>) {
     let (start, begun) = (SystemTime::now(), Instant::now());
     let mut asset = Asset { path: job.name.clone(), ..Asset::default() };
     let ended = catch_unwind(AssertUnwindSafe(|| measure(job, engine, pictures, &mut asset)));
@@ -91,21 +91,34 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
     Ok((files, absent))
 }
 
-/// Loads an asset. What the configuration hides may be parts of other assets: these are returned too.
-fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<(Loaded, Vec<String>), LoadError> {
+/// Loads an asset. What the configuration hides, gives a style or weighs may be parts and morph targets of other assets: these are
+/// returned too.
+fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<(Loaded, Vec<Named>), LoadError> {
     let mut absent = Vec::new();
-    let loaded = match inspect::engine::load(&job.source, &preparation, progress) {
-        Err(LoadError::Absent { what: "part", known, .. }) => {
-            absent = preparation
-                .parts
-                .hidden
-                .extract_if(.., |part| !known.iter().any(|known| is_part_of(known, part)))
-                .collect();
-            inspect::engine::load(&job.source, &preparation, progress)
+    loop {
+        let loaded = inspect::engine::load(&job.source, &preparation, progress);
+        let before = absent.len();
+        if let Err(LoadError::Absent { what, known, .. }) = &loaded {
+            absent.extend(without_absent(&mut preparation.parts, *what, known));
         }
-        other => other,
+        if absent.len() == before {
+            return Ok((loaded?, absent));
+        }
+    }
+}
+
+/// Takes out of the parts or the morph targets those that aren't among the known ones.
+fn without_absent(own: &mut ShownParts, what: &'static str, known: &[String]) -> Vec<Named> {
+    let is_absent = |name: &str| !known.iter().any(|known| is_part_of(known, name));
+    let names: Vec<String> = match what {
+        "part" => {
+            let styles = own.styles.extract_if(.., |(name, _)| is_absent(name)).map(|(name, _)| name);
+            own.hidden.extract_if(.., |name| is_absent(name)).chain(styles).collect()
+        }
+        "morph target" => own.morphs.extract_if(.., |name, _| !known.contains(name)).map(|(name, _)| name).collect(),
+        _ => Vec::new(),
     };
-    Ok((loaded?, absent))
+    names.into_iter().map(|name| (what, name)).collect()
 }
 
 /// A picture as it is on the page: no larger than it is shown there on a dense screen, a PNG file in base64.

@@ -37,14 +37,17 @@ pub(super) struct Job {
     pub views: Vec<(String, ShotOptions)>,
     /// Files that the options name.
     pub read: Vec<PathBuf>,
-    /// The parts that are left out, each with a sentence for the case that no asset has it.
-    pub hidden: Vec<(String, String)>,
+    /// The parts and morph targets that options name and only some assets may have, each with a sentence for the case that none has.
+    pub named: Vec<(Named, String)>,
     pub golden: Option<Golden>,
     /// All of the configuration that holds for it, as text.
     configuration: String,
     /// Whether what is found may be kept.
     pub is_kept: bool,
 }
+
+/// A part or a morph target that an option names: which of them, and its name.
+pub(super) type Named = (&'static str, String);
 
 impl Job {
     pub(super) fn inputs(&self) -> Inputs<'_> {
@@ -167,8 +170,7 @@ fn job(
         let [name, value] = ARENA.map(str::to_owned);
         options.push(OptionValue { name, values: vec![Some(value)], line: 0 });
     }
-    let hidden = options.iter().filter(|option| option.name == "hide-part").flat_map(|option| hidden(config, option));
-    let hidden = hidden.collect();
+    let named = options.iter().flat_map(|option| named(config, option)).collect();
     let mut views = Vec::new();
     if cameras.is_empty() {
         views.push((String::new(), parsed(config, &options, &source)?));
@@ -192,13 +194,21 @@ fn job(
         && views.iter().all(|(_, options)| !matches!(options.reference.reference_shape, Some(Source::File(_))));
     let pictures = args.page.is_some();
     let configuration = format!("{gates:?} {views:?} {pictures} {golden:?} {:?}", args.adapter.adapter);
-    Ok(Job { source, name, gates, views, read, hidden, golden, configuration, is_kept })
+    Ok(Job { source, name, gates, views, read, named, golden, configuration, is_kept })
 }
 
-/// The parts that an option leaves out, each with a sentence for the case that no asset has it.
-fn hidden(config: &Config, option: &OptionValue) -> impl Iterator<Item = (String, String)> {
-    let said = |part: &String| config.wrong(option, &format!("no asset has the part {}", shown(part))).to_string();
-    option.values.iter().flatten().map(move |part| (part.clone(), said(part)))
+/// The parts and morph targets that an option names and only some assets may have, each with a sentence for the case that none has.
+fn named(config: &Config, option: &OptionValue) -> Vec<(Named, String)> {
+    let (what, after) = match &*option.name {
+        "hide-part" => ("part", None),
+        "part" => ("part", Some(':')),
+        "morph" => ("morph target", Some('=')),
+        _ => return Vec::new(),
+    };
+    let name =
+        |value: &str| after.and_then(|after| value.rsplit_once(after)).map_or(value, |(name, _)| name).to_owned();
+    let said = |name: &str| config.wrong(option, &format!("no asset has the {what} {}", shown(name))).to_string();
+    option.values.iter().flatten().map(|value| ((what, name(value)), said(&name(value)))).collect()
 }
 
 /// Makes the paths of an option relative to the configuration's folder. Returns the files; none of an option that names no files.

@@ -134,7 +134,9 @@ impl ReferenceShape {
             let import = if shape.is_some() { Import::default() } else { import };
             let loaded = source.load_selected(Selection { import, ..selected }, limits, progress)?;
             if refines_all && !loaded.is_refined {
-                let said = loaded.warnings.join(" ");
+                // Other warnings aren't about what is refined.
+                let of_cage = |warning: &&String| warning.contains("control cage");
+                let said = loaded.warnings.iter().filter(of_cage).cloned().collect::<Vec<_>>().join(" ");
                 return Err(refused(if said.is_empty() { NOT_REFINED } else { &said }));
             }
             let read = Reference::new(&loaded.mesh).ok_or_else(|| refused("it has no triangles"))?;

@@ -201,7 +201,8 @@ pub(super) fn text(export: &Export) -> String {
         }
     };
     format!(
-        "# Tessellation shaders: {name}\n\nMade by pnaen {}: `{}`\n\n{}.\n\n{lod} {edges}\n\n## Buffers\n\nVertex buffer, 32 bytes \
+        "# Tessellation shaders: {name}\n\nMade by pnaen {}: `{}`\n\n{}. All parts of a mesh have the same: styles of `--part` aren't \
+         exported.\n\n{lod} {edges}\n\n## Buffers\n\nVertex buffer, 32 bytes \
          a corner: position (3 x f32, object units), unit normal (3 x f32), texture coordinates (2 x f32).\n\nIndex buffer, u32: \
          {}.\n\nConstant buffer, {CONSTANTS_BYTES} bytes:\n\n{}\n{relief}{}\n## Licence\n\nMIT OR Apache-2.0, at your option. \
          Copyright (c) 2026 the pnaen authors.\n",

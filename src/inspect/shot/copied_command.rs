@@ -134,7 +134,10 @@ impl CopiedCommand<'_> {
             (self.surface_shader.is_some() && name == options::SURFACE.name)
                 || (self.matcap_image.is_some() && name == options::MATCAP.name)
         };
-        let written = |option: &&Declaration| (option.no_effect)(&own).is_none() && !is_replaced(option.name);
+        let is_of_part = |name: &str| name == options::ALPHA.name && self.preparation.parts.has_phong();
+        let written = |option: &&Declaration| {
+            ((option.no_effect)(&own).is_none() || is_of_part(option.name)) && !is_replaced(option.name)
+        };
         // The left half is said by what differs from the right one, as whoever reads the command gets that.
         let mut said = usual;
         options::TESSELLATION
