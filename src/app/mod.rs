@@ -3,6 +3,7 @@
 mod commands;
 mod dialogs;
 mod document;
+mod for_tests;
 mod history;
 mod jobs;
 mod painting;
@@ -25,7 +26,7 @@ use image::RgbaImage;
 use geometry::mesh::Texture;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use inspect::engine::{Engine, Loaded};
-use inspect::measure::{Cracks, Sizes};
+use inspect::measure::Cracks;
 use inspect::render::Camera;
 use inspect::settings::{Settings, SplitSide};
 use load::Source;
@@ -37,7 +38,7 @@ use document::Document;
 use history::{History, Undoable, ViewHistory};
 use jobs::companion_files::{ChosenReferenceShape, LeftMesh, Light, OpenFile};
 use jobs::given_factors::GivenFactors;
-use jobs::job_list::{Jobs, Work};
+use jobs::job_list::Jobs;
 use jobs::user_shader_job::OpenShader;
 use painting::{Painting, panel_frame};
 use panels::Panels;
@@ -149,14 +150,6 @@ impl App {
         self.found(SplitSide::Right).map(|found| &found.cracks)
     }
 
-    /// Sizes of the triangles shown, if they were measured for the present view, or for the frozen one if there is one.
-    pub fn sizes_shown(&self) -> Option<&Sizes> {
-        let bounds = self.document.as_ref()?.scene.bounds;
-        let frozen = self.viewport.frozen.map(|frozen| frozen.screen_view(&bounds));
-        let seen_from = frozen.or(self.viewport.picture.seen_from())?;
-        self.last_results().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
-    }
-
     /// The selected edge: an index into the topology's edges.
     pub fn selected_edge(&self) -> Option<u32> {
         self.document.as_ref()?.selection.edge
@@ -203,16 +196,6 @@ impl App {
         self.viewport.preview.drawings
     }
 
-    /// How many previews have been drawn out of sight, before the camera moved.
-    pub fn warm_ups(&self) -> u64 {
-        self.viewport.warm_up.drawings
-    }
-
-    /// Whether such a preview is being drawn.
-    pub fn is_warming_up(&self) -> bool {
-        self.viewport.warm_up.is_busy()
-    }
-
     pub fn switch_previews(&mut self) {
         self.viewport.preview.is_on = !self.viewport.preview.is_on;
     }
@@ -232,11 +215,6 @@ impl App {
         let looks = self.viewport.pointer.as_ref().is_some_and(PointerValue::is_busy);
         let measures = self.document.as_ref().is_some_and(Document::is_busy);
         self.jobs.is_busy() || measures || looks || self.viewport.picture.is_busy()
-    }
-
-    /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.
-    pub fn is_checking(&self) -> bool {
-        self.jobs.has(Work::Checks)
     }
 }
 

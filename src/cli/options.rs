@@ -117,6 +117,8 @@ impl SurfaceOptions {
         let takes_heights = !self.height.is_empty() || own.displacement.is_on();
         let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);
         refuse(is_lost, "--height-scale and --midlevel need --height, or --displacement")?;
+        let is_lost = own == Tessellation::untessellated() && !self.weld.parts.shown().styles.is_empty();
+        refuse(is_lost, "--part has no effect on the mesh as it is: choose another surface, factor or partitioning")?;
         let has_strength =
             own.surface.is_phong() || other.is_some_and(Surface::is_phong) || self.weld.parts.shown().has_phong();
         let is_lost = !has_strength && own.alpha != usual.alpha;

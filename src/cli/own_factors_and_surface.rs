@@ -38,7 +38,7 @@ impl FactorsOption {
         let Tessellation { convention, partitioning, .. } = surface.tessellation();
         let Some(path) = &self.given else { return Ok(None) };
         let parts = &surface.weld.parts;
-        parts.say_idle(|own| own.detail != 1.0, "the detail of --part has no effect under --factors");
+        parts.say_idle(|own| own.detail.is_some(), "the detail of --part has no effect under --factors");
         let factors = read_factors(path, mesh, topology, partitioning)?;
         let agreement = Agreement::new(topology, &factors, convention);
         said(topology, &agreement, convention).iter().for_each(|line| note(line));
@@ -61,7 +61,7 @@ impl LodShaderOption {
     pub fn read(&self, surface: &SurfaceOptions) -> Result<Option<Given>, CliError> {
         let Some(path) = &self.lod_shader else { return Ok(None) };
         let parts = &surface.weld.parts;
-        parts.say_idle(|own| own.detail != 1.0, "the detail of --part has no effect under --lod-shader");
+        parts.say_idle(|own| own.detail.is_some(), "the detail of --part has no effect under --lod-shader");
         refuse(
             surface.tessellation().partitioning.has_one_factor(),
             "--lod-shader can't be combined with --partitioning subtriangulation, which has the same number of segments everywhere",

@@ -70,6 +70,10 @@ fn parts_are_listed_and_left_out() {
         stats(&[&parts, "--part", "-right:surface=flat,detail=2", "--factor", "4", "--partitioning", "integer"]);
     let usual = stats(&[&parts, "--factor", "4", "--partitioning", "integer"]);
     assert!(number(&styled, "/triangles_out") > number(&usual, "/triangles_out"), "edges take the finest: {styled}");
+    let as_it_is = ["--surface", "flat", "--factor", "1", "--partitioning", "integer", "--part", "-right:detail=4"];
+    assert!(
+        failure(&[&["render", &parts, "-o", &folder.path("a.png")][..], &as_it_is].concat(), 2).contains("as it is")
+    );
     // Phong tessellation has its strength there too.
     let out = folder.path("out.obj");
     let of_part =

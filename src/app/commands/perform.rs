@@ -16,10 +16,6 @@ use load::{HeightSource, Import, Source};
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 
 impl App {
-    pub fn last_action(&self) -> Option<&Action> {
-        self.commands.last.as_ref()
-    }
-
     /// The state that decides which commands are possible.
     pub fn availability(&self) -> Availability {
         let has_effect = |option: &Declaration| (option.no_effect)(&self.settings).is_none();

@@ -29,36 +29,16 @@ impl App {
         self.jobs.has(Work::File)
     }
 
-    /// Starts to draw the picture as was last chosen, and to write it as a PNG file, or a report on it as a page.
-    ///
-    /// # Errors
-    /// The path doesn't end in .png or .html; as a sentence.
-    pub fn save_picture(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        self.write_as(context, Written::Picture, path)
-    }
-
-    /// Starts to draw a turntable as was last chosen, and to write its folder or GIF file.
-    ///
-    /// # Errors
-    /// The path ends as a file of another kind; as a sentence.
-    pub fn save_turntable(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        let written = if self.dialogs.turntable.is_gif { Written::Gif } else { Written::Folder };
-        self.write_as(context, written, path)
-    }
-
-    /// Starts to write the mesh that is emitted for this view, or for the frozen one, as a .glb or .obj file.
-    ///
-    /// # Errors
-    /// The path has another ending; as a sentence.
-    pub fn export_mesh(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
-        self.write_as(context, Written::Mesh, path)
-    }
-
     /// Starts to write a file, and then shows what was written, or why it couldn't be.
     ///
     /// # Errors
     /// The path has the ending of another kind of file; as a sentence.
-    pub(super) fn write_as(&mut self, context: &egui::Context, what: Written, path: PathBuf) -> Result<(), String> {
+    pub(in crate::app) fn write_as(
+        &mut self,
+        context: &egui::Context,
+        what: Written,
+        path: PathBuf,
+    ) -> Result<(), String> {
         check_ending(what, &path)?;
         let Some(write) = self.writer(context.theme(), what, &path) else { return Ok(()) };
         let doing = if what == Written::Mesh { "Exporting" } else { "Saving" };

@@ -200,16 +200,6 @@ impl App {
         }
     }
 
-    /// Why the newest version of the LOD shader can't be used, in a sentence.
-    pub fn lod_shader_error(&self) -> Option<&str> {
-        self.lod_shader.as_ref()?.error.as_deref()
-    }
-
-    /// Why the newest version of the surface shader can't be used, in a sentence.
-    pub fn surface_shader_error(&self) -> Option<&str> {
-        self.surface_shader.as_ref()?.error.as_deref()
-    }
-
     /// Closes the file, so that the setting holds again.
     pub(in crate::app) fn forget_shader<S: UserShaderSlot>(&mut self) {
         let mut own = self.settings.tessellation;

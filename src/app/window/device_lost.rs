@@ -53,11 +53,6 @@ impl App {
         self.gpu().lost().is_some()
     }
 
-    /// The message of the screen that is shown if a lost device isn't replaced.
-    pub fn fatal_message(&self) -> Option<&str> {
-        self.window.fatal_screen.as_ref().map(|screen| &*screen.why)
-    }
-
     pub(in crate::app) fn next(&self) -> Next {
         match (&self.window.fatal_screen, self.gpu().lost()) {
             (None, None) => Next::Quit,

@@ -1,0 +1,77 @@
+//! What only tests ask the window, and what they start without its dialogs.
+
+use std::path::PathBuf;
+
+use super::App;
+use super::jobs::job_list::Work;
+use crate::commands::{Action, Written};
+use inspect::measure::Sizes;
+
+impl App {
+    pub fn last_action(&self) -> Option<&Action> {
+        self.commands.last.as_ref()
+    }
+
+    /// Starts to draw the picture as was last chosen, and to write it as a PNG file, or a report on it as a page.
+    ///
+    /// # Errors
+    /// The path doesn't end in .png or .html; as a sentence.
+    pub fn save_picture(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
+        self.write_as(context, Written::Picture, path)
+    }
+
+    /// Starts to draw a turntable as was last chosen, and to write its folder or GIF file.
+    ///
+    /// # Errors
+    /// The path ends as a file of another kind; as a sentence.
+    pub fn save_turntable(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
+        let written = if self.dialogs.turntable.is_gif { Written::Gif } else { Written::Folder };
+        self.write_as(context, written, path)
+    }
+
+    /// Starts to write the mesh that is emitted for this view, or for the frozen one, as a .glb or .obj file.
+    ///
+    /// # Errors
+    /// The path has another ending; as a sentence.
+    pub fn export_mesh(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
+        self.write_as(context, Written::Mesh, path)
+    }
+
+    /// Why the newest version of the LOD shader can't be used, in a sentence.
+    pub fn lod_shader_error(&self) -> Option<&str> {
+        self.lod_shader.as_ref()?.error.as_deref()
+    }
+
+    /// Why the newest version of the surface shader can't be used, in a sentence.
+    pub fn surface_shader_error(&self) -> Option<&str> {
+        self.surface_shader.as_ref()?.error.as_deref()
+    }
+
+    /// Sizes of the triangles shown, if they were measured for the present view, or for the frozen one if there is one.
+    pub fn sizes_shown(&self) -> Option<&Sizes> {
+        let bounds = self.document.as_ref()?.scene.bounds;
+        let frozen = self.viewport.frozen.map(|frozen| frozen.screen_view(&bounds));
+        let seen_from = frozen.or(self.viewport.picture.seen_from())?;
+        self.last_results().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
+    }
+
+    /// How many previews have been drawn out of sight, before the camera moved.
+    pub fn warm_ups(&self) -> u64 {
+        self.viewport.warm_up.drawings
+    }
+
+    /// Whether such a preview is being drawn.
+    pub fn is_warming_up(&self) -> bool {
+        self.viewport.warm_up.is_busy()
+    }
+
+    /// Whether the mesh is still being checked. The checks' results don't change the picture by themselves.
+    pub fn is_checking(&self) -> bool {
+        self.jobs.has(Work::Checks)
+    }
+
+    /// The message of the screen that is shown if a lost device isn't replaced.
+    pub fn fatal_message(&self) -> Option<&str> {
+        self.window.fatal_screen.as_ref().map(|screen| &*screen.why)
+    }
+}
