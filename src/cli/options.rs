@@ -124,7 +124,7 @@ impl SurfaceOptions {
         let is_lost = !has_strength && own.alpha != usual.alpha;
         refuse(
             is_lost,
-            "--alpha needs phong or phong-aen, whose strength it is, as --surface or as the surface of a --part",
+            "--alpha needs --surface phong or phong-aen, whose strength it is, or a --part with such a surface",
         )?;
         let is_lost = self.max_triangles.is_some() && !own.lod.is_by_error();
         refuse(is_lost, "--max-triangles needs --lod error, whose tolerance it raises")

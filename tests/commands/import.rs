@@ -79,7 +79,7 @@ fn parts_are_listed_and_left_out() {
     let of_part =
         |style: &str, code| failure(&["tessellate", &parts, "-o", &out, "--alpha", "0.5", "--part", style], code);
     of_part("-right:surface=phong", 0);
-    assert!(of_part("-right:detail=2", 2).contains("--alpha needs phong"));
+    assert!(of_part("-right:detail=2", 2).contains("or a --part with such a surface"));
     sentence(&["info", &parts, "--part", "bonnet:detail=2"], &["bonnet", "left door", "-right"]);
     sentence(&["info", &plain, "--part", "a:surface=flat"], &["no named parts", "--part"]);
     for text in ["-right", "-right:", "-right:surface=round", "-right:detail=0", "-right:detail=nan", "-right:size=2"] {
