@@ -32,8 +32,8 @@ impl Sharing {
         matches!(self, Self::None | Self::NoneAveraged)
     }
 
-    /// Returns which sides share an edge of this surface, if all that are computed for the edge share one or tear. `differs` says whether
-    /// parts with different surfaces meet there: then all share.
+    /// Returns which sides share an edge of this surface. Where parts with different surfaces meet (`differs`), all do, unless each side
+    /// is computed for itself.
     fn of_edge(self, surface: Surface, differs: bool) -> Self {
         match self {
             Self::AllSides | Self::EqualNormals if surface.tears() && !differs => Self::EqualNormals,

@@ -14,8 +14,8 @@ with_defaults! {
     pub struct PartStyle {
         /// Its surface; none for that of the tessellation.
         pub surface: Option<Surface> = None,
-        /// How many times as fine as the rest LOD makes it, [`Self::LEAST`] to [`Self::MOST`] in steps of that least: by so much its
-        /// lengths and errors in px count, and given factors are multiplied. None for 1.
+        /// How many times as fine as the rest LOD makes it, [`Self::LEAST`] to [`Self::MOST`] in steps of that least: it multiplies
+        /// lengths and errors in px, and the factors of uniform LOD and of LOD by distance. None for 1.
         pub detail: Option<f32> = None,
     }
 }
