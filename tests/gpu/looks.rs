@@ -278,7 +278,7 @@ fn curvature_at_pixels_is_that_of_the_mathematics() {
                 tried += 1;
             }
             assert!(
-                tried > 9 && (surface == Surface::Flat || range[1] - range[0] > 0.02),
+                tried > 9 && (surface == Surface::Flat || range[1] - range[0] > 0.01),
                 "{kind:?} {shape:?}: {tried} {range:?}"
             );
         }
