@@ -92,7 +92,7 @@ fn two_materials(folder: &Folder) -> String {
     white.save(folder.path("white.png")).expect("a folder of our own");
     let start = "mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0.5 0.5\nvn 0 0 1\n";
     let faces = "usemtl wall\nf 1/1/1 2/1/1 3/1/1\nusemtl roof\nf 3/1/1 2/1/1 4/1/1\n";
-    folder.write("two.obj", &format!("{start}{faces}"))
+    folder.write("two.obj", format!("{start}{faces}"))
 }
 
 /// The lowest and the highest z of a mesh as it is tessellated.

@@ -99,7 +99,7 @@ fn load(job: &Job, mut preparation: Preparation, progress: &Progress) -> Result<
         let loaded = inspect::engine::load(&job.source, &preparation, progress);
         let before = absent.len();
         if let Err(LoadError::Absent { what, known, .. }) = &loaded {
-            absent.extend(without_absent(&mut preparation.parts, *what, known));
+            absent.extend(without_absent(&mut preparation.parts, what, known));
         }
         if absent.len() == before {
             return Ok((loaded?, absent));

@@ -36,8 +36,8 @@ impl PartStyle {
     #[must_use]
     pub fn rounded(self) -> Self {
         // A NaN becomes the least.
-        let steps = |detail: f32| (detail / Self::LEAST).round().max(1.0).min(Self::MOST / Self::LEAST);
-        Self { detail: self.detail.map(|detail| steps(detail) * Self::LEAST), ..self }
+        let steps = |detail: f32| (detail / Self::LEAST).round().max(1.0);
+        Self { detail: self.detail.map(|detail| (steps(detail) * Self::LEAST).min(Self::MOST)), ..self }
     }
 }
 

@@ -26,7 +26,7 @@ choices! {
     }
 }
 
-/// Returns a curvature of a patch at weights `u` and `v` (16.16 fixed point; w = 1 - u - v): see [`principal_curvatures`].
+/// Returns a curvature of a patch at weights `u` and `v` (16.16 fixed point; w = 1 - u - v): of or from its principal curvatures.
 pub fn patch_curvature(kind: CurvatureKind, surface: Surface, net: &ControlNet, u: u32, v: u32) -> f32 {
     let second = patch_second_derivatives(surface, net, u, v);
     let [largest, least] = principal_curvatures(patch_tangents(surface, net, u, v), second);

@@ -6,7 +6,7 @@ use super::{Nearest, Sample};
 
 /// A surface that is known exactly: its nearest points, its extent, and a parametrisation by charts over unit squares.
 pub(super) trait Surface: Send + Sync {
-    /// Returns the nearest point: see [`super::ReferenceShape::closest_facing`].
+    /// Returns the point nearest to `p`: of several, one whose normal faces as `facing` does.
     fn closest(&self, p: DVec3, facing: DVec3) -> Nearest;
 
     /// Returns the least and the greatest coordinates.

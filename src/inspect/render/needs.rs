@@ -6,8 +6,11 @@ use geometry::mesh::{Alpha, Look, MOST_LIGHTS, Material, Mesh, Slot};
 /// The bit of [`Needs::maps`] for the picture of what is behind a body; the same in `shaders/draw_material.wgsl`.
 pub(super) const BEHIND: usize = Slot::COUNT;
 
+/// The switch of a part of materials, and which have it.
+type Part = (&'static str, fn(&Look) -> bool);
+
 /// What shaders have for looks that need it: the name of the constant that says whether they do, and which looks do.
-const PARTS: [(&str, fn(&Look) -> bool); 5] = [
+const PARTS: [Part; 5] = [
     ("HAS_COAT", |look| look.clearcoat > 0.0),
     // Places where there is no surface that hides what is behind, by alpha.
     ("HAS_MASK", |look| look.alpha != Alpha::Opaque),

@@ -27,12 +27,13 @@ pub enum SaveError {
 /// The ending is another one, or the file can't be written.
 pub fn save(path: &Path, subject: &Subject) -> Result<(), SaveError> {
     let subjects = std::slice::from_ref(subject);
-    Ok(match ending(path).as_str() {
+    match ending(path).as_str() {
         "svg" => write_text(path, &svg(subjects)?)?,
         "png" => write_picture(path, &bitmap(subjects)?.into())?,
         "csv" => write_bytes(path, &table(subject).map_err(|error| file_error(path, "written", &error))?)?,
         _ => return Err(SaveError::Ending(path.to_owned())),
-    })
+    }
+    Ok(())
 }
 
 fn table(subject: &Subject) -> std::io::Result<Vec<u8>> {

@@ -74,7 +74,7 @@ impl Document {
             let part = reader.finish()?;
             document.numbers.insert(key(&path), Some(document.parts.len()));
             for path in part.paths() {
-                if let Entry::Vacant(unknown) = document.numbers.entry(key(&path)) {
+                if let Entry::Vacant(unknown) = document.numbers.entry(key(path)) {
                     unknown.insert(None);
                     paths.push(path.clone());
                 }
