@@ -6,7 +6,7 @@
 // Added to the number of the height image if the patch has a texture.
 const TEXTURED: u32 = 512u;
 
-// Between them and the detail of the patch's part.
+// What the count of the detail of the patch's part is multiplied by, so that it stands above these.
 const DETAIL_STEP: u32 = 1024u;
 
 // The least detail, in which details are counted; none stands for a detail of 1. See src/geometry/mesh/part_style.rs.

@@ -5,11 +5,13 @@ use std::sync::OnceLock;
 use bytemuck::{Pod, Zeroable};
 use glam::{Mat3, Vec2, Vec3, Vec4, vec3};
 use gpu::{bind_group, read_buffer};
-use inspect::for_tests::environment::{environment_dfg, environment_sheen, irradiance_of, level_of_roughness};
+use inspect::for_tests::environment::{
+    environment_dfg, environment_sheen, irradiance_of, level_of_roughness, long_reflection,
+};
 use inspect::for_tests::prefiltered::prefiltered;
 use inspect::for_tests::reflectance::{
     AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, mean_roughness, reflect_ambient,
-    sheen_direction, stretched_alphas, transmitted,
+    sheen_direction, transmitted,
 };
 use inspect::for_tests::tone::tone_mapped;
 use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, roughness_of_level};
@@ -193,23 +195,6 @@ impl Twin {
         self.filtered.sample(self.turn * direction, level_of_roughness(roughness))
     }
 
-    /// Twin of the function of `shaders/environment.wgsl`.
-    fn long_reflection(&self, case: &Case) -> Vec3 {
-        const LEANS: u32 = 16;
-        let (normal, to_eye, look) = (case.normal.truncate(), case.to_eye.truncate(), &case.look);
-        let squares = stretched_alphas(look) * stretched_alphas(look);
-        let more = (squares.x - squares.y).max(0.0);
-        let roughness = (squares.y + more / (LEANS * LEANS) as f32).sqrt().sqrt();
-        let mut sum = Vec4::ZERO;
-        for index in 0..LEANS {
-            let sine = (2 * index + 1) as f32 / LEANS as f32 - 1.0;
-            let slope = more.sqrt() * sine / (1.0 - sine * sine).sqrt();
-            let direction = dominant_direction((normal - slope * look.direction).normalize(), to_eye, roughness);
-            sum += normal.dot(direction).max(1e-4) * self.radiance(direction, roughness).extend(1.0);
-        }
-        sum.truncate() / sum.w
-    }
-
     fn ambient_light(&self, case: &Case) -> AmbientLight {
         let (normal, to_eye, look) = (case.normal.truncate(), case.to_eye.truncate(), &case.look);
         let reflected = |normal, roughness| self.radiance(dominant_direction(normal, to_eye, roughness), roughness);
@@ -218,7 +203,12 @@ impl Twin {
         let coat_facing = look.coat_normal.dot(to_eye).clamp(0.0, 1.0);
         AmbientLight {
             diffuse: irradiance_of(&self.irradiance, self.turn * normal),
-            reflected: if is_long { self.long_reflection(case) } else { reflected(normal, look.roughness) },
+            reflected: match is_long {
+                true => {
+                    long_reflection(look, normal, to_eye, |direction, roughness| self.radiance(direction, roughness))
+                }
+                false => reflected(normal, look.roughness),
+            },
             coat_reflected: reflected(look.coat_normal, look.coat_roughness),
             sheen: irradiance_of(&self.irradiance, self.turn * sheen_direction(normal, to_eye)),
             dfg: environment_dfg(facing, mean_roughness(look)).into(),

@@ -1,8 +1,9 @@
 //! The light from all around: functions of `shaders/environment.wgsl`, which explains them.
 
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use gpu::{Gpu, GpuError};
 
+use super::reflectance::{LookAt, dominant_direction, stretched_alphas};
 use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::cube_map::CubeMap;
 use crate::render::dfg::{DFG_SIZE, dfg_table};
@@ -21,6 +22,22 @@ impl Environment {
 
 pub fn level_of_roughness(roughness: f32) -> f32 {
     (ENVIRONMENT_LEVELS - 1) as f32 * roughness.powf(2.0 / 3.0)
+}
+
+/// Twin of `long_reflection`: `radiance` is the light from a direction, blurred as a roughness says.
+pub fn long_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, radiance: impl Fn(Vec3, f32) -> Vec3) -> Vec3 {
+    const LEANS: u32 = 16;
+    let squares = stretched_alphas(look) * stretched_alphas(look);
+    let more = (squares.x - squares.y).max(0.0);
+    let roughness = (squares.y + more / (LEANS * LEANS) as f32).sqrt().sqrt();
+    let mut sum = Vec4::ZERO;
+    for index in 0..LEANS {
+        let sine = (2 * index + 1) as f32 / LEANS as f32 - 1.0;
+        let slope = more.sqrt() * sine / (1.0 - sine * sine).sqrt();
+        let direction = dominant_direction((normal - slope * look.direction).normalize(), to_eye, roughness);
+        sum += normal.dot(direction).max(1e-4) * radiance(direction, roughness).extend(1.0);
+    }
+    sum.truncate() / sum.w
 }
 
 /// Twin of `environment_irradiance`, of a light that isn't turned.

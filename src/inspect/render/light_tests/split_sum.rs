@@ -1,9 +1,9 @@
 //! A sphere under the studio's light: the split sum against the integral that it stands for.
 
-use glam::{Vec2, Vec3, Vec4, vec2, vec3};
+use glam::{Vec2, Vec3, vec2, vec3};
 
 use super::{dfg, facets};
-use crate::for_tests::environment::{irradiance_of, level_of_roughness};
+use crate::for_tests::environment::{irradiance_of, level_of_roughness, long_reflection};
 use crate::for_tests::prefiltered::prefiltered;
 use crate::for_tests::reflectance::{
     AmbientLight, LookAt, direct_lobe, dominant_direction, ggx_distribution, mean_roughness, reflect_ambient,
@@ -31,32 +31,16 @@ impl Studio {
     fn split_sum(&self, look: &LookAt, normal: Vec3, to_eye: Vec3) -> Vec3 {
         let facing = normal.dot(to_eye).clamp(0.0, 1.0);
         let direction = dominant_direction(normal, to_eye, look.roughness);
-        let round = self.filtered.sample(direction, level_of_roughness(look.roughness));
+        let radiance = |direction, roughness| self.filtered.sample(direction, level_of_roughness(roughness));
+        let round = radiance(direction, look.roughness);
         let light = AmbientLight {
             diffuse: irradiance_of(&self.irradiance, normal),
-            reflected: if look.anisotropy > 0.0 { self.long_reflection(look, normal, to_eye) } else { round },
+            reflected: if look.anisotropy > 0.0 { long_reflection(look, normal, to_eye, radiance) } else { round },
             dfg: dfg(facing, mean_roughness(look)),
             facing,
             ..AmbientLight::default()
         };
         reflect_ambient(look, &light)
-    }
-
-    /// Twin of `long_reflection` in `shaders/environment.wgsl`.
-    fn long_reflection(&self, look: &LookAt, normal: Vec3, to_eye: Vec3) -> Vec3 {
-        const LEANS: u32 = 16;
-        let squares = stretched_alphas(look) * stretched_alphas(look);
-        let more = (squares.x - squares.y).max(0.0);
-        let roughness = (squares.y + more / (LEANS * LEANS) as f32).sqrt().sqrt();
-        let mut sum = Vec4::ZERO;
-        for index in 0..LEANS {
-            let sine = (2 * index + 1) as f32 / LEANS as f32 - 1.0;
-            let slope = more.sqrt() * sine / (1.0 - sine * sine).sqrt();
-            let direction = dominant_direction((normal - slope * look.direction).normalize(), to_eye, roughness);
-            let light = self.filtered.sample(direction, level_of_roughness(roughness));
-            sum += normal.dot(direction).max(1e-4) * light.extend(1.0);
-        }
-        sum.truncate() / sum.w
     }
 
     /// The light that a white metal reflects at once, integrated.
