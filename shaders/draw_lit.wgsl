@@ -43,7 +43,7 @@ fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
 
 fn masked_lit_pixel(in: LitVaryings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_place(in, normal, front);
-    return masked_pixel(place, material_color(place).rgb);
+    return masked_pixel(place, vec4<f32>(material_color(place).rgb, 1.0));
 }
 
 @fragment

@@ -38,10 +38,10 @@ struct MaskedPixel {
 }
 
 // A pixel of this colour; none if the mask leaves nothing of it.
-fn masked_pixel(place: SurfacePlace, color: vec3<f32>) -> MaskedPixel {
+fn masked_pixel(place: SurfacePlace, color: vec4<f32>) -> MaskedPixel {
     let samples = mask_samples(place);
     if samples == 0u {
         discard;
     }
-    return MaskedPixel(vec4<f32>(color, 1.0), samples);
+    return MaskedPixel(color, samples);
 }

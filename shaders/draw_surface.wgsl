@@ -9,7 +9,8 @@ fn surface_normal_of(in: Varyings) -> vec3<f32> {
 // The last argument is the colour of the material in light from all around: none, since the lights at the camera take its place.
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return vec4<f32>(surface_color(in, surface_normal_of(in), front, vec4<f32>(0.0)).rgb, 1.0);
+    let color = surface_color(in, surface_normal_of(in), front, vec4<f32>(0.0));
+    return vec4<f32>(color.rgb, 1.0 - wire_opacity);
 }
 
 @fragment
@@ -25,7 +26,8 @@ fn masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> 
 fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_surface_place(in, normal, front);
     let own = material_color(place);
-    return masked_pixel(place, surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0)).rgb);
+    let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
+    return masked_pixel(place, vec4<f32>(color.rgb, 1.0 - wire_opacity));
 }
 
 // The same with the lights at the camera.
@@ -36,7 +38,8 @@ fn cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> Mas
 
 fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_surface_place(in, normal, front);
-    return masked_pixel(place, surface_color(in, normal, front, vec4<f32>(0.0)).rgb);
+    let color = surface_color(in, normal, front, vec4<f32>(0.0));
+    return masked_pixel(place, vec4<f32>(color.rgb, 1.0 - wire_opacity));
 }
 
 @fragment
@@ -50,7 +53,7 @@ fn cut_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> 
     if base_color(place, place_detail(place)).a < material.cutoff {
         discard;
     }
-    return vec4<f32>(color.rgb, 1.0);
+    return vec4<f32>(color.rgb, 1.0 - wire_opacity);
 }
 
 fn lit_surface_place(in: Varyings, normal: vec3<f32>, front: bool) -> SurfacePlace {
@@ -68,5 +71,5 @@ fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> 
     if (HAS_MASK || HAS_TRANSMISSION) && own.a == 0.0 {
         discard;
     }
-    return vec4<f32>(color.rgb, 1.0);
+    return vec4<f32>(color.rgb, 1.0 - wire_opacity);
 }

@@ -110,6 +110,12 @@ fn bare_color(
     return vec4<f32>(select(color, FOLD_COLOR, in.folded != 0u), f32(in.folded != 0u));
 }
 
+const WIRE_COLOR: vec4<f32> = vec4<f32>(0.008, 0.010, 0.014, 1.0);
+
+// How opaque the wireframe is at the place, in a picture that is compared: there it is drawn over the difference, and the picture
+// keeps it as what it lacks of alpha 1.
+var<private> wire_opacity: f32 = 0.0;
+
 // The colour of the surface with lines over it, and how much of the place marks and lines cover.
 fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32>) -> vec4<f32> {
     // Derivatives first: they need uniform control flow.
@@ -120,7 +126,9 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
     var color = bare_color(in, own_normal, front, lit, to_edges, edge_heights);
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let opacity = 0.75 * sides_opacity(to_sides, side_heights, 0.5 / frame.coarseness);
-        color = mix(color, vec4<f32>(0.008, 0.010, 0.014, 1.0), opacity);
+        let is_compared = (frame.overlays & OVERLAY_COMPARED) != 0u;
+        wire_opacity = select(0.0, opacity, is_compared);
+        color = mix(color, WIRE_COLOR, opacity - wire_opacity);
     }
     if (frame.overlays & OVERLAY_PATCHES) != 0u {
         let opacity = sides_opacity(to_edges, edge_heights, 0.9 / frame.coarseness);

@@ -129,6 +129,7 @@ const OVERLAY_EXCESS: u32 = 131072u;
 const OVERLAY_DEVIATION: u32 = 262144u;
 const OVERLAY_SILHOUETTE: u32 = 524288u;
 const OVERLAY_SECTION: u32 = 1048576u;
+const OVERLAY_COMPARED: u32 = 2097152u;
 
 // An emitted vertex as draws get it: its two halves (see Vertex in types.wgsl).
 struct EmittedVertex {

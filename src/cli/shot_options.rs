@@ -60,7 +60,7 @@ pub struct ShotOptions {
     /// Transparent background
     #[arg(long, conflicts_with = "background")]
     pub transparent: bool,
-    /// Draw the legend of the surface's colours into the lower right corner, and in a split picture the divider and what its halves show
+    /// Draw the legend of the surface's colours into a lower corner, and in a split picture the divider and what its halves show
     #[arg(long)]
     pub legend: bool,
 }
@@ -137,6 +137,10 @@ impl ShotOptions {
         let reference_surface = self.reference_surface(&loaded)?;
         let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
         let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
+        let has_bones = left.iter().chain([&loaded]).any(|own| !own.mesh.bones.is_empty());
+        if self.picture.0.overlays.bones && !has_bones {
+            note("--overlay bones has no effect: no skin moves the mesh");
+        }
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
         let (given, factors_file) = given.unzip();

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use inspect::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
+use inspect::settings::{ColorSource, Control, Overlay, Overlays};
 
 /// The greatest number of bookmarks of a file: one for each key from 1 to 9.
 pub(crate) const MOST_BOOKMARKS: usize = 9;
@@ -64,7 +65,9 @@ needs! {
     SelectedPatch => "No patch is selected: click on one.",
     /// Heights of the mesh, which can displace it.
     Heights => "The mesh has no heights: choose a height image.",
-    TextureCoordinates => NO_TEXTURE_COORDINATES,
+    TextureCoordinates => "The mesh has no texture coordinates.",
+    /// Joints of skins.
+    Bones => "The mesh has no bones: no skin moves it.",
     /// Normals that can be evaluated at pixels.
     NormalsAt => NORMALS_FOLLOW_TRIANGLES,
     /// An LOD that takes a tessellation factor.
@@ -91,9 +94,6 @@ pub(crate) const BACKS_ARE_SEEN: &str = "Backs of this mesh can be seen, because
                                          part of it is wound inward, a material is double-sided or has a mask, only some of its \
                                          materials blend or transmit light, it is displaced, or it moves.";
 
-/// Why a checker can't be drawn.
-pub(crate) const NO_TEXTURE_COORDINATES: &str = "The mesh has no texture coordinates.";
-
 /// The window's state as far as commands depend on it.
 #[derive(Clone, Debug, Default)]
 pub struct Availability {
@@ -119,6 +119,11 @@ impl Availability {
         }
     }
 
+    /// Why an overlay can't be shown, in a sentence; none if it can.
+    pub fn why_not_show(&self, overlay: Overlay) -> Option<&'static str> {
+        self.why_not(needs_of(overlay))
+    }
+
     /// Why what has these needs isn't possible, in a sentence; none if it is.
     pub(super) fn why_not(&self, needs: &[Need]) -> Option<&'static str> {
         let has = |need| self.has.contains(&need);
@@ -128,5 +133,14 @@ impl Availability {
             Need::Factor | Need::Lod if has(Need::LodShader) => "The factors come from an LOD shader.",
             _ => lacking.why_not(),
         })
+    }
+}
+
+/// What an overlay needs.
+pub(super) fn needs_of(overlay: Overlay) -> &'static [Need] {
+    match Overlays::default().control(overlay) {
+        Control::Colors(_, own) if own.source() == ColorSource::TextureCoordinates => &[Need::TextureCoordinates],
+        Control::Switch(_) if overlay == Overlay::Bones => &[Need::Bones],
+        Control::Colors(..) | Control::Switch(_) => &[],
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut};
 
+use super::availability::needs_of;
 use super::fixed::declared;
 use super::{
     Action, Availability, CameraAction, Change, Command, FileAction, MOST_BOOKMARKS, Need, Place, Preparing, Submenu,
@@ -12,7 +13,7 @@ use super::{
 use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
 use geometry::tessellate::Surface;
-use inspect::settings::{Choice, ColorSource, Colors, Control, Declaration, Overlay, Overlays, options};
+use inspect::settings::{Choice, Colors, Control, Declaration, Overlay, Overlays, options};
 
 /// The greatest number of clips that are listed.
 const CLIPS: usize = 1000;
@@ -79,8 +80,8 @@ fn left_surfaces() -> Vec<Command> {
     unset.chain(surfaces).map(command).chain(both).collect()
 }
 
-/// The key that switches an overlay. Those that look at the surface by itself have Shift and a letter, the zebra that of its
-/// stripes.
+/// The key that switches an overlay. Those that look at the surface by itself, and bones, have Shift and a letter, the zebra that of
+/// its stripes.
 fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     plain(match overlay {
         Overlay::Clay => return shift(Key::C),
@@ -99,6 +100,7 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
         Overlay::Cracks => Key::C,
         Overlay::Folds => Key::O,
         Overlay::TJunctions => Key::T,
+        Overlay::Bones => return shift(Key::B),
         Overlay::BackFaces => Key::K,
         Overlay::Factors => Key::H,
         Overlay::TriangleSize => Key::X,
@@ -118,15 +120,12 @@ fn colors_and_overlays() -> Vec<Command> {
     let mut all = vec![Command::new(Change::MaterialColors, own, material.text())];
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
-        let (name, needs_coordinates) = match overlays.control(overlay) {
-            Control::Colors(_, given) => {
-                (format!("{colors}: {}", given.label()), given.source() == ColorSource::TextureCoordinates)
-            }
-            Control::Switch(_) => (format!("Overlay: {}", overlay.label()), false),
+        let name = match overlays.control(overlay) {
+            Control::Colors(_, given) => format!("{colors}: {}", given.label()),
+            Control::Switch(_) => format!("Overlay: {}", overlay.label()),
         };
-        let needs: &[Need] = if needs_coordinates { &[Need::TextureCoordinates] } else { &[] };
         let command = Command::new(Change::Overlay(overlay), name, overlay.text());
-        command.keys([overlay_key(overlay)]).needs(needs)
+        command.keys([overlay_key(overlay)]).needs(needs_of(overlay))
     }));
     all
 }

@@ -19,7 +19,7 @@ use geometry::names::every;
 use inspect::render::Standpoint;
 
 pub use availability::{Availability, Need};
-pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS, NO_TEXTURE_COORDINATES};
+pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS};
 pub use change::Change;
 pub use fixed::ENVIRONMENT;
 pub(crate) use fixed::{

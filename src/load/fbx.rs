@@ -21,6 +21,8 @@ mod surfaces;
 mod textures;
 mod vertices;
 
+use super::attachment::SceneNodes;
+use super::bones::bones;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
@@ -74,7 +76,9 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
         surfaces.add(node, &file.selected, progress)?;
     }
     let holds = left_out::holds(&scene, &placed);
-    let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
+    let (mut faces, details, mut binder) = surfaces.into_parts(&mut notes);
+    let SceneNodes { order, parents, .. } = &placed.scene;
+    let bones = bones(nodes::joints(&scene, &placed.shown), order, parents, &placed.global, binder.as_mut());
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64);
     let morph_targets = morphs::file_weights(&scene);
@@ -82,6 +86,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(scene);
     progress.set(0.8);
     let (mut loaded, numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;
+    loaded.mesh.bones = bones;
     RigBuilder::complete(&mut loaded.mesh, numbers, details, binder, &mut notes, &budget, progress)?;
     loaded.contents.morph_targets = morph_targets;
     let (files, file_bytes) = (files.named(), budget.files());

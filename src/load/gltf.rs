@@ -56,6 +56,7 @@ use std::sync::Arc;
 use ::gltf::{Document, Node, Semantic};
 use glam::DMat4;
 
+use super::bones::bones;
 use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
@@ -162,8 +163,11 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let lights = parsed.lights.shown(&placed, &mut of_lights);
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
+    let joints = rig_nodes::joints(document, &placed);
+    let bones = bones(joints, &placed.order, &placed.parents, &placed.global, binder.as_mut());
     let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
     let parts = parsed.parts.list.finish(&mut mesh, notes);
+    mesh.bones = bones;
     RigBuilder::complete(&mut mesh, bindings, details, binder, notes, &budget, progress)?;
     if let Some(rig) = mesh.rig.as_mut().and_then(Arc::get_mut) {
         [rig.lights, rig.cameras] = mounts;

@@ -5,6 +5,7 @@
 
 mod attachment;
 mod binding_space;
+mod bones;
 mod cage_faces;
 mod content;
 pub mod csv_vertices;

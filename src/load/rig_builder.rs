@@ -163,6 +163,12 @@ impl RigBuilder {
         Joint { node, offset: below, ..Joint::default() }
     }
 
+    /// Lets what moves a node move the next of the mesh's bones.
+    pub(super) fn add_bone(&mut self, node: usize) {
+        let mount = self.mount(node);
+        self.rig.bones.push((mount.node, mount.offset.w_axis.truncate()));
+    }
+
     /// Gives up building a rig. The first reason is reported.
     fn give_up(&mut self, reason: String) {
         self.problem.get_or_insert(reason);
@@ -177,6 +183,7 @@ impl RigBuilder {
         }
         self.grown.iter().for_each(|(node, rest)| rig.nodes[*node as usize].rest = *rest);
         let rest = rig.rest();
+        mesh.bones = mesh.bones_in(&rest);
         for (corner, &id) in mesh.corners.iter_mut().zip(corners) {
             let binding = self.bound.get(id as usize).map(|bound| &bound.binding);
             if let Some(binding) = binding.filter(|own| is_moved_by(own, &rig.joints, &self.is_grown)) {

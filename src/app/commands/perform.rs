@@ -49,6 +49,7 @@ impl App {
             (Need::SelectedPatch, self.selected_patch().is_some()),
             (Need::Heights, self.has_heights()),
             (Need::TextureCoordinates, document.is_some_and(|document| document.has_texture_coordinates)),
+            (Need::Bones, document.is_some_and(|document| !document.loaded.mesh.bones.is_empty())),
             (Need::NormalsAt, has_effect(&options::NORMALS_AT)),
             (Need::Factor, has_effect(&options::FACTOR) && lets_lod),
             (Need::Lod, has_effect(&options::LOD) && lets_lod),

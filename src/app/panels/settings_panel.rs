@@ -332,10 +332,14 @@ pub(super) fn overlay_hover(overlay: Overlay) -> String {
     with_key(overlay.text(), &Action::Setting(Change::Overlay(overlay)))
 }
 
+/// The overlay that gives the surface these colours; none for the mesh's own.
+pub(super) fn overlay_of(colors: Colors) -> Option<Overlay> {
+    Overlays { colors, ..Overlays::default() }.on().next()
+}
+
 /// The hover text of a choice of colours: their meaning, and the overlay's key.
 pub(super) fn colors_hover(colors: Colors) -> String {
-    let overlays = Overlays { colors, ..Overlays::default() };
-    overlays.on().next().map_or_else(|| colors.text().to_owned(), overlay_hover)
+    overlay_of(colors).map_or_else(|| colors.text().to_owned(), overlay_hover)
 }
 
 /// Near and far distance, with far always the larger one.

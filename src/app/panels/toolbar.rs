@@ -2,13 +2,11 @@
 
 use egui::containers::menu::{MenuButton, MenuConfig};
 
-use super::settings_panel::{colors_hover, overlay_hover};
+use super::settings_panel::{colors_hover, overlay_hover, overlay_of};
 use crate::app::App;
 use crate::app::widgets::{switch_button, text_width};
-use crate::commands::{
-    Action, Availability, CameraAction, Change, Command, FileAction, NO_TEXTURE_COORDINATES, all, with_key,
-};
-use inspect::settings::{Choice, ColorSource, Colors, Control, Overlay};
+use crate::commands::{Action, Availability, CameraAction, Change, Command, FileAction, all, with_key};
+use inspect::settings::{Choice, Colors, Control, Overlay};
 
 /// The width of the list of colours, in points: that of its longest entry.
 const COLORS_WIDTH: f32 = 124.0;
@@ -33,8 +31,8 @@ impl App {
                 let action = Action::Setting(Change::Overlay(overlay));
                 self.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
             }
-            self.overlays_list(ui);
-            self.colors_list(ui);
+            self.overlays_list(ui, &now);
+            self.colors_list(ui, &now);
             divider(ui, "Frame");
             self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
             let names = ["Freeze LOD", "Freeze LOD camera"];
@@ -49,7 +47,7 @@ impl App {
     }
 
     /// The overlays that have no button of their own. The list stays open while they are switched.
-    fn overlays_list(&mut self, ui: &mut egui::Ui) {
+    fn overlays_list(&mut self, ui: &mut egui::Ui, now: &Availability) {
         let others = || Overlay::ALL.into_iter().filter(|overlay| !ON_TOOLBAR.contains(overlay));
         let overlays = &mut self.settings.overlays;
         let is_any_on = others().any(|overlay| matches!(overlays.control(overlay), Control::Switch(true)));
@@ -58,24 +56,26 @@ impl App {
         let (response, _) = button.config(config).ui(ui, |ui| {
             for overlay in others() {
                 if let Control::Switch(switch) = overlays.control(overlay) {
-                    ui.checkbox(switch, overlay.label()).on_hover_text(overlay_hover(overlay));
+                    let why_not = now.why_not_show(overlay);
+                    let check = egui::Checkbox::new(switch, overlay.label());
+                    let check = ui.add_enabled(why_not.is_none(), check).on_hover_text(overlay_hover(overlay));
+                    check.on_disabled_hover_text(why_not.unwrap_or_default());
                 }
             }
         });
         response.on_hover_text("What else is drawn over the surface (--overlay).");
     }
 
-    fn colors_list(&mut self, ui: &mut egui::Ui) {
-        let has_coordinates = self.document.as_ref().is_some_and(|document| document.has_texture_coordinates);
+    fn colors_list(&mut self, ui: &mut egui::Ui, now: &Availability) {
         let colors = &mut self.settings.overlays.colors;
         let combo = egui::ComboBox::from_id_salt("Colours").selected_text(colors.label()).width(COLORS_WIDTH);
         // High enough for all entries.
         let combo = combo.height(420.0).show_ui(ui, |ui| {
             for &choice in Colors::ALL {
-                let is_possible = has_coordinates || choice.source() != ColorSource::TextureCoordinates;
+                let why_not = overlay_of(choice).and_then(|overlay| now.why_not_show(overlay));
                 let entry = egui::Button::selectable(*colors == choice, choice.label());
-                let entry = ui.add_enabled(is_possible, entry).on_hover_text(colors_hover(choice));
-                if entry.on_disabled_hover_text(NO_TEXTURE_COORDINATES).clicked() {
+                let entry = ui.add_enabled(why_not.is_none(), entry).on_hover_text(colors_hover(choice));
+                if entry.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
                     *colors = choice;
                 }
             }

@@ -1,10 +1,10 @@
-//! The lines over the mesh: the axes, cracks, T-junctions, the worst point, the frozen LOD camera, and the selection.
+//! The lines over the mesh: the axes, cracks, T-junctions, bones, the worst point, the frozen LOD camera, and the selection.
 
 use super::frozen_camera::FrozenCamera;
 use super::ruler::Ruler;
 use crate::app::{App, Document};
 use geometry::mesh::{Bounds, Moment, Topology};
-use inspect::render::{LineSegment, axis_lines, crack_lines, t_junction_lines};
+use inspect::render::{LineSegment, axis_lines, bone_lines, crack_lines, t_junction_lines};
 use inspect::settings::SplitSide;
 
 /// Everything that the lines over the mesh depend on.
@@ -18,6 +18,7 @@ pub(crate) struct Highlight {
     axes: Option<Bounds>,
     cracks: bool,
     t_junctions: bool,
+    bones: bool,
     selected_edge: Option<u32>,
     selected_triangle: Option<u32>,
     /// Number of the emitted triangle that was clicked on, in its patch.
@@ -47,13 +48,14 @@ impl App {
             axes: overlays.grid.then_some(document.scene.bounds),
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
+            bones: overlays.bones,
             selected_edge: self.selected_edge(),
             selected_triangle: self.selected_triangle(),
             hit: self.hit().map(|hit| hit.number),
             worst: self.worst_marked(),
             ruler: self.viewport.ruler,
             frozen: self.frozen_shown(),
-            moment: document.moment.filter(|_| is_marked).map(|moment| (moment, posed.is_some())),
+            moment: document.moment.filter(|_| is_marked || overlays.bones).map(|moment| (moment, posed.is_some())),
             generation: document.highlight.map_or(0, |marked| marked.generation),
         };
         if document.highlight == Some(wanted) {
@@ -82,6 +84,9 @@ impl App {
         if let Some(found) = self.found(half).filter(|_| overlays.cracks) {
             let own = document.scene.half(half).map(|own| own.tessellator.topology());
             lines.extend(crack_lines(found, own.unwrap_or(&document.loaded.topology)));
+        }
+        if let Some(own) = document.scene.half(half).filter(|_| overlays.bones) {
+            lines.extend(bone_lines(own));
         }
         lines.extend(self.worst_mark(half));
         lines.extend(self.frozen_lines());

@@ -1,9 +1,9 @@
-//! The legend in the viewport's lower right corner, which explains what the surface's colours mean: the same as in saved pictures.
+//! The legend in a lower corner of the viewport, which explains what the surface's colours mean: the same as in saved pictures.
 
-use egui::{Rect, Sense, TextureHandle};
+use egui::{Align2, Rect, Sense, TextureHandle};
 
 use crate::app::App;
-use inspect::render::{Legend, legend_of};
+use inspect::render::{Legend, LegendSide, legend_of, legend_side};
 use inspect::shot::legend::legend_picture;
 
 /// The distance from the picture's borders, in points.
@@ -26,6 +26,11 @@ impl PaintedLegend {
         let texture = context.load_texture("legend", image, egui::TextureOptions::LINEAR);
         Some(Self { legend, room, point, texture })
     }
+
+    /// How far up from the lower border it reaches, in points.
+    pub(super) fn height(&self) -> f32 {
+        self.texture.size_vec2().y / self.point + MARGIN
+    }
 }
 
 impl App {
@@ -41,7 +46,19 @@ impl App {
         self.viewport.legend = known.or_else(|| PaintedLegend::new(ui.ctx(), legend, room, point));
         let Some(PaintedLegend { legend, texture, .. }) = &self.viewport.legend else { return };
         let size = texture.size_vec2() / point;
-        let place = Rect::from_min_size(picture.right_bottom() - size - egui::Vec2::splat(MARGIN), size);
+        // It keeps its side while the mesh or the pointer moves.
+        let is_drawn = self.viewport.picture.drawn.is_some_and(|drawn| drawn.camera == self.viewport.camera);
+        let rests = is_drawn && !self.is_playing() && !ui.input(|input| input.pointer.any_down());
+        if let Some(document) = self.document.as_ref().filter(|_| rests) {
+            let taken = texture.size().map(|side| side as u32 + (2.0 * MARGIN * point) as u32);
+            self.viewport.legend_side =
+                legend_side(&document.scene, &self.viewport.camera, &self.settings, room, taken);
+        }
+        let corner = match self.viewport.legend_side {
+            LegendSide::Right => Align2::RIGHT_BOTTOM,
+            LegendSide::Left => Align2::LEFT_BOTTOM,
+        };
+        let place = corner.align_size_within_rect(size, picture.shrink(MARGIN));
         let response = ui.interact(place, ui.scope_id().with("legend"), Sense::hover());
         let spoken = format!("Legend: {}", legend.spoken());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));

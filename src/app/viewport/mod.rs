@@ -21,7 +21,7 @@ pub(super) mod selection;
 pub(super) mod warm_up;
 
 use inspect::engine::Engine;
-use inspect::render::Camera;
+use inspect::render::{Camera, LegendSide};
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
@@ -57,6 +57,7 @@ pub(super) struct Viewport {
     pub greets: bool,
     pub picture: Picture,
     pub legend: Option<PaintedLegend>,
+    pub legend_side: LegendSide,
     pub pace: Pace,
     pub preview: Preview,
     pub warm_up: WarmUp,

@@ -6,6 +6,7 @@ use egui::{PointerButton, Sense};
 use glam::vec2;
 
 use super::axis_gizmo::axes_place;
+use super::legend::PaintedLegend;
 use super::picture::PictureRequest;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{MeasureError, Seen};
@@ -16,7 +17,7 @@ use crate::commands::{Action, CameraAction, key_name, with_key};
 use geometry::view::ScreenView;
 use gpu::GpuError;
 use inspect::engine::SilhouetteView;
-use inspect::render::{Ground, Scene, framed_size, half_at};
+use inspect::render::{Ground, LegendSide, Scene, framed_size, half_at};
 use inspect::settings::{Settings, SplitSide};
 use load::Source;
 
@@ -103,9 +104,9 @@ impl App {
         self.section_arrow(ui, rect);
         self.patch_labels(ui, rect);
         self.greeting(ui, rect);
+        self.legend(ui, rect);
         self.corner_notes(ui, rect);
         self.axis_gizmo(ui, rect);
-        self.legend(ui, rect);
     }
 
     /// Goes on with drawing and all measurements.
@@ -324,7 +325,7 @@ impl App {
         is_vase && is_framed && !is_selected && self.settings == Settings::greeting()
     }
 
-    /// What is on in the picture, in its lower left corner.
+    /// What is on in the picture, in its lower left corner, above a legend there.
     fn corner_notes(&self, ui: &egui::Ui, rect: egui::Rect) {
         let preview = &self.viewport.preview;
         let previewed = preview.shown(&self.viewport.picture).map(|(_, shape)| preview.mark(shape));
@@ -350,6 +351,8 @@ impl App {
             self.under_way().is_some() || self.viewport.picture.cancelled.is_some() || self.shows_nothing();
         let is_companion = !shows_progress || rect.left() + 10.0 + widest + 12.0 < progress.left();
         let bottom = if is_companion { rect.bottom() } else { progress.top() };
+        let legend = self.viewport.legend.as_ref().filter(|_| self.viewport.legend_side == LegendSide::Left);
+        let bottom = bottom.min(rect.bottom() - legend.map_or(0.0, PaintedLegend::height));
         let mut position = egui::pos2(rect.left() + 10.0, bottom - 10.0);
         for (galley, text) in notes {
             let place = egui::Align2::LEFT_BOTTOM.anchor_size(position, galley.size());

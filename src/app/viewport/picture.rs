@@ -222,7 +222,6 @@ impl Picture {
             self.begun.get_or_insert_with(Instant::now);
         }
         let is_counted = self.count(scene, &wanted, under_way.is_none())?;
-        let Some((target, _)) = &self.target else { return Ok(()) };
         if self.in_flight.is_some() || !is_counted {
             return Ok(());
         }
@@ -230,6 +229,8 @@ impl Picture {
         if self.drawn == Some(wanted) || self.holds(scene, &wanted) {
             return Ok(());
         }
+        let Some((target, _)) = &mut self.target else { return Ok(()) };
+        target.keep_only_for(&wanted.settings);
         let steps = Renderer::step_count(scene, &wanted.settings);
         let start = || Drawing { wanted, start: Instant::now(), given: 0, steps, last: None };
         let drawing = self.drawing.get_or_insert_with(start);

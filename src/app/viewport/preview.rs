@@ -162,7 +162,8 @@ impl Preview {
         if !count(scene, wanted)? || !self.pace.is_free() || self.drawn == Some((*wanted, shape)) {
             return Ok(());
         }
-        let Some((target, _)) = &self.target else { return Ok(()) };
+        let Some((target, _)) = &mut self.target else { return Ok(()) };
+        target.keep_only_for(&wanted.settings);
         self.pace.submit(draw(engine, scene, target, wanted)?, Instant::now());
         self.drawn = Some((*wanted, shape));
         self.drawings += 1;

@@ -152,6 +152,7 @@ fn rebuilt(
         details: details.map(|(details, _)| Arc::new(details)),
         lights: mesh.lights.clone(),
         cameras: mesh.cameras.clone(),
+        bones: mesh.bones.clone(),
         part_styles: mesh.part_styles.clone(),
         ..made
     })

@@ -4,6 +4,7 @@
 
 pub mod adjacency;
 mod alike_corners;
+mod bone;
 mod bounding_box_tree;
 pub mod bounds;
 pub mod build_limits;
@@ -47,6 +48,7 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
+pub use bone::Bone;
 pub use bounds::Bounds;
 pub use corner_details::{CornerDetail, CornerDetails};
 pub use file_camera::{FileCamera, Projection};
@@ -111,6 +113,8 @@ pub struct Mesh {
     pub lights: Vec<Light>,
     /// The cameras of the file.
     pub cameras: Vec<FileCamera>,
+    /// The joints of its skins.
+    pub bones: Vec<Bone>,
 }
 
 /// Triangles of a part of the file, one after the other.
@@ -152,7 +156,7 @@ impl Mesh {
         let rig = self.rig.as_ref().map_or(0, |rig| rig.bytes());
         let [corners, triangles] = [self.corners.capacity() * 32, self.triangles.capacity() * 12];
         let details = self.details.as_ref().map_or(0, |details| size_of_val(&details[..]));
-        let parts = self.part_ranges.capacity() * size_of::<PartRange>();
+        let parts = self.part_ranges.capacity() * size_of::<PartRange>() + size_of_val(&self.bones[..]);
         (corners + triangles + parts + textures + materials + rig + details) as u64 + heights
     }
 
@@ -174,6 +178,15 @@ impl Mesh {
             }
         }
         cameras
+    }
+
+    /// Returns the bones in a pose. One without a finite place there stays where it is at rest.
+    pub fn bones_in(&self, pose: &Pose) -> Vec<Bone> {
+        let mut bones = self.bones.clone();
+        for (bone, place) in bones.iter_mut().zip(&pose.bones).filter(|(_, place)| place.is_finite()) {
+            bone.place = *place;
+        }
+        bones
     }
 
     /// Returns the cameras of the file at a moment of one of its clips; without one, where they are at rest.

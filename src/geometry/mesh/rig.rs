@@ -14,7 +14,7 @@ use crate::numbers::counted;
 use std::fmt;
 
 use bytemuck::{Pod, Zeroable};
-use glam::DMat4;
+use glam::{DMat4, DVec3, Vec3};
 use serde::Serialize;
 
 pub use animated_node::{AnimatedNode, Placement};
@@ -47,6 +47,8 @@ pub struct Rig {
     pub lights: Vec<Joint>,
     /// The same for its cameras, which look along -Z.
     pub cameras: Vec<Joint>,
+    /// For each of the mesh's bones the node that moves it, and its place in the space of that node, or of the mesh without one.
+    pub bones: Vec<(Option<u32>, DVec3)>,
     /// Bounds on the coordinates before deformation.
     pub reach: Reach,
 }
@@ -137,6 +139,8 @@ pub struct Pose {
     /// The transforms of the mesh's lights and of its cameras to object space; empty if no clip moves any.
     pub lights: Vec<DMat4>,
     pub cameras: Vec<DMat4>,
+    /// The places of the mesh's bones in object space.
+    pub bones: Vec<Vec3>,
 }
 
 impl Pose {
@@ -228,6 +232,7 @@ impl Rig {
             + size_of_val(&self.joints[..])
             + size_of_val(&self.lights[..])
             + size_of_val(&self.cameras[..])
+            + size_of_val(&self.bones[..])
             + clips.sum::<usize>()
     }
 
@@ -251,11 +256,15 @@ impl Rig {
         let global = self.global(&placements);
         let matrix =
             |joint: &Joint| joint.place * joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset);
+        let bone = |&(node, own): &(Option<u32>, DVec3)| {
+            node.map_or(own, |node| global[node as usize].transform_point3(own)).as_vec3()
+        };
         Pose {
             palette: self.joints.iter().map(|joint| JointMatrix::new(matrix(joint))).collect(),
             weights,
             lights: self.lights.iter().map(matrix).collect(),
             cameras: self.cameras.iter().map(matrix).collect(),
+            bones: self.bones.iter().map(bone).collect(),
         }
     }
 

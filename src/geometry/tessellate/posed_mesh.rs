@@ -93,7 +93,7 @@ impl PosedMesh {
 pub fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
     let (mut mesh, mut topology) = (mesh.clone(), topology.clone());
     let Some(rig) = mesh.rig.take() else { return (mesh, topology) };
-    (mesh.lights, mesh.cameras) = (mesh.lights_in(pose), mesh.cameras_in(pose));
+    (mesh.lights, mesh.cameras, mesh.bones) = (mesh.lights_in(pose), mesh.cameras_in(pose), mesh.bones_in(pose));
     for (point, &corner) in topology.points.iter_mut().zip(&topology.point_corners) {
         *point = posed_position(&rig, pose, corner);
     }

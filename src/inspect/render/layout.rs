@@ -128,7 +128,7 @@ pub(crate) struct Pick {
 /// [`Pick::found`] for an emitted triangle; the same in `shaders/draw_types.wgsl`.
 pub(crate) const FOUND_EMITTED: u32 = 1;
 
-/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions and normals are drawn as lines
+/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions, bones and normals are drawn as lines
 /// instead, and the ground has a shader of its own.
 pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
     let Overlays { colors, wireframe, patches, adjacency, folds, back_faces, .. } = *overlays;
@@ -171,6 +171,9 @@ pub(crate) const SECTION_COLOR: [u8; 3] = [176, 150, 120];
 /// The bit of a picture with a section among those of [`overlay_bits`].
 pub(crate) const SECTION_BIT: u32 = 1 << 20;
 
+/// The bit of pictures that are compared, whose wireframe is drawn over their difference.
+pub(crate) const COMPARED_BIT: u32 = 1 << 21;
+
 /// sRGB colour of waste: triangles that are too small, and patches whose factors are too low. `WASTE_COLOR` in
 /// `shaders/draw_overlays.wgsl` has the same in linear light. It is vermilion (Okabe and Ito 2008).
 pub const WASTE_COLOR: [u8; 3] = [213, 94, 0];
@@ -181,6 +184,9 @@ pub const WORST_COLOR: [u8; 3] = [120, 255, 245];
 
 /// sRGB colour of a normal; `NORMAL_COLOR` in `shaders/draw_lines.wgsl` has the same in linear light.
 pub const NORMAL_COLOR: [u8; 3] = [60, 215, 255];
+
+/// sRGB colour of bones, which [`OUTLINE_COLOR`] sets off from any background.
+pub const BONE_COLOR: [u8; 3] = [250, 228, 180];
 
 /// sRGB colour of the frustum of the camera that LOD is computed for, where the picture is seen from another one.
 pub const LOD_CAMERA_COLOR: [u8; 3] = [30, 205, 110];

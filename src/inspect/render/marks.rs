@@ -1,10 +1,12 @@
-//! Lines that mark cracks, T-junctions, the largest deviation, the selected patch, and the LOD camera.
+//! Lines that mark cracks, T-junctions, bones, the largest deviation, the selected patch, and the LOD camera.
 
 use glam::{Vec2, Vec3};
 
-use super::LineSegment;
 use super::camera::Camera;
-use super::layout::{CRACK_COLOR, FACTOR_COLORS, LOD_CAMERA_COLOR, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR};
+use super::layout::{
+    BONE_COLOR, CRACK_COLOR, FACTOR_COLORS, LOD_CAMERA_COLOR, OUTLINE_COLOR, T_JUNCTION_COLOR, WORST_COLOR,
+};
+use super::{LineSegment, Scene};
 use crate::measure::{CrackedEdge, Measured};
 use geometry::mesh::{Bounds, TJunction, Topology};
 
@@ -55,6 +57,26 @@ pub fn t_junction_lines(topology: &Topology, junctions: &[TJunction]) -> Vec<Lin
         std::iter::once(edge(on_one[0].edge)).chain(on_one.iter().map(|junction| dot(at(junction.point))))
     });
     marks.collect()
+}
+
+/// How many bones count as lying over each other. Most are within the mesh, and with less than 1 they are hardly fainter there.
+const BONE_TIMES: f32 = 0.2;
+
+/// The bones of a scene's mesh in its pose: a dot on each joint, and a line to the nearest joint above it.
+pub fn bone_lines(scene: &Scene) -> Vec<LineSegment> {
+    let mesh = scene.tessellator.mesh();
+    let bones = scene.tessellator.posed().pose().map_or_else(|| mesh.bones.clone(), |pose| mesh.bones_in(pose));
+    let lines = |color, wider: f32| {
+        let line = move |start, end, half_width| LineSegment {
+            half_width: half_width + wider,
+            times: BONE_TIMES,
+            ..LineSegment::new(start, end, color)
+        };
+        let links = bones.iter().filter_map(|bone| Some((bones.get(bone.parent? as usize)?.place, bone.place)));
+        let links = links.map(move |(start, end)| line(start, end, 1.25));
+        links.chain(bones.iter().map(move |bone| line(bone.place, bone.place, 3.5)))
+    };
+    lines(OUTLINE_COLOR, 1.25).chain(lines(BONE_COLOR, 0.0)).collect()
 }
 
 /// The place with the largest deviation: a dot on it, and a line to the nearest point of the reference surface.

@@ -24,6 +24,7 @@ mod layers;
 pub mod layout;
 mod leaks;
 mod legend;
+mod legend_side;
 #[cfg(test)]
 mod light_tests;
 mod marks;
@@ -63,7 +64,10 @@ pub(crate) use leaks::LeakCounter;
 pub use leaks::{Leak, LeakCount, Leaks, leaks_in};
 pub use legend::{Distances, Legend, legend_of};
 pub(crate) use legend::{Shown, tick_text};
-pub use marks::{crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines};
+pub use legend_side::{LegendSide, legend_side};
+pub use marks::{
+    bone_lines, crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines,
+};
 pub use outlines_picture::{lay_over, outlines_picture};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::{DraftPipelines, Renderer};

@@ -3,6 +3,7 @@
 use super::layout::{linear, srgb};
 use super::mipmap_pass::Mipmaps;
 use super::textures::fits;
+use crate::settings::Settings;
 use geometry::mesh::mipmap::{MipFilter, level_count};
 use gpu::{Gpu, GpuError, Lazy, Recorder, flat_texture, read_texture, whole};
 
@@ -126,14 +127,12 @@ impl Target {
         glam::vec2(self.size[0] as f32, self.size[1] as f32)
     }
 
-    /// The colour attachment for one of several passes. The first clears to `background` (linear light), or to nothing in a
-    /// transparent picture, and the last resolves.
+    /// The colour attachment for one of several passes. The first clears to `background` (linear light), and the last resolves.
     pub fn color(&self, background: wgpu::Color, first: bool, last: bool) -> wgpu::RenderPassColorAttachment<'_> {
         let (view, resolve_target) = match &self.multisampled {
             Some(view) => (view, last.then_some(&self.resolved_srgb)),
             None => (&self.resolved_srgb, None),
         };
-        let background = if self.is_transparent { wgpu::Color::TRANSPARENT } else { background };
         wgpu::RenderPassColorAttachment { resolve_target, ..color_attachment(view, first.then_some(background)) }
     }
 
@@ -163,6 +162,13 @@ impl Target {
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
         let texture = |_| gpu.device.create_texture(&flat_texture("target.kept", self.size, SHOWN_FORMAT, usage));
         self.kept.get_or_make(gpu, || [0, 1].map(texture))
+    }
+
+    /// Frees the pictures that were kept, unless pictures with these settings are differences.
+    pub fn keep_only_for(&mut self, settings: &Settings) {
+        if !settings.shows_difference() {
+            self.kept = Lazy::default();
+        }
     }
 
     /// Keeps the picture that was drawn as the one with this index.

@@ -49,6 +49,9 @@ choices! {
         Folds => "folds", "Folds", "Triangles that face away from the side that their patch faces.";
         TJunctions => "t-junctions", "T-junctions",
             "Open edges that a point of another triangle lies on; faint behind the surface.";
+        Bones => "bones", "Bones",
+            "The joints of the mesh's skins in the pose that is shown, each with a line to the nearest joint above it; seen through \
+             the surface.";
         BackFaces => "back-faces", "Back faces", "Triangles seen from behind: of open meshes, or wound the other way.";
         Factors => "factors", "Factors",
             "Colours the surface by tessellation factors after clamping and rounding: the inside factor inside each \
@@ -138,7 +141,7 @@ overlays! {
         Factors of Nothing TriangleSize of Nothing LowFactors of Nothing Excess of MinimumTriangles
         Deviation of ReferenceSurface Silhouette of Outlines;
     switches: Wireframe as wireframe Patches as patches Adjacency as adjacency Cracks as cracks Folds as folds
-        BackFaces as back_faces TJunctions as t_junctions Normals as normals Grid as grid
+        BackFaces as back_faces TJunctions as t_junctions Bones as bones Normals as normals Grid as grid
 }
 
 /// What colours are made of, besides the triangles that are drawn.

@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::plot::{self, ChartError, DENSITY};
 use crate::render::layout::{WASTE_COLOR, srgb};
-use crate::render::{Distances, Legend, Scale, Shown, Usual, legend_of, tick_text};
+use crate::render::{Camera, Distances, Legend, LegendSide, Scale, Scene, Shown, legend_of, legend_side, tick_text};
 use crate::settings::Settings;
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
@@ -31,20 +31,23 @@ const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
 const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
 const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 
-/// Draws the legend into the lower right corner, if the picture's colours have one, of a mesh on which these numbers are `usual`.
+/// Draws the legend into a lower corner, if the picture's colours have one, where it covers less of the scene.
 ///
 /// # Errors
 /// The font can't be used.
 pub(crate) fn draw_legend(
     picture: &mut RgbaImage,
+    scene: &Scene,
+    camera: &Camera,
     settings: &Settings,
-    usual: &Usual,
     distances: &Distances,
 ) -> Result<(), ChartError> {
-    let Some(legend) = legend_of(settings, usual, distances) else { return Ok(()) };
+    let Some(legend) = legend_of(settings, &scene.usual(), distances) else { return Ok(()) };
     let point = point_in(picture.dimensions(), inner_size(&legend), None);
     let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
-    lay_in_corner(picture, &plate, Side::Right, point);
+    let taken = [plate.width(), plate.height()].map(|side| side + (2.0 * MARGIN * point) as u32);
+    let side = legend_side(scene, camera, settings, picture.dimensions().into(), taken);
+    lay_in_corner(picture, &plate, side, point);
     Ok(())
 }
 
@@ -100,7 +103,7 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
     let inner = [BAR[0], 18.0 + ROW * rows.len() as f64];
     let point = point_in(picture.dimensions(), inner, None);
     let plate = plate(inner, point, |pen| named_colors(pen, title, rows.iter().copied(), 1))?;
-    lay_in_corner(picture, &plate, Side::Left, point);
+    lay_in_corner(picture, &plate, LegendSide::Left, point);
     Ok(())
 }
 
@@ -117,13 +120,6 @@ pub(super) fn plate_of_lines((width, height): (u32, u32), lines: &[&str]) -> Res
         lines.iter().zip(middles).try_for_each(|(line, middle)| pen.text(line, [0.0, middle], LEFT))
     })?;
     Ok((plate, (MARGIN * point).round() as u32))
-}
-
-/// Which of the lower corners a plate is in.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Side {
-    Left,
-    Right,
 }
 
 /// The size of a plate with this much room inside, in points.
@@ -149,12 +145,12 @@ fn plate(inner: [f64; 2], point: f64, paint: impl FnOnce(&Pen) -> Drawn) -> Resu
     Ok(image::DynamicImage::from(plate).to_rgba8())
 }
 
-fn lay_in_corner(picture: &mut RgbaImage, plate: &RgbaImage, side: Side, point: f64) {
+fn lay_in_corner(picture: &mut RgbaImage, plate: &RgbaImage, side: LegendSide, point: f64) {
     let margin = (MARGIN * point).round() as u32;
     let at =
         [picture.width() - plate.width().min(picture.width()), picture.height() - plate.height().min(picture.height())];
     let at = at.map(|side| i64::from(side.saturating_sub(margin)));
-    let left = if side == Side::Left { i64::from(margin) } else { at[0] };
+    let left = if side == LegendSide::Left { i64::from(margin) } else { at[0] };
     imageops::replace(picture, plate, left, at[1]);
 }
 

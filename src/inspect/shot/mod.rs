@@ -51,8 +51,8 @@ use crate::measure::{
 };
 use crate::reference_shape::ReferenceShape;
 use crate::render::{
-    Camera, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines, deviation_scale, lay_over,
-    lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
+    Camera, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, bone_lines, crack_lines,
+    deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
 use crate::settings::{ARENA_BYTES, ColorSource, Settings, SplitSide, SplitView};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
@@ -281,7 +281,7 @@ impl Shot {
         }
         if self.view.legend {
             self.draw_split(&mut picture)?;
-            draw_legend(&mut picture, &self.subject.settings, &self.scene.usual(), &self.distances())?;
+            draw_legend(&mut picture, &self.scene, &self.view.camera, &self.subject.settings, &self.distances())?;
         }
         Ok(picture)
     }
@@ -427,6 +427,9 @@ impl Shot {
         if settings.overlays.t_junctions && is_same {
             let junctions = t_junctions(&self.subject.loaded.topology, progress)?;
             lines.extend(t_junction_lines(topology, &junctions));
+        }
+        if let Some(own) = self.scene.half(half).filter(|_| settings.overlays.bones) {
+            lines.extend(bone_lines(own));
         }
         if let Some(worst) = results.and_then(|results| results.deviation.as_ref()).and_then(DeviationField::worst) {
             lines.extend(worst_lines(worst.emitted.as_vec3(), worst.reference_shape.as_vec3()));

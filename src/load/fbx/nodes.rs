@@ -136,7 +136,12 @@ fn hidden(scene: &Scene, show_hidden: bool, order: &[usize], parents: &[Option<u
 
 /// Returns which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
 fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
+    SceneNodes::carrying(shown.iter().copied().chain(joints(scene, shown)), order, parents)
+}
+
+/// Returns the joints of the skins of meshes that are shown.
+pub(super) fn joints(scene: &Scene, shown: &[usize]) -> impl Iterator<Item = usize> {
     let skins = shown.iter().filter_map(|&node| scene.nodes[node].mesh.as_ref()).flat_map(|mesh| &mesh.skin_deformers);
-    let bones = skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref());
-    SceneNodes::carrying(shown.iter().copied().chain(bones.map(|bone| index(bone))), order, parents)
+    let joints = skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref());
+    joints.map(|joint| index(joint))
 }

@@ -1,6 +1,6 @@
 //! What a rig needs to know of a document's nodes.
 
-use ::gltf::Document;
+use ::gltf::{Document, Node};
 
 use super::nodes::{self, Placed};
 use crate::attachment::SceneNodes;
@@ -40,16 +40,22 @@ pub(super) fn move_meshes(clips: &[Clip], document: &Document, placed: &Placed) 
 /// Returns which nodes carry something that is shown, on them or below them: a mesh, a joint of a mesh's skin, or what they carry
 /// besides.
 fn carries_shown(document: &Document, placed: &Placed, also: impl Iterator<Item = usize>) -> Vec<bool> {
-    let mut seen_skins = vec![false; document.skins().len()];
-    let mut carrying: Vec<usize> = Vec::new();
-    for node in placed.shown.iter().filter_map(|&index| document.nodes().nth(index)).filter(|own| own.mesh().is_some())
-    {
-        carrying.push(node.index());
-        if let Some(skin) = node.skin().filter(|skin| !std::mem::replace(&mut seen_skins[skin.index()], true)) {
-            carrying.extend(skin.joints().map(|joint| joint.index()));
-        }
-    }
     let is_shown = placed.is_shown();
-    carrying.extend(also.filter(|node| is_shown.get(*node) == Some(&true)));
-    SceneNodes::carrying(carrying, &placed.order, &placed.parents)
+    let also = also.filter(|node| is_shown.get(*node) == Some(&true));
+    let meshes = with_mesh(document, placed).map(|node| node.index());
+    SceneNodes::carrying(meshes.chain(joints(document, placed)).chain(also), &placed.order, &placed.parents)
+}
+
+/// Returns the joints of the skins of meshes that are shown.
+pub(super) fn joints(document: &Document, placed: &Placed) -> impl Iterator<Item = usize> {
+    let mut seen = vec![false; document.skins().len()];
+    let skins = with_mesh(document, placed).filter_map(|node| node.skin());
+    let skins = skins.filter(move |skin| !std::mem::replace(&mut seen[skin.index()], true));
+    skins.flat_map(|skin| skin.joints()).map(|joint| joint.index())
+}
+
+/// Returns the nodes that are shown and have a mesh.
+fn with_mesh<'a>(document: &'a Document, placed: &Placed) -> impl Iterator<Item = Node<'a>> {
+    let shown = placed.shown.iter().filter_map(|&index| document.nodes().nth(index));
+    shown.filter(|node| node.mesh().is_some())
 }

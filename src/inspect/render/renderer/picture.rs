@@ -38,6 +38,13 @@ pub(super) struct Picture<'a> {
     ground_step: usize,
 }
 
+impl Picture<'_> {
+    /// Whether it is the difference between the pictures of both halves.
+    fn compares(&self) -> bool {
+        matches!(self.steps.last(), Some(Step::Difference))
+    }
+}
+
 /// What is drawn in a step beside the surfaces of its chunk, before or after them.
 struct Beside {
     /// Normals at the vertices of the step's chunk.
@@ -163,10 +170,11 @@ impl Renderer {
             Some((own, self.scene_group(own, frame), &places[half as usize]))
         });
         let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
-        // The difference comes under lines over nothing.
+        // The difference comes under lines over nothing. What is compared has a background, since its alpha is that of the wireframe.
         let is_alone = step == Step::Difference;
+        let is_empty = if picture.compares() { is_alone } else { target.is_transparent() };
         let own = linear_color(picture.settings.background_color());
-        let background = if is_alone { wgpu::Color::TRANSPARENT } else { own };
+        let background = if is_empty { wgpu::Color::TRANSPARENT } else { own };
         let color = target.color(background, is_first || is_alone, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, group, &[]);
@@ -206,8 +214,7 @@ impl Renderer {
         let &Picture { settings, ref steps, .. } = picture;
         let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
         let has_lines = has_lines && index + 1 == steps.len();
-        let compares = matches!(steps.last(), Some(Step::Difference));
-        let has_ground = index == picture.ground_step && settings.overlays.grid && !compares;
+        let has_ground = index == picture.ground_step && settings.overlays.grid && !picture.compares();
         let has_normals = matches!(steps[index], Step::Normals(..));
         Ok(Beside {
             normals: has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?,

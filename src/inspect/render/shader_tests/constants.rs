@@ -12,9 +12,9 @@ use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
 use crate::render::draws::LayerDraw;
 use crate::render::layout::{
-    AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, FOLD_COLOR, FOUND_EMITTED,
-    LEAST_SEEN, NORMAL_COLOR, SECTION_BIT, SECTION_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color, linear,
-    overlay_bits,
+    AXIS_COLORS, BACK_FACE_COLOR, CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, COMPARED_BIT, FOLD_COLOR,
+    FOUND_EMITTED, LEAST_SEEN, NORMAL_COLOR, SECTION_BIT, SECTION_COLOR, TEXELS_WITHOUT_IMAGE, WASTE_COLOR, edge_color,
+    linear, overlay_bits,
 };
 use crate::render::matcap::MATCAP_REACH;
 use crate::render::mipmap_pass::ALPHAS;
@@ -96,7 +96,18 @@ const WGSL_ALONE: &[(&[&str], &str)] = &[
     ),
     (&["TILE_WORDS", "ROUNDS"], "follow from TILE"),
     (
-        &["NEARER", "HIDDEN", "NORMAL_LENGTH", "NORMAL_HALF_WIDTH", "NORMAL_SPACING", "DENSE", "SPARSE"],
+        &[
+            "NEARER",
+            "HIDDEN",
+            "NORMAL_LENGTH",
+            "NORMAL_HALF_WIDTH",
+            "NORMAL_SPACING",
+            "DENSE",
+            "SPARSE",
+            "WIRE_COLOR",
+            "LEFT_WIRE_COLOR",
+            "RIGHT_WIRE_COLOR",
+        ],
         "how lines look",
     ),
     (
@@ -182,6 +193,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("OVERLAY_FOLDS", overlay(Overlays { folds: true, ..none })),
         ("OVERLAY_BACK_FACES", overlay(Overlays { back_faces: true, ..none })),
         ("OVERLAY_SECTION", number(SECTION_BIT)),
+        ("OVERLAY_COMPARED", number(COMPARED_BIT)),
         ("OVERLAY_BARYCENTRIC", colors(Colors::Barycentric)),
         ("OVERLAY_FACTORS", colors(Colors::Factors)),
         ("OVERLAY_TRIANGLE_SIZE", colors(Colors::TriangleSize)),
