@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use inspect::settings::options::{LOD_IS_FIXED, NORMALS_FOLLOW_TRIANGLES};
-use inspect::settings::{ColorSource, Control, Overlay, Overlays};
 
 /// The greatest number of bookmarks of a file: one for each key from 1 to 9.
 pub(crate) const MOST_BOOKMARKS: usize = 9;
@@ -119,11 +118,6 @@ impl Availability {
         }
     }
 
-    /// Why an overlay can't be shown, in a sentence; none if it can.
-    pub fn why_not_show(&self, overlay: Overlay) -> Option<&'static str> {
-        self.why_not(needs_of(overlay))
-    }
-
     /// Why what has these needs isn't possible, in a sentence; none if it is.
     pub(super) fn why_not(&self, needs: &[Need]) -> Option<&'static str> {
         let has = |need| self.has.contains(&need);
@@ -133,14 +127,5 @@ impl Availability {
             Need::Factor | Need::Lod if has(Need::LodShader) => "The factors come from an LOD shader.",
             _ => lacking.why_not(),
         })
-    }
-}
-
-/// What an overlay needs.
-pub(super) fn needs_of(overlay: Overlay) -> &'static [Need] {
-    match Overlays::default().control(overlay) {
-        Control::Colors(_, own) if own.source() == ColorSource::TextureCoordinates => &[Need::TextureCoordinates],
-        Control::Switch(_) if overlay == Overlay::Bones => &[Need::Bones],
-        Control::Colors(..) | Control::Switch(_) => &[],
     }
 }

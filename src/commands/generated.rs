@@ -4,7 +4,6 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut};
 
-use super::availability::needs_of;
 use super::fixed::declared;
 use super::{
     Action, Availability, CameraAction, Change, Command, FileAction, MOST_BOOKMARKS, Need, Place, Preparing, Submenu,
@@ -13,7 +12,7 @@ use super::{
 use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
 use geometry::tessellate::Surface;
-use inspect::settings::{Choice, Colors, Control, Declaration, Overlay, Overlays, options};
+use inspect::settings::{Choice, ColorSource, Colors, Control, Declaration, Overlay, Overlays, options};
 
 /// The greatest number of clips that are listed.
 const CLIPS: usize = 1000;
@@ -110,6 +109,19 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
         Overlay::Grid => Key::Y,
         Overlay::Deviation => Key::V,
     })
+}
+
+/// Why an overlay can't be shown now, in a sentence; none if it can.
+pub(crate) fn why_not_show(overlay: Overlay, now: &Availability) -> Option<&'static str> {
+    now.why_not(needs_of(overlay))
+}
+
+fn needs_of(overlay: Overlay) -> &'static [Need] {
+    match Overlays::default().control(overlay) {
+        Control::Colors(_, own) if own.source() == ColorSource::TextureCoordinates => &[Need::TextureCoordinates],
+        Control::Switch(_) if overlay == Overlay::Bones => &[Need::Bones],
+        Control::Colors(..) | Control::Switch(_) => &[],
+    }
 }
 
 /// Commands for colours and overlays. Each but the one for the material's colours is a switch: given again, it switches

@@ -133,7 +133,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;
     }
-    let Scene { materials, mut builder, mut primitives, binder, details, .. } = scene;
+    let Scene { materials, mut builder, mut primitives, mut binder, details, .. } = scene;
     let of_materials = parsed.parts.list.enter_materials(&mut builder, &budget);
     of_materials.map_err(GltfError::too_large("the list of materials"))?;
     if builder.is_empty() {

@@ -5,7 +5,7 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use super::settings_panel::{colors_hover, overlay_hover, overlay_of};
 use crate::app::App;
 use crate::app::widgets::{switch_button, text_width};
-use crate::commands::{Action, Availability, CameraAction, Change, Command, FileAction, all, with_key};
+use crate::commands::{Action, Availability, CameraAction, Change, Command, FileAction, all, why_not_show, with_key};
 use inspect::settings::{Choice, Colors, Control, Overlay};
 
 /// The width of the list of colours, in points: that of its longest entry.
@@ -56,7 +56,7 @@ impl App {
         let (response, _) = button.config(config).ui(ui, |ui| {
             for overlay in others() {
                 if let Control::Switch(switch) = overlays.control(overlay) {
-                    let why_not = now.why_not_show(overlay);
+                    let why_not = why_not_show(overlay, now);
                     let check = egui::Checkbox::new(switch, overlay.label());
                     let check = ui.add_enabled(why_not.is_none(), check).on_hover_text(overlay_hover(overlay));
                     check.on_disabled_hover_text(why_not.unwrap_or_default());
@@ -72,7 +72,7 @@ impl App {
         // High enough for all entries.
         let combo = combo.height(420.0).show_ui(ui, |ui| {
             for &choice in Colors::ALL {
-                let why_not = overlay_of(choice).and_then(|overlay| now.why_not_show(overlay));
+                let why_not = overlay_of(choice).and_then(|overlay| why_not_show(overlay, now));
                 let entry = egui::Button::selectable(*colors == choice, choice.label());
                 let entry = ui.add_enabled(why_not.is_none(), entry).on_hover_text(colors_hover(choice));
                 if entry.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {
