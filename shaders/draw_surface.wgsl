@@ -9,8 +9,7 @@ fn surface_normal_of(in: Varyings) -> vec3<f32> {
 // The last argument is the colour of the material in light from all around: none, since the lights at the camera take its place.
 @fragment
 fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    let color = surface_color(in, surface_normal_of(in), front, vec4<f32>(0.0));
-    return vec4<f32>(color.rgb, 1.0 - wire_opacity);
+    return opaque_surface_color(in, surface_normal_of(in), front, vec4<f32>(0.0));
 }
 
 @fragment
@@ -26,8 +25,7 @@ fn masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> 
 fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_surface_place(in, normal, front);
     let own = material_color(place);
-    let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
-    return masked_pixel(place, vec4<f32>(color.rgb, 1.0 - wire_opacity));
+    return masked_pixel(place, opaque_surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0)));
 }
 
 // The same with the lights at the camera.
@@ -38,8 +36,7 @@ fn cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> Mas
 
 fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
     let place = lit_surface_place(in, normal, front);
-    let color = surface_color(in, normal, front, vec4<f32>(0.0));
-    return masked_pixel(place, vec4<f32>(color.rgb, 1.0 - wire_opacity));
+    return masked_pixel(place, opaque_surface_color(in, normal, front, vec4<f32>(0.0)));
 }
 
 @fragment
@@ -49,11 +46,11 @@ fn cut_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @lo
 
 fn cut_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
     let place = lit_surface_place(in, normal, front);
-    let color = surface_color(in, normal, front, vec4<f32>(0.0));
+    let color = opaque_surface_color(in, normal, front, vec4<f32>(0.0));
     if base_color(place, place_detail(place)).a < material.cutoff {
         discard;
     }
-    return vec4<f32>(color.rgb, 1.0 - wire_opacity);
+    return color;
 }
 
 fn lit_surface_place(in: Varyings, normal: vec3<f32>, front: bool) -> SurfacePlace {
@@ -67,9 +64,9 @@ fn lit_surface_place(in: Varyings, normal: vec3<f32>, front: bool) -> SurfacePla
 
 fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
     let own = material_color(lit_surface_place(in, normal, front));
-    let color = surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
+    let color = opaque_surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
     if (HAS_MASK || HAS_TRANSMISSION) && own.a == 0.0 {
         discard;
     }
-    return vec4<f32>(color.rgb, 1.0 - wire_opacity);
+    return color;
 }

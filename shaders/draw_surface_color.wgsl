@@ -152,3 +152,8 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
     }
     return color;
 }
+
+// The same where nothing behind is seen.
+fn opaque_surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32>) -> vec4<f32> {
+    return vec4<f32>(surface_color(in, own_normal, front, lit).rgb, 1.0 - wire_opacity);
+}

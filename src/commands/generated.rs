@@ -111,19 +111,6 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     })
 }
 
-/// Why an overlay can't be shown now, in a sentence; none if it can.
-pub(crate) fn why_not_show(overlay: Overlay, now: &Availability) -> Option<&'static str> {
-    now.why_not(needs_of(overlay))
-}
-
-fn needs_of(overlay: Overlay) -> &'static [Need] {
-    match Overlays::default().control(overlay) {
-        Control::Colors(_, own) if own.source() == ColorSource::TextureCoordinates => &[Need::TextureCoordinates],
-        Control::Switch(_) if overlay == Overlay::Bones => &[Need::Bones],
-        Control::Colors(..) | Control::Switch(_) => &[],
-    }
-}
-
 /// Commands for colours and overlays. Each but the one for the material's colours is a switch: given again, it switches
 /// off.
 fn colors_and_overlays() -> Vec<Command> {
@@ -132,12 +119,18 @@ fn colors_and_overlays() -> Vec<Command> {
     let mut all = vec![Command::new(Change::MaterialColors, own, material.text())];
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
-        let name = match overlays.control(overlay) {
-            Control::Colors(_, given) => format!("{colors}: {}", given.label()),
-            Control::Switch(_) => format!("Overlay: {}", overlay.label()),
+        let (name, needs): (_, &[Need]) = match overlays.control(overlay) {
+            Control::Colors(_, given) if given.source() == ColorSource::TextureCoordinates => {
+                (format!("{colors}: {}", given.label()), &[Need::TextureCoordinates])
+            }
+            Control::Colors(_, given) => (format!("{colors}: {}", given.label()), &[]),
+            Control::Switch(_) if overlay == Overlay::Bones => {
+                (format!("Overlay: {}", overlay.label()), &[Need::Bones])
+            }
+            Control::Switch(_) => (format!("Overlay: {}", overlay.label()), &[]),
         };
         let command = Command::new(Change::Overlay(overlay), name, overlay.text());
-        command.keys([overlay_key(overlay)]).needs(needs_of(overlay))
+        command.keys([overlay_key(overlay)]).needs(needs)
     }));
     all
 }

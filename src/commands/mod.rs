@@ -25,7 +25,6 @@ pub use fixed::ENVIRONMENT;
 pub(crate) use fixed::{
     CLOSE_ENVIRONMENT, CLOSE_LOD_SHADER, CLOSE_SURFACE_SHADER, HEIGHT_IMAGE, LEFT_MESH, MATCAP_IMAGE,
 };
-pub(crate) use generated::why_not_show;
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]

@@ -64,8 +64,9 @@ pub struct ComputePipelines {
 }
 
 impl Default for ComputePipelines {
+    /// Compiles nothing yet.
     fn default() -> Self {
-        Self::new()
+        Self::in_groups([8, 32, 128])
     }
 }
 
@@ -75,12 +76,7 @@ const FEW_PATCHES: u32 = 512;
 const LARGE_PATCHES: u32 = 128;
 
 impl ComputePipelines {
-    /// Compiles nothing yet.
-    pub fn new() -> Self {
-        Self::in_groups([8, 32, 128])
-    }
-
-    /// The same with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for small ones on a
+    /// The same as by default, with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for small ones on a
     /// GPU.
     pub fn in_groups(groups: [u32; 3]) -> Self {
         Self {

@@ -40,11 +40,10 @@ pub struct Engine {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        let pipelines = Arc::new(ComputePipelines::new());
         let renderer = Arc::new(Renderer::new(&gpu));
-        let (picker, leaks) = (Arc::new(Picker::new()), Arc::new(LeakCounter::new()));
-        let silhouettes = Arc::new(SilhouetteDrawer::new());
-        Self { gpu, pipelines, renderer, picker, leaks, silhouettes, chunks_read: Arc::default() }
+        let (leaks, silhouettes) = (Arc::new(LeakCounter::new()), Arc::new(SilhouetteDrawer::new()));
+        let (pipelines, picker, chunks_read) = Default::default();
+        Self { gpu, pipelines, renderer, picker, leaks, silhouettes, chunks_read }
     }
 
     /// Makes an engine on the machine's best adapter, without a window.

@@ -21,14 +21,12 @@ mod surfaces;
 mod textures;
 mod vertices;
 
-use super::attachment::SceneNodes;
-use super::bones::bones;
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::Notes;
 use super::read_error::ReadError;
-use super::rig_builder::RigBuilder;
+use super::rig_builder::{RigBuilder, bones};
 use super::uri::Files;
 
 use nodes::Placed;
@@ -76,9 +74,9 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
         surfaces.add(node, &file.selected, progress)?;
     }
     let holds = left_out::holds(&scene, &placed);
-    let (mut faces, details, mut binder) = surfaces.into_parts(&mut notes);
-    let SceneNodes { order, parents, .. } = &placed.scene;
-    let bones = bones(nodes::joints(&scene, &placed.shown), order, parents, &placed.global, binder.as_mut());
+    let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
+    let (joints, own) = (nodes::joints(&scene, &placed.shown), &placed.scene);
+    let bones = bones(joints, &own.order, &own.parents, &placed.global, binder.as_ref());
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64);
     let morph_targets = morphs::file_weights(&scene);

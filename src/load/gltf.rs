@@ -56,12 +56,11 @@ use std::sync::Arc;
 use ::gltf::{Document, Node, Semantic};
 use glam::DMat4;
 
-use super::bones::bones;
 use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::Notes;
-use super::rig_builder::{RigBuilder, SkinJoints};
+use super::rig_builder::{RigBuilder, SkinJoints, bones};
 use super::uri::Files;
 use super::warnings::repair_warnings;
 use super::{notes, rig_builder};
@@ -133,7 +132,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
         progress.set(0.3 + 0.5 * i as f32 / placed.shown.len() as f32);
         scene.add(node, progress)?;
     }
-    let Scene { materials, mut builder, mut primitives, mut binder, details, .. } = scene;
+    let Scene { materials, mut builder, mut primitives, binder, details, .. } = scene;
     let of_materials = parsed.parts.list.enter_materials(&mut builder, &budget);
     of_materials.map_err(GltfError::too_large("the list of materials"))?;
     if builder.is_empty() {
@@ -164,7 +163,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let joints = rig_nodes::joints(document, &placed);
-    let bones = bones(joints, &placed.order, &placed.parents, &placed.global, binder.as_mut());
+    let bones = bones(joints, &placed.order, &placed.parents, &placed.global, binder.as_ref());
     let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
     let parts = parsed.parts.list.finish(&mut mesh, notes);
     mesh.bones = bones;

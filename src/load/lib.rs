@@ -5,7 +5,6 @@
 
 mod attachment;
 mod binding_space;
-mod bones;
 mod cage_faces;
 mod content;
 pub mod csv_vertices;

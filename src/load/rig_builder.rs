@@ -16,7 +16,7 @@ use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::normals::GivenNormal;
 use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
 use geometry::mesh::subdivision::Refinement;
-use geometry::mesh::{Budget, CornerDetail, CornerDetails, Mesh};
+use geometry::mesh::{Bone, Budget, CornerDetail, CornerDetails, Mesh};
 use geometry::progress::{Cancelled, Progress};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
@@ -163,14 +163,8 @@ impl RigBuilder {
         Joint { node, offset: below, ..Joint::default() }
     }
 
-    /// Lets what moves a node move the next of the mesh's bones.
-    pub(super) fn add_bone(&mut self, node: usize) {
-        let mount = self.mount(node);
-        self.rig.bones.push((mount.node, mount.offset.w_axis.truncate()));
-    }
-
     /// Gives up building a rig. The first reason is reported.
-    fn give_up(&mut self, reason: String) {
+    pub(super) fn give_up(&mut self, reason: String) {
         self.problem.get_or_insert(reason);
     }
 
@@ -183,7 +177,9 @@ impl RigBuilder {
         }
         self.grown.iter().for_each(|(node, rest)| rig.nodes[*node as usize].rest = *rest);
         let rest = rig.rest();
-        mesh.bones = mesh.bones_in(&rest);
+        if self.problem.is_some() {
+            mesh.bones = mesh.bones_in(Some(&rest));
+        }
         for (corner, &id) in mesh.corners.iter_mut().zip(corners) {
             let binding = self.bound.get(id as usize).map(|bound| &bound.binding);
             if let Some(binding) = binding.filter(|own| is_moved_by(own, &rig.joints, &self.is_grown)) {
@@ -238,7 +234,7 @@ impl RigBuilder {
             rig.tangents = bindings.map(tangent).collect();
         }
         refer_to_tangents(rig, &self.tangent_deltas);
-        rig.reach = Reach::new(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
+        rig.reach = Reach::new(&rig.bindings, &rig.deltas, &self.tangent_deltas);
     }
 
     /// Binds the points that a cage is refined to, as combinations of what the cage's points are bound to, by the numbers of `cage`:
@@ -354,6 +350,32 @@ impl RigBuilder {
     }
 }
 
+/// Returns these joints as bones, each once: parents before children, as `order` has all nodes. What no clip moves is where `global` has
+/// it.
+pub(super) fn bones(
+    joints: impl Iterator<Item = usize>,
+    order: &[usize],
+    parents: &[Option<usize>],
+    global: &[DMat4],
+    binder: Option<&RigBuilder>,
+) -> Vec<Bone> {
+    let mut is_joint = vec![false; parents.len()];
+    joints.for_each(|joint| is_joint[joint] = true);
+    // Of each node the bone that it is, or else the nearest one above it.
+    let mut nearest: Vec<Option<u32>> = vec![None; parents.len()];
+    let mut bones = Vec::new();
+    for &node in order {
+        let parent = parents[node].and_then(|parent| nearest[parent]);
+        nearest[node] = if is_joint[node] { Some(to_u32(bones.len())) } else { parent };
+        if is_joint[node] {
+            let still = || Joint { offset: global[node], ..Joint::default() };
+            let Joint { node, offset, .. } = binder.map_or_else(still, |binder| binder.mount(node));
+            bones.push(Bone { node, place: offset.w_axis.truncate().as_vec3(), parent });
+        }
+    }
+    bones
+}
+
 /// Puts the displacements of tangents behind the tangents of a rig, and lets its deltas refer to them there. They are left out
 /// if the rig has no tangents.
 fn refer_to_tangents(rig: &mut Rig, displacements: &[[f32; 3]]) {
@@ -422,11 +444,6 @@ impl NodeBinder<'_> {
             return Err(format!("morph targets have more than {MAX_DISPLACED} elements"));
         }
         Ok(())
-    }
-
-    /// Gives up building a rig. The first reason is reported.
-    pub(super) fn give_up(&mut self, reason: String) {
-        self.binder.give_up(reason);
     }
 
     /// Returns the joint and the space of a mesh's vertices; `to_node` takes them to the node's own space.

@@ -7,7 +7,7 @@ use crate::app::App;
 use crate::app::sections::Section;
 use crate::app::text::{counted, grouped, short};
 use crate::app::widgets::{FoundRow, columns, fact, found_list};
-use inspect::measure::{Agreement, Disagreement};
+use inspect::measure::Agreement;
 use inspect::settings::Choice;
 
 impl App {
@@ -80,16 +80,16 @@ impl App {
         columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
             .on_hover_text("The least and the greatest factor of a side of the edge.");
         let first = edges.first().map_or(0, |edge| edge.edge);
-        let clicked = found_list(ui, "different factors", edges.len(), first, |row| {
-            let own = &edges[row];
+        let clicked = found_list(ui, "different factors", edges, first, |own| {
+            let sides = own.sides.iter().map(|(triangle, factor)| format!("Triangle {triangle} has {factor}."));
             let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
             FoundRow {
                 columns: format!("{:<9}{least:>9}{greatest:>9}", own.edge),
                 is_selected: self.selected_edge() == Some(own.edge),
-                hover: sides_text(own),
+                hover: sides.chain(["A click frames the edge.".to_owned()]).collect::<Vec<_>>().join("\n"),
             }
         });
-        if let Some(edge) = clicked.map(|row| edges[row].edge) {
+        if let Some(edge) = clicked.map(|own| own.edge) {
             self.select_edge(edge);
         }
     }
@@ -105,10 +105,4 @@ fn agreement_rows(ui: &mut egui::Ui, agreement: &Agreement) {
         let hover = "Patches that emit nothing because one of their factors is not greater than 0.";
         fact(ui, "Patches left out", &grouped(agreement.patches_culled), hover);
     });
-}
-
-/// What each side of an edge has, in sentences.
-fn sides_text(edge: &Disagreement) -> String {
-    let sides = edge.sides.iter().map(|(triangle, factor)| format!("Triangle {triangle} has {factor}."));
-    sides.chain(["A click frames the edge.".to_owned()]).collect::<Vec<_>>().join("\n")
 }

@@ -5,7 +5,7 @@ use egui::containers::menu::{MenuButton, MenuConfig};
 use super::settings_panel::{colors_hover, overlay_hover, overlay_of};
 use crate::app::App;
 use crate::app::widgets::{switch_button, text_width};
-use crate::commands::{Action, Availability, CameraAction, Change, Command, FileAction, all, why_not_show, with_key};
+use crate::commands::{Action, Availability, CameraAction, Change, Command, FileAction, all, with_key};
 use inspect::settings::{Choice, Colors, Control, Overlay};
 
 /// The width of the list of colours, in points: that of its longest entry.
@@ -31,8 +31,12 @@ impl App {
                 let action = Action::Setting(Change::Overlay(overlay));
                 self.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
             }
-            self.overlays_list(ui, &now);
-            self.colors_list(ui, &now);
+            let why_not = |overlay| {
+                let action = Action::Setting(Change::Overlay(overlay));
+                commands.iter().find(|command| command.action == action)?.why_not(&now)
+            };
+            self.overlays_list(ui, why_not);
+            self.colors_list(ui, why_not);
             divider(ui, "Frame");
             self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
             let names = ["Freeze LOD", "Freeze LOD camera"];
@@ -46,8 +50,9 @@ impl App {
         });
     }
 
-    /// The overlays that have no button of their own. The list stays open while they are switched.
-    fn overlays_list(&mut self, ui: &mut egui::Ui, now: &Availability) {
+    /// The overlays that have no button of their own. The list stays open while they are switched. `why_not` says in a sentence why one
+    /// can't be shown.
+    fn overlays_list(&mut self, ui: &mut egui::Ui, why_not: impl Fn(Overlay) -> Option<&'static str>) {
         let others = || Overlay::ALL.into_iter().filter(|overlay| !ON_TOOLBAR.contains(overlay));
         let overlays = &mut self.settings.overlays;
         let is_any_on = others().any(|overlay| matches!(overlays.control(overlay), Control::Switch(true)));
@@ -56,7 +61,7 @@ impl App {
         let (response, _) = button.config(config).ui(ui, |ui| {
             for overlay in others() {
                 if let Control::Switch(switch) = overlays.control(overlay) {
-                    let why_not = why_not_show(overlay, now);
+                    let why_not = why_not(overlay);
                     let check = egui::Checkbox::new(switch, overlay.label());
                     let check = ui.add_enabled(why_not.is_none(), check).on_hover_text(overlay_hover(overlay));
                     check.on_disabled_hover_text(why_not.unwrap_or_default());
@@ -66,13 +71,13 @@ impl App {
         response.on_hover_text("What else is drawn over the surface (--overlay).");
     }
 
-    fn colors_list(&mut self, ui: &mut egui::Ui, now: &Availability) {
+    fn colors_list(&mut self, ui: &mut egui::Ui, why_not: impl Fn(Overlay) -> Option<&'static str>) {
         let colors = &mut self.settings.overlays.colors;
         let combo = egui::ComboBox::from_id_salt("Colours").selected_text(colors.label()).width(COLORS_WIDTH);
         // High enough for all entries.
         let combo = combo.height(420.0).show_ui(ui, |ui| {
             for &choice in Colors::ALL {
-                let why_not = overlay_of(choice).and_then(|overlay| why_not_show(overlay, now));
+                let why_not = overlay_of(choice).and_then(&why_not);
                 let entry = egui::Button::selectable(*colors == choice, choice.label());
                 let entry = ui.add_enabled(why_not.is_none(), entry).on_hover_text(colors_hover(choice));
                 if entry.on_disabled_hover_text(why_not.unwrap_or_default()).clicked() {

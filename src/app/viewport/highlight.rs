@@ -5,7 +5,7 @@ use super::ruler::Ruler;
 use crate::app::{App, Document};
 use geometry::mesh::{Bounds, Moment, Topology};
 use inspect::render::{LineSegment, axis_lines, bone_lines, crack_lines, t_junction_lines};
-use inspect::settings::SplitSide;
+use inspect::settings::{Overlays, SplitSide};
 
 /// Everything that the lines over the mesh depend on.
 #[derive(Clone, Copy, PartialEq)]
@@ -16,9 +16,8 @@ pub(crate) struct Highlight {
     left: u64,
     /// Whose axes are drawn, if they are.
     axes: Option<Bounds>,
-    cracks: bool,
+    overlays: Overlays,
     t_junctions: bool,
-    bones: bool,
     selected_edge: Option<u32>,
     selected_triangle: Option<u32>,
     /// Number of the emitted triangle that was clicked on, in its patch.
@@ -46,9 +45,8 @@ impl App {
             measured: document.halves.each_ref().map(|half| if shows_measured { half.measure.generation } else { 0 }),
             left: document.scene.half(SplitSide::Left).map_or(0, |_| document.left_made),
             axes: overlays.grid.then_some(document.scene.bounds),
-            cracks: overlays.cracks,
+            overlays,
             t_junctions: junctions.is_some(),
-            bones: overlays.bones,
             selected_edge: self.selected_edge(),
             selected_triangle: self.selected_triangle(),
             hit: self.hit().map(|hit| hit.number),

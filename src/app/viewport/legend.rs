@@ -3,7 +3,7 @@
 use egui::{Align2, Rect, Sense, TextureHandle};
 
 use crate::app::App;
-use inspect::render::{Legend, LegendSide, legend_of, legend_side};
+use inspect::render::{Legend, legend_of, legend_side};
 use inspect::shot::legend::legend_picture;
 
 /// The distance from the picture's borders, in points.
@@ -47,18 +47,14 @@ impl App {
         let Some(PaintedLegend { legend, texture, .. }) = &self.viewport.legend else { return };
         let size = texture.size_vec2() / point;
         // It keeps its side while the mesh or the pointer moves.
-        let is_drawn = self.viewport.picture.drawn.is_some_and(|drawn| drawn.camera == self.viewport.camera);
-        let rests = is_drawn && !self.is_playing() && !ui.input(|input| input.pointer.any_down());
+        let rests = !self.is_playing() && !ui.input(|input| input.pointer.any_down());
         if let Some(document) = self.document.as_ref().filter(|_| rests) {
             let taken = texture.size().map(|side| side as u32 + (2.0 * MARGIN * point) as u32);
             self.viewport.legend_side =
-                legend_side(&document.scene, &self.viewport.camera, &self.settings, room, taken);
+                legend_side(&document.scene, &self.viewport.camera, &self.settings, [room, taken]);
         }
-        let corner = match self.viewport.legend_side {
-            LegendSide::Right => Align2::RIGHT_BOTTOM,
-            LegendSide::Left => Align2::LEFT_BOTTOM,
-        };
-        let place = corner.align_size_within_rect(size, picture.shrink(MARGIN));
+        let corners = [Align2::LEFT_BOTTOM, Align2::RIGHT_BOTTOM];
+        let place = corners[self.viewport.legend_side as usize].align_size_within_rect(size, picture.shrink(MARGIN));
         let response = ui.interact(place, ui.scope_id().with("legend"), Sense::hover());
         let spoken = format!("Legend: {}", legend.spoken());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &spoken));

@@ -21,7 +21,8 @@ pub(super) mod selection;
 pub(super) mod warm_up;
 
 use inspect::engine::Engine;
-use inspect::render::{Camera, LegendSide};
+use inspect::render::Camera;
+use inspect::settings::SplitSide;
 
 use camera::FollowedCamera;
 use frozen_camera::FrozenCamera;
@@ -57,7 +58,8 @@ pub(super) struct Viewport {
     pub greets: bool,
     pub picture: Picture,
     pub legend: Option<PaintedLegend>,
-    pub legend_side: LegendSide,
+    /// The half of the picture whose lower corner has it.
+    pub legend_side: SplitSide,
     pub pace: Pace,
     pub preview: Preview,
     pub warm_up: WarmUp,

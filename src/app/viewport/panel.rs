@@ -17,7 +17,7 @@ use crate::commands::{Action, CameraAction, key_name, with_key};
 use geometry::view::ScreenView;
 use gpu::GpuError;
 use inspect::engine::SilhouetteView;
-use inspect::render::{Ground, LegendSide, Scene, framed_size, half_at};
+use inspect::render::{Ground, Scene, framed_size, half_at};
 use inspect::settings::{Settings, SplitSide};
 use load::Source;
 
@@ -351,7 +351,7 @@ impl App {
             self.under_way().is_some() || self.viewport.picture.cancelled.is_some() || self.shows_nothing();
         let is_companion = !shows_progress || rect.left() + 10.0 + widest + 12.0 < progress.left();
         let bottom = if is_companion { rect.bottom() } else { progress.top() };
-        let legend = self.viewport.legend.as_ref().filter(|_| self.viewport.legend_side == LegendSide::Left);
+        let legend = self.viewport.legend.as_ref().filter(|_| self.viewport.legend_side == SplitSide::Left);
         let bottom = bottom.min(rect.bottom() - legend.map_or(0.0, PaintedLegend::height));
         let mut position = egui::pos2(rect.left() + 10.0, bottom - 10.0);
         for (galley, text) in notes {

@@ -5,8 +5,7 @@ use glam::Vec3;
 use crate::app::App;
 use crate::app::text::short;
 use geometry::view::{ScreenView, seen_on_plane};
-use inspect::render::layout::OUTLINE_COLOR;
-use inspect::render::{LineSegment, Picked, Pixel};
+use inspect::render::{LineSegment, Picked, Pixel, outlined};
 use inspect::settings::SplitSide;
 
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -37,12 +36,9 @@ impl Ruler {
     }
 
     fn lines(&self) -> Vec<LineSegment> {
-        let line = |a, b, color, half_width| LineSegment { half_width, ..LineSegment::new(a, b, color) };
-        // Light within dark, so that it is seen on any colour.
-        let both = |a, b, width: f32| [line(a, b, OUTLINE_COLOR, width + 1.0), line(a, b, [255; 3], width)];
-        let dots = self.ends.into_iter().flatten().flat_map(|end| both(end, end, 3.5));
-        let between = self.ends[0].zip(self.ends[1]).into_iter().flat_map(|(a, b)| both(a, b, 1.0));
-        between.chain(dots).collect()
+        let dots = self.ends.into_iter().flatten().map(|end| (end, end, 3.5));
+        let between = self.ends[0].zip(self.ends[1]).into_iter().map(|(a, b)| (a, b, 1.0));
+        outlined(&between.chain(dots).collect::<Vec<_>>(), [255; 3], 1.0)
     }
 }
 

@@ -7,6 +7,7 @@ use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Command, Error, FromArgMatches};
 
+use geometry::defaults::with_defaults;
 use geometry::tessellate::{Displacement, Lod, Tessellation};
 use inspect::settings::{Choice, Declaration, Description, Kind, Lighting, Settings, Value, descriptions, options};
 use load::Import;
@@ -36,16 +37,12 @@ pub(crate) type PictureOptions = Declared<Settings>;
 /// How the geometry of a file is taken.
 pub(crate) type ImportOptions = Declared<Import>;
 
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GivenTessellation {
-    pub tessellation: Tessellation,
-    /// Given on the command line; without it, displacement depends on whether there are heights.
-    pub displacement: Option<Displacement>,
-}
-
-impl Default for GivenTessellation {
-    fn default() -> Self {
-        Self { tessellation: Settings::usual().tessellation, displacement: None }
+with_defaults! {
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct GivenTessellation {
+        pub tessellation: Tessellation = Settings::usual().tessellation,
+        /// Given on the command line; without it, displacement depends on whether there are heights.
+        pub displacement: Option<Displacement> = None,
     }
 }
 

@@ -152,7 +152,7 @@ fn rebuilt(
         details: details.map(|(details, _)| Arc::new(details)),
         lights: mesh.lights.clone(),
         cameras: mesh.cameras.clone(),
-        bones: mesh.bones.clone(),
+        bones: mesh.bones_in(None),
         part_styles: mesh.part_styles.clone(),
         ..made
     })

@@ -4,7 +4,6 @@
 
 pub mod adjacency;
 mod alike_corners;
-mod bone;
 mod bounding_box_tree;
 pub mod bounds;
 pub mod build_limits;
@@ -48,7 +47,6 @@ use std::sync::Arc;
 
 use glam::{Vec2, Vec3};
 
-pub use bone::Bone;
 pub use bounds::Bounds;
 pub use corner_details::{CornerDetail, CornerDetails};
 pub use file_camera::{FileCamera, Projection};
@@ -57,7 +55,7 @@ pub use light::{Light, LightKind, MOST_LIGHTS};
 pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
 pub use repairs::Repairs;
 pub use rig::clip::Clip;
-pub use rig::{Moment, Pose, Rig};
+pub use rig::{Bone, Moment, Pose, Rig};
 pub use slices::{MeshSlices, SliceError};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
@@ -180,13 +178,15 @@ impl Mesh {
         cameras
     }
 
-    /// Returns the bones in a pose. One without a finite place there stays where it is at rest.
-    pub fn bones_in(&self, pose: &Pose) -> Vec<Bone> {
-        let mut bones = self.bones.clone();
-        for (bone, place) in bones.iter_mut().zip(&pose.bones).filter(|(_, place)| place.is_finite()) {
-            bone.place = *place;
-        }
-        bones
+    /// Returns the bones where they are in a pose, or at rest, in object space.
+    pub fn bones_in(&self, pose: Option<&Pose>) -> Vec<Bone> {
+        let rest = self.rig.as_ref().filter(|_| pose.is_none()).map(|rig| rig.rest());
+        let nodes = pose.or(rest.as_ref()).map_or(&[][..], |pose| &pose.nodes);
+        let placed = |bone: &Bone| match bone.node.and_then(|node| nodes.get(node as usize)) {
+            Some(global) => global.transform_point3(bone.place.as_dvec3()).as_vec3(),
+            None => bone.place,
+        };
+        self.bones.iter().map(|bone| Bone { node: None, place: placed(bone), ..*bone }).collect()
     }
 
     /// Returns the cameras of the file at a moment of one of its clips; without one, where they are at rest.

@@ -86,7 +86,8 @@ pub fn reorient(mesh: &mut Mesh, up: UpAxis, scale: f64) {
             *half_height = length(*half_height);
         }
     }
-    mesh.bones.iter_mut().for_each(|bone| bone.place = place(bone.place));
+    let still = mesh.bones.iter_mut().filter(|bone| bone.node.is_none());
+    still.for_each(|bone| bone.place = place(bone.place));
 }
 
 /// Puts a transform over all joints. Bindings are in the spaces of their joints, so they stay, and so do clips.
@@ -97,9 +98,6 @@ fn reorient_rig(rig: &mut Rig, transform: DMat4) {
     let joints = rig.joints.iter_mut().chain(&mut rig.lights).chain(&mut rig.cameras);
     for joint in joints.filter(|joint| joint.node.is_none()) {
         joint.offset = transform * joint.offset;
-    }
-    for (_, place) in rig.bones.iter_mut().filter(|(node, _)| node.is_none()) {
-        *place = transform.transform_point3(*place);
     }
 }
 

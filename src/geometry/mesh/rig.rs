@@ -14,7 +14,7 @@ use crate::numbers::counted;
 use std::fmt;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{DMat4, DVec3, Vec3};
+use glam::{DMat4, Vec3};
 use serde::Serialize;
 
 pub use animated_node::{AnimatedNode, Placement};
@@ -47,8 +47,6 @@ pub struct Rig {
     pub lights: Vec<Joint>,
     /// The same for its cameras, which look along -Z.
     pub cameras: Vec<Joint>,
-    /// For each of the mesh's bones the node that moves it, and its place in the space of that node, or of the mesh without one.
-    pub bones: Vec<(Option<u32>, DVec3)>,
     /// Bounds on the coordinates before deformation.
     pub reach: Reach,
 }
@@ -121,6 +119,17 @@ pub struct Joint {
     pub place: DMat4,
 }
 
+/// A joint of a skin, to be shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Bone {
+    /// The animated node that moves it, if any.
+    pub node: Option<u32>,
+    /// In the space of that node; in object space without one.
+    pub place: Vec3,
+    /// The nearest joint above it: an index into the mesh's bones, lower than its own.
+    pub parent: Option<u32>,
+}
+
 /// The morph targets of one node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Morph {
@@ -139,8 +148,8 @@ pub struct Pose {
     /// The transforms of the mesh's lights and of its cameras to object space; empty if no clip moves any.
     pub lights: Vec<DMat4>,
     pub cameras: Vec<DMat4>,
-    /// The places of the mesh's bones in object space.
-    pub bones: Vec<Vec3>,
+    /// The transforms of the animated nodes to object space.
+    pub nodes: Vec<DMat4>,
 }
 
 impl Pose {
@@ -232,7 +241,6 @@ impl Rig {
             + size_of_val(&self.joints[..])
             + size_of_val(&self.lights[..])
             + size_of_val(&self.cameras[..])
-            + size_of_val(&self.bones[..])
             + clips.sum::<usize>()
     }
 
@@ -243,7 +251,10 @@ impl Rig {
 
     fn posed(&self, channels: &[Channel], time: f64) -> Pose {
         let mut placements: Vec<Placement> = self.nodes.iter().map(|node| node.rest).collect();
-        let mut weights = self.rest_weights();
+        let mut weights: Vec<f32> = self.morphs.iter().flat_map(|morph| morph.rest.iter().copied()).collect();
+        if weights.is_empty() {
+            weights.push(0.0);
+        }
         for channel in channels {
             let target = channel.target as usize;
             if channel.property == Property::Weights {
@@ -256,15 +267,12 @@ impl Rig {
         let global = self.global(&placements);
         let matrix =
             |joint: &Joint| joint.place * joint.node.map_or(joint.offset, |node| global[node as usize] * joint.offset);
-        let bone = |&(node, own): &(Option<u32>, DVec3)| {
-            node.map_or(own, |node| global[node as usize].transform_point3(own)).as_vec3()
-        };
         Pose {
             palette: self.joints.iter().map(|joint| JointMatrix::new(matrix(joint))).collect(),
             weights,
             lights: self.lights.iter().map(matrix).collect(),
             cameras: self.cameras.iter().map(matrix).collect(),
-            bones: self.bones.iter().map(bone).collect(),
+            nodes: global,
         }
     }
 
@@ -293,14 +301,6 @@ impl Rig {
         [self.joints.len(), weights.max(1)]
     }
 
-    fn rest_weights(&self) -> Vec<f32> {
-        let mut weights: Vec<f32> = self.morphs.iter().flat_map(|morph| morph.rest.iter().copied()).collect();
-        if weights.is_empty() {
-            weights.push(0.0);
-        }
-        weights
-    }
-
     /// Returns the transform of each animated node to object space.
     fn global(&self, placements: &[Placement]) -> Vec<DMat4> {
         let mut global: Vec<DMat4> = Vec::with_capacity(self.nodes.len());
@@ -325,18 +325,14 @@ impl Rig {
 }
 
 impl Reach {
-    pub fn new(bindings: &[Binding], deltas: &[Delta]) -> Self {
+    /// `tangents` are displacements of tangents.
+    pub fn new(bindings: &[Binding], deltas: &[Delta], tangents: &[[f32; 3]]) -> Self {
         let largest = |sum: f64, vector: &[f32; 3]| vector.iter().map(|x| f64::from(x.abs())).fold(sum, f64::max);
+        let displacements = deltas.iter().flat_map(|delta| [&delta.position, &delta.normal]).chain(tangents);
         Self {
             position: bindings.iter().map(|binding| &binding.position).fold(0.0, largest),
-            delta: deltas.iter().flat_map(|delta| [&delta.position, &delta.normal]).fold(0.0, largest),
+            delta: displacements.fold(0.0, largest),
         }
-    }
-
-    /// Includes displacements of tangents.
-    pub fn including(self, tangents: &[[f32; 3]]) -> Self {
-        let coordinates = tangents.iter().flatten().map(|x| f64::from(x.abs()));
-        Self { delta: coordinates.fold(self.delta, f64::max), ..self }
     }
 }
 

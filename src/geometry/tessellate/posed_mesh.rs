@@ -93,13 +93,13 @@ impl PosedMesh {
 pub fn deform(mesh: &Mesh, topology: &Topology, pose: &Pose) -> (Mesh, Topology) {
     let (mut mesh, mut topology) = (mesh.clone(), topology.clone());
     let Some(rig) = mesh.rig.take() else { return (mesh, topology) };
-    (mesh.lights, mesh.cameras, mesh.bones) = (mesh.lights_in(pose), mesh.cameras_in(pose), mesh.bones_in(pose));
+    (mesh.lights, mesh.cameras, mesh.bones) = (mesh.lights_in(pose), mesh.cameras_in(pose), mesh.bones_in(Some(pose)));
     for (point, &corner) in topology.points.iter_mut().zip(&topology.point_corners) {
         *point = posed_position(&rig, pose, corner);
     }
-    for (index, (corner, &point)) in (0..).zip(mesh.corners.iter_mut().zip(&topology.corner_points)) {
+    for ((corner, bound), &point) in mesh.corners.iter_mut().zip(&rig.bindings).zip(&topology.corner_points) {
         corner.position = topology.points[point as usize];
-        corner.normal = posed_normal(&rig, pose, index);
+        corner.normal = deform_normal(&posed_matrix(pose, bound), morphed_normal(&rig, pose, bound));
     }
     if let Some(details) = mesh.details.as_mut().filter(|_| !rig.tangents.is_empty()) {
         for (index, detail) in (0..).zip(Arc::make_mut(details)) {
@@ -141,12 +141,6 @@ fn deltas_of<'a>(rig: &'a Rig, bound: &Binding) -> &'a [Delta] {
 /// Adds what each morph target adds, times its weight.
 fn morphed(own: Vec3, deltas: &[Delta], pose: &Pose, added: impl Fn(&Delta) -> Vec3) -> Vec3 {
     deltas.iter().fold(own, |sum, delta| sum + added(delta) * pose.weights[delta.weight as usize])
-}
-
-/// Applies morph targets and then joints to a corner's normal.
-fn posed_normal(rig: &Rig, pose: &Pose, corner: u32) -> Vec3 {
-    let bound = &rig.bindings[corner as usize];
-    deform_normal(&posed_matrix(pose, bound), morphed_normal(rig, pose, bound))
 }
 
 /// Returns the unit normal of a corner that morph targets have turned.

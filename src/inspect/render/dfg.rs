@@ -26,7 +26,9 @@ pub(crate) fn dfg_table() -> &'static [[f32; 4]] {
     TABLE.get_or_init(|| {
         let part = |index: u32| index as f32 / (DFG_SIZE - 1) as f32;
         let row = |roughness| {
-            let lambdas = sheen_lambdas(part(roughness));
+            // Smith's lambda of each light.
+            let lambda = |root: f32| charlie_lambda(root * root, sheen_alpha(part(roughness)));
+            let lambdas: Vec<f32> = sheen_roots().map(lambda).collect();
             (0..DFG_SIZE).map(move |cosine| {
                 let [first, second] = albedo_factors(part(cosine), part(roughness), SAMPLES);
                 [first, second, sheen_albedo(part(cosine), part(roughness), &lambdas), 0.0]
@@ -44,11 +46,6 @@ fn sheen_roots() -> impl Iterator<Item = f32> {
 
 fn sheen_alpha(roughness: f32) -> f32 {
     (roughness * roughness).max(LEAST_SHEEN_ALPHA)
-}
-
-/// Smith's lambda of these lights.
-fn sheen_lambdas(roughness: f32) -> Vec<f32> {
-    sheen_roots().map(|root| charlie_lambda(root * root, sheen_alpha(roughness))).collect()
 }
 
 /// The part of an even light that a white sheen reflects towards an eye at that cosine from the normal. It may exceed 1.

@@ -104,9 +104,13 @@ impl Environment {
 
     pub(crate) fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
         let irradiance = irradiance(light);
-        let sampler = || linear_sampler(gpu, "environment");
-        let (source, cube, dfg, sampler) =
-            gpu.attempt(|| (upload(gpu, light), empty_cube(gpu, light.size), upload_dfg(gpu), sampler()))?;
+        // The prefilter fills its levels.
+        let cube = cube_descriptor(light.size, ENVIRONMENT_LEVELS, wgpu::TextureUsages::STORAGE_BINDING);
+        let table: Vec<u8> = dfg_table().iter().flatten().flat_map(|&part| f16::from_f32(part).to_ne_bytes()).collect();
+        let (source, cube, dfg, sampler) = gpu.attempt(|| {
+            let dfg = filled_texture(gpu, "directional albedo", [DFG_SIZE; 2], FORMAT, &table);
+            (upload(gpu, light), gpu.device.create_texture(&cube), dfg, linear_sampler(gpu, "environment"))
+        })?;
         prefilter(gpu, &source, &cube, &sampler)?;
         Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance, backdrop: Lazy::default() })
     }
@@ -151,7 +155,8 @@ impl Backdrop {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Self { panorama: upload_panorama(gpu, panorama), sampler }
+        let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
+        Self { panorama: filled_texture(gpu, "panorama", panorama.size(), FORMAT, &bytes), sampler }
     }
 
     /// The panorama, its sampler and the `Surroundings`.
@@ -181,11 +186,6 @@ fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
     }
 }
 
-/// A cube map of half floats whose levels the prefilter will fill.
-fn empty_cube(gpu: &Gpu, size: u32) -> wgpu::Texture {
-    gpu.device.create_texture(&cube_descriptor(size, ENVIRONMENT_LEVELS, wgpu::TextureUsages::STORAGE_BINDING))
-}
-
 fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {
     let face = flat_texture("environment", [size; 2], FORMAT, usage | wgpu::TextureUsages::TEXTURE_BINDING);
     let size = wgpu::Extent3d { depth_or_array_layers: 6, ..face.size };
@@ -195,11 +195,6 @@ fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::
 /// The bytes of a pixel in half floats, whose largest number is 65,504.
 fn half_floats(light: Vec3) -> [u8; 8] {
     bytemuck::cast(light.min(Vec3::splat(65504.0)).extend(1.0).to_array().map(|value| f16::from_f32(value).to_bits()))
-}
-
-fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
-    let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
-    filled_texture(gpu, "panorama", panorama.size(), FORMAT, &bytes)
 }
 
 /// Uploads all levels.
@@ -214,9 +209,4 @@ fn upload(gpu: &Gpu, light: &CubeMap) -> wgpu::Texture {
     }
     let descriptor = cube_descriptor(light.size, light.levels.len() as u32, wgpu::TextureUsages::empty());
     gpu.device.create_texture_with_data(&gpu.queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, &bytes)
-}
-
-fn upload_dfg(gpu: &Gpu) -> wgpu::TextureView {
-    let bytes: Vec<u8> = dfg_table().iter().flatten().flat_map(|&part| f16::from_f32(part).to_ne_bytes()).collect();
-    filled_texture(gpu, "directional albedo", [DFG_SIZE; 2], FORMAT, &bytes)
 }

@@ -26,15 +26,15 @@ pub(super) fn frame(
     let is_of_texels = settings.overlays.colors == Colors::TexelDensity;
     let (sine, cosine) = settings.zebra_direction.to_radians().sin_cos();
     let in_px = settings.deviation_in == SurfaceUnit::Px;
-    let of_picture = [(settings.section.is_some(), SECTION_BIT), (settings.shows_difference(), COMPARED_BIT)];
-    let of_picture = of_picture.into_iter().filter(|(is_set, _)| *is_set);
+    let section = if settings.section.is_some() { SECTION_BIT } else { 0 };
+    let compared = if settings.shows_difference() { COMPARED_BIT } else { 0 };
     let frame = Frame {
         clip_from_object: clip_from_object(camera, viewport, &scene.bounds, settings).to_cols_array_2d(),
         key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
         fill_light: (up * 0.8 + back * 0.4 + right * 0.5).normalize().extend(0.0).to_array(),
         eye: eye.to_array(),
         viewport: viewport.to_array(),
-        overlays: of_picture.fold(overlay_bits(&settings.overlays), |bits, (_, bit)| bits | bit),
+        overlays: overlay_bits(&settings.overlays) | section | compared,
         ulp: scene.ulp,
         convention: settings.tessellation.convention as u32,
         scale_least: scale.least,

@@ -1,10 +1,14 @@
 //! What a legend says about the surface's colours.
 
+use glam::Vec2;
+
+use super::covered_area::{covered_area, intersection};
 use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, srgb};
 use super::outlines_picture::SILHOUETTE_COLORS;
-use super::{Scale, Usual};
+use super::section::clip_from_object;
+use super::{Camera, Scale, Scene, Usual, half_places};
 use crate::measure::{OutlineDistance, OutlineDistances, OutlineOf};
-use crate::settings::{Choice, Colors, Settings, SurfaceUnit};
+use crate::settings::{Choice, Colors, Settings, SplitSide, SurfaceUnit};
 use geometry::tessellate::CurvatureKind;
 
 /// The contents of a legend.
@@ -98,6 +102,27 @@ pub fn legend_of(settings: &Settings, usual: &Usual, distances: &Distances) -> O
         Colors::Silhouette => (title("Outlines"), silhouette_rows(distances.outlines)),
     };
     Some(Legend { title, meaning, shown })
+}
+
+/// The half of a picture whose lower corner has the legend: the right one, unless there it would cover more than twice as much of where
+/// the mesh can be. `size` is the picture's width and height in px, and `room` what the legend takes.
+pub fn legend_side(scene: &Scene, camera: &Camera, settings: &Settings, [size, room]: [[u32; 2]; 2]) -> SplitSide {
+    let viewport = Vec2::from(size.map(|side| side as f32));
+    let covered = |from_left: u32| -> u32 {
+        let legend = [from_left, size[1].saturating_sub(room[1]), room[0], room[1]];
+        let halves = SplitSide::BOTH.into_iter().zip(half_places(size, settings));
+        let of_half = halves.filter_map(|(half, place)| {
+            let own = scene.half(half).filter(|_| settings.half(half).is_some())?;
+            let clip = clip_from_object(camera, viewport, &own.bounds, settings);
+            let [_, _, width, height] =
+                intersection(legend, place.part(covered_area(&own.drawn_bounds(settings), clip, size)).area);
+            Some(width * height)
+        });
+        of_half.sum()
+    };
+    let ends = [covered(0), covered(size[0].saturating_sub(room[0]))];
+    let [left, right] = if camera.is_mirrored() { [ends[1], ends[0]] } else { ends };
+    if 2 * left < right { SplitSide::Left } else { SplitSide::Right }
 }
 
 /// The colours of normals along the axes.

@@ -64,28 +64,29 @@ const BONE_TIMES: f32 = 0.2;
 
 /// The bones of a scene's mesh in its pose: a dot on each joint, and a line to the nearest joint above it.
 pub fn bone_lines(scene: &Scene) -> Vec<LineSegment> {
-    let mesh = scene.tessellator.mesh();
-    let bones = scene.tessellator.posed().pose().map_or_else(|| mesh.bones.clone(), |pose| mesh.bones_in(pose));
+    let bones = scene.tessellator.mesh().bones_in(scene.tessellator.posed().pose());
+    let links = bones.iter().filter_map(|bone| Some((bones[bone.parent? as usize].place, bone.place, 1.25)));
+    let dots = bones.iter().map(|bone| (bone.place, bone.place, 3.5));
+    let seen = links.chain(dots).filter(|(start, end, _)| start.is_finite() && end.is_finite());
+    let lines = outlined(&seen.collect::<Vec<_>>(), BONE_COLOR, 1.25).into_iter();
+    lines.map(|line| LineSegment { times: BONE_TIMES, ..line }).collect()
+}
+
+/// Lines and dots, by their ends and half their widths, in a colour and above a border of this width in px, which sets them off from
+/// any background.
+pub fn outlined(marks: &[(Vec3, Vec3, f32)], color: [u8; 3], border: f32) -> Vec<LineSegment> {
     let lines = |color, wider: f32| {
-        let line = move |start, end, half_width| LineSegment {
-            half_width: half_width + wider,
-            times: BONE_TIMES,
-            ..LineSegment::new(start, end, color)
-        };
-        let links = bones.iter().filter_map(|bone| Some((bones.get(bone.parent? as usize)?.place, bone.place)));
-        let links = links.map(move |(start, end)| line(start, end, 1.25));
-        links.chain(bones.iter().map(move |bone| line(bone.place, bone.place, 3.5)))
+        marks.iter().map(move |&(start, end, half_width)| {
+            let half_width = half_width + wider;
+            LineSegment { half_width, ..LineSegment::new(start, end, color) }
+        })
     };
-    lines(OUTLINE_COLOR, 1.25).chain(lines(BONE_COLOR, 0.0)).collect()
+    lines(OUTLINE_COLOR, border).chain(lines(color, 0.0)).collect()
 }
 
 /// The place with the largest deviation: a dot on it, and a line to the nearest point of the reference surface.
 pub fn worst_lines(emitted: Vec3, reference_shape: Vec3) -> Vec<LineSegment> {
-    let line = |start, end, color, half_width| LineSegment { half_width, ..LineSegment::new(start, end, color) };
-    let mark = |color, wider: f32| {
-        [line(emitted, reference_shape, color, 1.25 + wider), line(emitted, emitted, color, 4.5 + wider)]
-    };
-    [mark(OUTLINE_COLOR, 1.5), mark(WORST_COLOR, 0.0)].concat()
+    outlined(&[(emitted, reference_shape, 1.25), (emitted, emitted, 4.5)], WORST_COLOR, 1.5)
 }
 
 /// A patch that is narrower than this, as a part of its length, has thinner lines around it, which would otherwise cover it; but not

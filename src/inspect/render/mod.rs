@@ -24,7 +24,6 @@ mod layers;
 pub mod layout;
 mod leaks;
 mod legend;
-mod legend_side;
 #[cfg(test)]
 mod light_tests;
 mod marks;
@@ -62,11 +61,10 @@ pub use ground::{Ground, axis_lines};
 pub use halves::{HalfPlace, framed_size, half_at, half_places};
 pub(crate) use leaks::LeakCounter;
 pub use leaks::{Leak, LeakCount, Leaks, leaks_in};
-pub use legend::{Distances, Legend, legend_of};
+pub use legend::{Distances, Legend, legend_of, legend_side};
 pub(crate) use legend::{Shown, tick_text};
-pub use legend_side::{LegendSide, legend_side};
 pub use marks::{
-    bone_lines, crack_lines, crack_lines_in, lod_camera_lines, patch_lines, t_junction_lines, worst_lines,
+    bone_lines, crack_lines, crack_lines_in, lod_camera_lines, outlined, patch_lines, t_junction_lines, worst_lines,
 };
 pub use outlines_picture::{lay_over, outlines_picture};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};

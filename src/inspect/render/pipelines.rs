@@ -104,7 +104,7 @@ impl DrawPipelines {
                 };
                 let last = if layer.is_some() { &self.layer_layout } else { &self.measured_layout };
                 let has_overlays = layer.is_some() || triangles != Triangles::Bare;
-                let chunk = chunk.filter(|_| triangles.have_factors());
+                let chunk = chunk.filter(|_| triangles != Triangles::Bare);
                 let mut layouts = vec![scene, Some(material)];
                 if has_overlays {
                     layouts.extend([chunk, Some(last)]);

@@ -12,7 +12,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::coverage::CoveragePipelines;
-use super::deviation::Deviations;
 use super::difference::DifferenceDrawer;
 use super::draws::Draw;
 use super::environment::Environment;
@@ -25,7 +24,7 @@ use super::target::samples;
 use super::{Camera, Scene, Target};
 use crate::settings::Settings;
 use geometry::mesh::Texture;
-use gpu::{Gpu, GpuError, Lazy, Recorder};
+use gpu::{Gpu, GpuError, Lazy, Recorder, uniform_buffer};
 
 pub use preparation::DraftPipelines;
 
@@ -68,7 +67,8 @@ impl Renderer {
             matcaps: Matcaps::default(),
             coverage: CoveragePipelines::new(),
             difference: DifferenceDrawer::new(gpu),
-            unknown: Deviations::unknown(gpu),
+            // It has no samples.
+            unknown: uniform_buffer(gpu, "deviation", bytemuck::bytes_of(&0.0_f32)),
             samples: samples(gpu),
             shares_shaders: gpu.is_software(),
             peels_everywhere: false,

@@ -31,9 +31,9 @@ pub struct Target {
     /// A picture of what is behind bodies that refract light, with mip levels. Made when such a body is first drawn.
     behind: Lazy<wgpu::Texture>,
     /// Whether pictures have no background: where nothing is drawn they are transparent.
-    is_transparent: bool,
+    pub(super) is_transparent: bool,
     /// Whether pictures leave out what takes a software driver longest: see [`Self::draft`].
-    is_draft: bool,
+    pub(super) is_draft: bool,
     /// Px of the full picture that one px stands for, along each axis: see [`Self::coarse`].
     pub(super) coarseness: u32,
 }
@@ -103,15 +103,6 @@ impl Target {
     /// The same, for pictures that are shown so many times as large along each axis. Their lines are as many times thinner.
     pub fn coarse(self, coarseness: u32) -> Self {
         Self { coarseness, ..self }
-    }
-
-    pub(super) fn is_draft(&self) -> bool {
-        self.is_draft
-    }
-
-    /// Whether nothing is behind what is drawn.
-    pub(super) fn is_transparent(&self) -> bool {
-        self.is_transparent
     }
 
     /// The view for showing the picture. Its values are encoded as sRGB, or are linear light for a texture that encodes them.

@@ -8,8 +8,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::plot::{self, ChartError, DENSITY};
 use crate::render::layout::{WASTE_COLOR, srgb};
-use crate::render::{Camera, Distances, Legend, LegendSide, Scale, Scene, Shown, legend_of, legend_side, tick_text};
-use crate::settings::Settings;
+use crate::render::{Camera, Distances, Legend, Scale, Scene, Shown, legend_of, legend_side, tick_text};
+use crate::settings::{Settings, SplitSide};
 
 /// Sizes in points: the bar of the scale, the block of one colour before it, the margin, and the text.
 const BAR: [f64; 2] = [196.0, 12.0];
@@ -46,7 +46,7 @@ pub(crate) fn draw_legend(
     let point = point_in(picture.dimensions(), inner_size(&legend), None);
     let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
     let taken = [plate.width(), plate.height()].map(|side| side + (2.0 * MARGIN * point) as u32);
-    let side = legend_side(scene, camera, settings, picture.dimensions().into(), taken);
+    let side = legend_side(scene, camera, settings, [picture.dimensions().into(), taken]);
     lay_in_corner(picture, &plate, side, point);
     Ok(())
 }
@@ -103,7 +103,7 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
     let inner = [BAR[0], 18.0 + ROW * rows.len() as f64];
     let point = point_in(picture.dimensions(), inner, None);
     let plate = plate(inner, point, |pen| named_colors(pen, title, rows.iter().copied(), 1))?;
-    lay_in_corner(picture, &plate, LegendSide::Left, point);
+    lay_in_corner(picture, &plate, SplitSide::Left, point);
     Ok(())
 }
 
@@ -145,12 +145,12 @@ fn plate(inner: [f64; 2], point: f64, paint: impl FnOnce(&Pen) -> Drawn) -> Resu
     Ok(image::DynamicImage::from(plate).to_rgba8())
 }
 
-fn lay_in_corner(picture: &mut RgbaImage, plate: &RgbaImage, side: LegendSide, point: f64) {
+fn lay_in_corner(picture: &mut RgbaImage, plate: &RgbaImage, side: SplitSide, point: f64) {
     let margin = (MARGIN * point).round() as u32;
     let at =
         [picture.width() - plate.width().min(picture.width()), picture.height() - plate.height().min(picture.height())];
     let at = at.map(|side| i64::from(side.saturating_sub(margin)));
-    let left = if side == LegendSide::Left { i64::from(margin) } else { at[0] };
+    let left = if side == SplitSide::Left { i64::from(margin) } else { at[0] };
     imageops::replace(picture, plate, left, at[1]);
 }
 

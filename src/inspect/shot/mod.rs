@@ -280,17 +280,13 @@ impl Shot {
             image::imageops::flip_horizontal_in_place(&mut picture);
         }
         if self.view.legend {
-            self.draw_split(&mut picture)?;
+            if let Some(split) = self.subject.settings.split {
+                let divider = (self.subject.settings.split_view != SplitView::Difference).then_some(split);
+                draw_titles(&mut picture, divider, &SplitSide::BOTH.map(|half| self.half_title(half)))?;
+            }
             draw_legend(&mut picture, &self.scene, &self.view.camera, &self.subject.settings, &self.distances())?;
         }
         Ok(picture)
-    }
-
-    /// Draws the divider of a split picture, and what its halves show.
-    fn draw_split(&self, picture: &mut RgbaImage) -> Result<(), ShotError> {
-        let Some(split) = self.subject.settings.split else { return Ok(()) };
-        let split = (self.subject.settings.split_view != SplitView::Difference).then_some(split);
-        Ok(draw_titles(picture, split, &SplitSide::BOTH.map(|half| self.half_title(half)))?)
     }
 
     /// What a half shows.

@@ -119,7 +119,7 @@ impl Renderer {
         settings: &Settings,
         places: [HalfPlace; 2],
     ) -> [HalfPlace; 2] {
-        let is_without = target.is_draft() || !settings.shows_materials();
+        let is_without = target.is_draft || !settings.shows_materials();
         let whole = [0, 0, target.size[0], target.size[1]];
         let covered = |half| match settings.half(half).zip(scene.half(half)).filter(|_| !is_without) {
             Some((_, own)) if !has_layers(own.tessellator.mesh()) => [0; 4],

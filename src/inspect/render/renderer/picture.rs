@@ -38,13 +38,6 @@ pub(super) struct Picture<'a> {
     ground_step: usize,
 }
 
-impl Picture<'_> {
-    /// Whether it is the difference between the pictures of both halves.
-    fn compares(&self) -> bool {
-        matches!(self.steps.last(), Some(Step::Difference))
-    }
-}
-
 /// What is drawn in a step beside the surfaces of its chunk, before or after them.
 struct Beside {
     /// Normals at the vertices of the step's chunk.
@@ -72,7 +65,7 @@ impl Renderer {
             Some(frame(&self.gpu, drawn, &scene.usual(), target, camera, &settings, &places[half as usize]))
         };
         let steps = steps(scene, settings);
-        let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent());
+        let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent);
         let layer_areas = self.layer_areas(scene, target, camera, settings, places);
         let has_layers = !layer_areas.iter().all(|place| is_empty(place.area));
         let found_materials = |half| match scene.half(half) {
@@ -172,7 +165,7 @@ impl Renderer {
         let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
         // The difference comes under lines over nothing. What is compared has a background, since its alpha is that of the wireframe.
         let is_alone = step == Step::Difference;
-        let is_empty = if picture.compares() { is_alone } else { target.is_transparent() };
+        let is_empty = if matches!(steps.last(), Some(Step::Difference)) { is_alone } else { target.is_transparent };
         let own = linear_color(picture.settings.background_color());
         let background = if is_empty { wgpu::Color::TRANSPARENT } else { own };
         let color = target.color(background, is_first || is_alone, is_last);
@@ -214,7 +207,8 @@ impl Renderer {
         let &Picture { settings, ref steps, .. } = picture;
         let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
         let has_lines = has_lines && index + 1 == steps.len();
-        let has_ground = index == picture.ground_step && settings.overlays.grid && !picture.compares();
+        let compares = matches!(steps.last(), Some(Step::Difference));
+        let has_ground = index == picture.ground_step && settings.overlays.grid && !compares;
         let has_normals = matches!(steps[index], Step::Normals(..));
         Ok(Beside {
             normals: has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?,
