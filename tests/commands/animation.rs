@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::{Folder, failure, output, run, sentence, vase};
+use crate::{Folder, both, failure, output, run, sentence, vase};
 use documents::moving::moving;
 
 fn file(folder: &Folder) -> String {
@@ -178,4 +178,25 @@ fn the_worst_moment_of_a_clip_is_the_one_with_the_most() {
     {
         assert!(failure(&[&["render", &file, "-o", "a.png"], options].concat(), 2).contains(said), "{options:?}");
     }
+}
+
+#[test]
+fn bones_are_drawn_over_a_skin_and_change_no_picture_without_one() {
+    let folder = Folder::new();
+    let file = file(&folder);
+    let picture = |mesh: &str, more: &[&str]| {
+        let path = folder.path("picture.png");
+        let (_, errors) = both(&[&["render", mesh, "-o", &path, "--size", "160x120"], more].concat());
+        (image::open(&path).expect("a picture").to_rgba8(), errors)
+    };
+    let bones = ["--overlay", "bones"];
+    for pose in [&[][..], &["--animation", "Bend", "--time", "0.5"]] {
+        let [(plain, _), (with, errors)] = [picture(&file, pose), picture(&file, &[pose, &bones].concat())];
+        let changed = plain.pixels().zip(with.pixels()).filter(|(a, b)| a != b).count();
+        assert!((50..5000).contains(&changed), "{changed} px");
+        assert_eq!(errors, "");
+    }
+    let [(plain, _), (with, errors)] = [picture("shape:torus", &[]), picture("shape:torus", &bones)];
+    assert_eq!(plain, with);
+    assert!(errors.contains("--overlay bones has no effect: no skin moves the mesh"), "{errors}");
 }

@@ -231,6 +231,30 @@ fn lines_are_drawn_over_a_difference_and_change_nothing_beside_them() {
 }
 
 #[test]
+fn the_wireframes_of_both_halves_are_over_their_difference_in_a_colour_each() {
+    let folder = Folder::new();
+    let draw = |more: &[&str]| {
+        let path = folder.path("picture.png");
+        let flat = ["render", "shape:cube-split", "--surface", "flat", "--lod", "uniform", "--factor", "2"];
+        let split = ["--split", "0.5", "--split-view", "difference", "--size", "160x120", "-o", &*path];
+        output(&[&flat[..], &split, more].concat());
+        image::open(&path).expect("a picture").to_rgba8()
+    };
+    let (without, with) = (draw(&[]), draw(&["--overlay", "wireframe"]));
+    assert_eq!(draw(&["--overlay", "wireframe", "--transparent"]), with, "nothing of it is transparent");
+    let (mut right, mut both) = (0, 0);
+    for (own, before) in with.pixels().zip(without.pixels()).filter(|(own, before)| own != before) {
+        let [[r, g, b, alpha], [grey, ..]] = [own.0, before.0];
+        assert_eq!((alpha, before.0), (255, [grey, grey, grey, 255]));
+        // Blue is the right half's, and with the left half's orange it is a greenish grey.
+        right += usize::from(b > 100 && b.saturating_sub(r) > 60);
+        both += usize::from(g > 80 && r.saturating_sub(b) > 15);
+    }
+    // The left half has the cube's own edges alone.
+    assert!(right > 100 && both > 50, "{right} px of the right half's lines, and {both} of both");
+}
+
+#[test]
 fn another_mesh_left_of_a_split_is_drawn_and_counted_as_it_is_alone() {
     let folder = Folder::new();
     // The same bounding box, so that one camera sees both alike.

@@ -1,19 +1,21 @@
 //! Lines over the surface: how they fade where they are dense, and where something hides them.
 
-use geometry::mesh::{Shape, TJunction};
+use geometry::mesh::{Bone, Mesh, Moment, Shape, TJunction};
 use geometry::tessellate::{Edges, Partitioning, Surface, Tessellation};
 use geometry::view::project;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use gpu::Timing;
 use image::RgbaImage;
 use inspect::render::layout::{CRACK_COLOR, T_JUNCTION_COLOR, linear};
-use inspect::render::{Camera, Scene, Target, crack_lines, lod_camera_lines, t_junction_lines};
-use inspect::settings::{Overlay, Overlays, Settings};
+use inspect::render::{
+    Camera, Scene, Target, bone_lines, crack_lines, legend_side, lod_camera_lines, t_junction_lines,
+};
+use inspect::settings::{ARENA_BYTES, Overlay, Overlays, Settings, SplitSide, SplitView};
 use inspect::shot::compare;
 
 use crate::pictures::{SIZE, differing};
 use crate::stability::seen;
-use crate::{engine, scene};
+use crate::{engine, loaded_mesh, scene};
 
 /// A flat cube, its edges cut into `factor` segments, with one overlay.
 fn flat(factor: f32, overlay: Option<Overlay>) -> Settings {
@@ -173,4 +175,80 @@ fn the_ground_and_an_lod_cameras_frustum_look_as_they_did() {
     let frustum = seen(&mut torus, &target, &flat(1.0, None), &camera);
     let pictures = vec![("overlay-grid".to_owned(), ground), ("lod-camera".to_owned(), frustum)];
     assert_eq!(differing(pictures), Vec::<String>::new());
+}
+
+#[test]
+fn bones_of_a_pose_are_drawn_where_its_joints_are_seen_and_nowhere_else() {
+    let (moving, _) = crate::deforming::scene();
+    let mut mesh = Mesh::clone(&moving.mesh);
+    // The joints only turn about themselves, so that another one hangs on the second.
+    let hung = Bone { node: mesh.bones[1].node, place: 2.0 * Vec3::Y, parent: Some(1) };
+    mesh.bones.push(hung);
+    let mut scene = engine().scene(&loaded_mesh(moving.source, mesh), ARENA_BYTES).expect("a small mesh");
+    let target = Target::new(&engine().gpu, [320, 240]).expect("a small picture");
+    let framed = Camera::framing(&scene.bounds, target.viewport());
+    let camera = Camera { distance: 1.7 * framed.distance, ..framed };
+    let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
+    let (sin, cos) = 80_f32.to_radians().sin_cos();
+    // At rest, and bent by 80 degrees about Z.
+    for (moment, bent) in [(None, Vec3::Y), (Some(Moment { clip: 0, time: 0.5 }), Vec3::new(-sin, cos, 0.0))] {
+        scene.set_moment(moment).expect("a small rig");
+        scene.set_lines(&engine().gpu, &bone_lines(&scene));
+        let [with, without] = with_and_without(&mut scene, &flat(1.0, None), &camera, &target);
+        let joints = [Vec3::ZERO, 2.0 * Vec3::Y, 2.0 * Vec3::Y + 2.0 * bent];
+        let seen = joints.map(|joint| project(clip, target.viewport(), joint).expect("in front of the eye"));
+        for at in seen {
+            let [r, g, b, _] = with.get_pixel(at.x as u32, at.y as u32).0;
+            let [r, _, b] = linear([r, g, b]);
+            // Hardly anything of what is before them is left.
+            assert!((0.7..=1.0).contains(&r) && (0.33..0.52).contains(&b), "{moment:?}, {at}: {r} {b}");
+        }
+        let apart = |at: Vec2, [a, b]: [Vec2; 2]| {
+            let part = (at - a).dot(b - a) / (b - a).length_squared();
+            at.distance(a.lerp(b, part.clamp(0.0, 1.0)))
+        };
+        let mut changed = 0;
+        for (x, y, pixel) in with.enumerate_pixels().filter(|(x, y, own)| *own != without.get_pixel(*x, *y)) {
+            let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5);
+            let nearest = apart(at, [seen[0], seen[1]]).min(apart(at, [seen[1], seen[2]]));
+            // Dots are squares of 3.5 + 1.25 px on each side of a joint.
+            assert!(nearest < 8.5, "{moment:?}, {at}: {pixel:?} is {nearest} px away");
+            changed += 1;
+        }
+        assert!(changed > 200, "{changed} px");
+    }
+    let (_, torus) = self::scene(Shape::Torus);
+    assert_eq!(bone_lines(&torus), []);
+}
+
+#[test]
+fn a_target_keeps_no_pictures_of_halves_when_no_difference_is_shown() {
+    let (_, mut cube) = scene(Shape::CubeSplit);
+    let difference = Settings { split: Some(0.5), split_view: SplitView::Difference, ..flat(2.0, None) };
+    let mut target = Target::new(&engine().gpu, [64, 48]).expect("a small picture");
+    let camera = Camera::framing(&cube.bounds, target.viewport());
+    let before = target.bytes();
+    seen(&mut cube, &target, &difference, &camera);
+    let both = before + 2 * 4 * 64 * 48;
+    assert_eq!(target.bytes(), both);
+    target.keep_only_for(&difference);
+    assert_eq!(target.bytes(), both, "the next difference needs them again");
+    target.keep_only_for(&flat(2.0, None));
+    assert_eq!(target.bytes(), before);
+    let again = seen(&mut cube, &target, &difference, &camera);
+    assert!(again.pixels().any(|pixel| pixel.0 == [0, 0, 0, 255]), "they are made again");
+}
+
+#[test]
+fn the_legend_is_on_the_left_only_where_the_mesh_is_on_the_right() {
+    let (_, cube) = scene(Shape::CubeSplit);
+    let size = [640, 480];
+    let framed = Camera::framing(&cube.bounds, Vec2::new(640.0, 480.0));
+    let side = |camera: &Camera| legend_side(&cube, camera, &Settings::default(), [size, [240, 80]]);
+    assert_eq!(side(&framed), SplitSide::Right, "the mesh is in the middle");
+    let [right, _, _] = framed.axes();
+    let moved = |by: f32| Camera { target: framed.target + by * cube.bounds.radius() * right, ..framed };
+    // A camera that moves to the left has the mesh on its right.
+    assert_eq!((side(&moved(-1.0)), side(&moved(1.0))), (SplitSide::Left, SplitSide::Right));
+    assert_eq!(side(&moved(-9.0)), SplitSide::Right, "the mesh is out of view");
 }

@@ -1,15 +1,16 @@
 //! Animations: choosing a clip, scrubbing, playing and pausing.
 
-use egui::Key;
 use egui::accesskit::Role;
+use egui::{Key, Modifiers};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::{Moment, Shape};
 use load::Source;
 use pnaen::app::App;
 use tempfile::TempDir;
 
-use crate::{choose, click, open_list, press, settle, uniform, window};
+use crate::editing::press_with;
+use crate::{choose, click, open_list, press, settle, switch, uniform, window};
 use documents::moving::{CLIPS, moving};
 
 /// A window with an animated mesh, and the folder of its file, which must be kept for as long as the window.
@@ -206,4 +207,31 @@ fn the_worst_moments_of_a_clip_are_one_click_away() {
     // Another tessellation has other moments.
     choose(&mut harness, "Surface", "Flat");
     harness.get_by_label("Find the worst moments");
+}
+
+#[test]
+fn bones_follow_the_clip_and_a_mesh_without_a_skin_has_none() {
+    let picture = |harness: &Harness<App>| harness.state().read_picture().expect("a device").expect("a picture");
+    let (mut harness, _folder) = moving_window();
+    let before = picture(&harness);
+    click(&mut harness, "Overlays");
+    switch(&mut harness, "Bones");
+    click(&mut harness, "Overlays");
+    assert!(harness.state().settings().overlays.bones);
+    let with = picture(&harness);
+    assert_ne!(before, with);
+    choose(&mut harness, "Clip", CLIPS[0]);
+    harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.5);
+    settle(&mut harness);
+    let bent = picture(&harness);
+    press_with(&mut harness, Modifiers::SHIFT, Key::B);
+    assert!(!harness.state().settings().overlays.bones);
+    assert_ne!(picture(&harness), bent);
+    let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
+    click(&mut harness, "Overlays");
+    assert!(harness.get_by_role_and_label(Role::CheckBox, "Bones").accesskit_node().is_disabled());
+    assert!(!harness.get_by_role_and_label(Role::CheckBox, "Folds").accesskit_node().is_disabled());
+    click(&mut harness, "Overlays");
+    press_with(&mut harness, Modifiers::SHIFT, Key::B);
+    assert!(!harness.state().settings().overlays.bones, "there is nothing to show");
 }

@@ -105,6 +105,50 @@ fn the_axes_and_keys_look_from_six_sides() {
 }
 
 #[test]
+fn the_legend_stands_where_the_mesh_is_not_and_stays_there_while_a_button_is_held() {
+    let mut harness = uniform(None);
+    press(&mut harness, Key::B);
+    press(&mut harness, Key::Y);
+    let viewport = harness.get_by_label("Viewport").rect();
+    let legend = |harness: &Harness<App>| harness.get_by_label("Legend: Barycentric, weights in the patch").rect();
+    let is_right = |harness: &Harness<App>| legend(harness).center().x > viewport.center().x;
+    assert!(is_right(&harness), "the mesh is in the middle");
+    // So near that the mesh reaches the lower border.
+    press(&mut harness, Key::PageUp);
+    press(&mut harness, Key::PageUp);
+    let pan = |harness: &mut Harness<App>, key: Key, times: usize| {
+        for _ in 0..times {
+            harness.key_press_modifiers(Modifiers::SHIFT, key);
+            harness.step();
+        }
+    };
+    pan(&mut harness, Key::ArrowRight, 12);
+    settle(&mut harness);
+    let first = is_right(&harness);
+    pan(&mut harness, Key::ArrowLeft, 24);
+    settle(&mut harness);
+    assert_ne!(is_right(&harness), first, "one way it would be over the mesh");
+    // The key that brings the mesh to the right.
+    let [key, back] = if first { [Key::ArrowLeft, Key::ArrowRight] } else { [Key::ArrowRight, Key::ArrowLeft] };
+    if is_right(&harness) {
+        pan(&mut harness, key, 24);
+        settle(&mut harness);
+    }
+    assert!(!is_right(&harness));
+    let note = harness.get_by_label_contains("Grid: ").rect();
+    assert!(!note.intersects(legend(&harness)) && viewport.contains_rect(note), "notes are above it: {note}");
+    let held = viewport.lerp_inside(egui::vec2(0.5, 0.3));
+    harness.hover_at(held);
+    harness.drag_at(held);
+    harness.step();
+    pan(&mut harness, back, 24);
+    assert!(!is_right(&harness));
+    harness.drop_at(held);
+    settle(&mut harness);
+    assert!(is_right(&harness));
+}
+
+#[test]
 fn the_ground_has_a_note_with_its_spacing_and_is_copied() {
     let mut harness = uniform(Some(Source::Shape(Shape::Torus)));
     assert!(harness.query_by_label_contains("Grid: ").is_none());

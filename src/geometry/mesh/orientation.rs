@@ -103,11 +103,12 @@ fn reorient_rig(rig: &mut Rig, transform: DMat4) {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec2;
+    use glam::{DVec3, Vec2};
     use proptest::prelude::*;
 
     use super::*;
-    use crate::mesh::{Corner, HeightAmount, HeightMap};
+    use crate::mesh::rig::Joint;
+    use crate::mesh::{Bone, Corner, HeightAmount, HeightMap};
 
     const ALL: [UpAxis; 6] = [UpAxis::X, UpAxis::Y, UpAxis::Z, UpAxis::NegX, UpAxis::NegY, UpAxis::NegZ];
 
@@ -134,6 +135,24 @@ mod tests {
             assert_eq!([x, y], [0, 0], "{scale}");
             mesh.corners[0].position = position;
         }
+    }
+
+    #[test]
+    fn what_no_clip_moves_is_turned_and_scaled_like_what_one_does() {
+        let place = DVec3::new(0.0, 2.0, 4.0);
+        let still = Joint { offset: DMat4::from_translation(place), ..Joint::default() };
+        let rig = Rig { joints: vec![still], lights: vec![still], cameras: vec![still], ..Rig::default() };
+        let bone = |node| Bone { node, place: place.as_vec3(), parent: None };
+        let bones = vec![bone(None), bone(Some(0))];
+        let mut mesh = Mesh { rig: Some(Arc::new(rig)), bones, ..Mesh::default() };
+        reorient(&mut mesh, UpAxis::Z, 0.5);
+        let pose = mesh.rig.as_ref().expect("it is kept").rest();
+        let turned = Vec3::new(0.0, 2.0, -1.0);
+        let places = [pose.lights[0], pose.cameras[0]].map(|own| own.w_axis.truncate().as_vec3());
+        assert_eq!(places, [turned; 2]);
+        assert_eq!(pose.palette[0].rows().map(|row| row[3]), turned.to_array());
+        // The node moves what is in its own space.
+        assert_eq!([mesh.bones[0].place, mesh.bones[1].place], [turned, place.as_vec3()]);
     }
 
     #[test]

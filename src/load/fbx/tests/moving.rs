@@ -48,6 +48,23 @@ fn a_skin_bends_with_its_joints() {
 }
 
 #[test]
+fn bones_are_the_joints_of_the_skin() {
+    let loaded = loaded(&skinned_strip());
+    let bones = |time: Option<f64>| {
+        let pose = time.zip(loaded.rig.as_ref()).map(|(time, rig)| rig.pose(Moment { clip: 0, time }));
+        loaded.bones_in(pose.as_ref())
+    };
+    for time in [None, Some(0.0), Some(0.7)] {
+        let [root, tip] = bones(time)[..] else { panic!("{:?}", bones(time)) };
+        assert_eq!((root.parent, tip.parent), (None, Some(0)));
+        // The tip turns about itself.
+        assert_near(root.place, Vec3::ZERO, "the root");
+        assert_near(tip.place, 2.0 * Vec3::X, "the tip");
+    }
+    assert!(self::loaded(&morphed_square()).bones.is_empty());
+}
+
+#[test]
 fn shapes_in_between_bend_the_path_of_a_vertex() {
     let loaded = loaded(&morphed_square());
     let rig = loaded.rig.as_ref().expect("a rig");

@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::selection::{MorphWeights, ShownParts};
 use geometry::mesh::rig::AnimatedCounts;
-use geometry::mesh::{Moment, Rig};
+use geometry::mesh::{Moment, Pose, Rig};
 use geometry::tessellate::deform;
 
 impl Draft {
@@ -85,6 +85,47 @@ fn skins_follow_their_joints() {
     let clip = &rig(&mesh).clips[0];
     assert_eq!((clip.name.as_str(), clip.duration), ("animation 0", 1.0));
     assert_eq!(rig(&mesh).animated_counts(clip), AnimatedCounts { joints: 1, nodes: 0, targets: 0 });
+}
+
+/// The places of a mesh's bones, and the bones above them.
+fn bones(mesh: &Mesh, pose: Option<&Pose>) -> Vec<([f32; 3], Option<u32>)> {
+    mesh.bones_in(pose).iter().map(|bone| (bone.place.to_array(), bone.parent)).collect()
+}
+
+#[test]
+fn bones_are_the_joints_of_skins_in_any_pose_and_without_clips() {
+    let mut draft = skinned();
+    draft.move_node(1);
+    let mesh = draft.read().unwrap();
+    let rest = [([0.0; 3], None), ([1.0, 0.0, 0.0], Some(0))];
+    assert_eq!(bones(&mesh, None), rest);
+    let pose = rig(&mesh).pose(Moment { clip: 1, time: 1.0 });
+    let moved = [([0.0, 0.0, 4.0], None), ([1.0, 0.0, 4.0], Some(0))];
+    assert_eq!(bones(&mesh, Some(&pose)), moved);
+    // A deformed mesh has no rig, and its bones are where it is.
+    assert_eq!(bones(&deform(&mesh, &topology(&mesh), &pose).0, None), moved);
+    draft.root.as_object_mut().expect("a document").remove("animations");
+    let still = draft.read().unwrap();
+    assert!(still.rig.is_none());
+    assert_eq!(bones(&still, None), rest);
+    // A node between two joints is none itself.
+    let nodes = draft.root["nodes"].as_array_mut().expect("nodes");
+    nodes[1] = json!({ "children": [3] });
+    nodes.push(json!({ "translation": [0, 0, 5], "children": [2] }));
+    assert_eq!(bones(&draft.read().unwrap(), None), [([0.0; 3], None), ([1.0, 0.0, 5.0], Some(0))]);
+    let mut moving = triangle();
+    moving.move_node(0);
+    assert_eq!(bones(&moving.read().unwrap(), None), [], "a node that a clip moves is no joint");
+}
+
+#[test]
+fn skins_with_joints_that_are_missing_or_above_themselves_are_refused() {
+    let mut missing = skinned();
+    missing.root["skins"][0]["joints"] = json!([1, 9]);
+    assert!(message(&missing).contains("/skins/0/joints/1"), "{}", message(&missing));
+    let mut circle = skinned();
+    circle.root["nodes"][2]["children"] = json!([1]);
+    assert!(message(&circle).contains("its own ancestor"), "{}", message(&circle));
 }
 
 #[test]
