@@ -1,5 +1,5 @@
-// Shows how much two pictures of one size differ: black where they are equal, and brighter where a channel differs by more. Over that
-// are their wireframes, which they keep as what they lack of alpha 1.
+// Shows how much two pictures of one size differ: black where they are equal, and brighter where a channel differs by more. Over
+// that are their wireframes, which they keep as what they lack of alpha 1.
 
 @group(0) @binding(0) var left_picture: texture_2d<f32>;
 @group(0) @binding(1) var right_picture: texture_2d<f32>;

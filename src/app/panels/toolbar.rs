@@ -50,8 +50,8 @@ impl App {
         });
     }
 
-    /// The overlays that have no button of their own. The list stays open while they are switched. `why_not` says in a sentence why one
-    /// can't be shown.
+    /// The overlays that have no button of their own. The list stays open while they are switched. `why_not` says in a sentence
+    /// why one can't be shown.
     fn overlays_list(&mut self, ui: &mut egui::Ui, why_not: impl Fn(Overlay) -> Option<&'static str>) {
         let others = || Overlay::ALL.into_iter().filter(|overlay| !ON_TOOLBAR.contains(overlay));
         let overlays = &mut self.settings.overlays;

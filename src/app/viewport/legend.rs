@@ -46,7 +46,7 @@ impl App {
         self.viewport.legend = known.or_else(|| PaintedLegend::new(ui.ctx(), legend, room, point));
         let Some(PaintedLegend { legend, texture, .. }) = &self.viewport.legend else { return };
         let size = texture.size_vec2() / point;
-        // It keeps its side while the mesh or the pointer moves.
+        // It keeps its side while a clip plays or a button of the pointer is held.
         let rests = !self.is_playing() && !ui.input(|input| input.pointer.any_down());
         if let Some(document) = self.document.as_ref().filter(|_| rests) {
             let taken = texture.size().map(|side| side as u32 + (2.0 * MARGIN * point) as u32);

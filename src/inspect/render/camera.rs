@@ -44,8 +44,8 @@ with_defaults! {
         pub field_of_view: f32 = FIELD_OF_VIEW,
         /// Degrees that the camera is turned about its direction of view, counterclockwise as it sees that.
         pub roll: f32 = 0.0,
-        /// What an engine's matrix says about where points land, in place of what the rest says. The window has no such cameras, and
-        /// moving one has no effect.
+        /// What an engine's matrix says about where points land, in place of what the rest says. The window has no such cameras,
+        /// and moving one has no effect.
         pub rows: Option<ClipRows> = None,
     }
 }

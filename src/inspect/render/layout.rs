@@ -128,8 +128,8 @@ pub(crate) struct Pick {
 /// [`Pick::found`] for an emitted triangle; the same in `shaders/draw_types.wgsl`.
 pub(crate) const FOUND_EMITTED: u32 = 1;
 
-/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions, bones and normals are drawn as lines
-/// instead, and the ground has a shader of its own.
+/// The overlays that the surface's shader draws, as the bits `OVERLAY_*`. Cracks, T-junctions, bones and normals are drawn as
+/// lines instead, and the ground has a shader of its own.
 pub(crate) fn overlay_bits(overlays: &Overlays) -> u32 {
     let Overlays { colors, wireframe, patches, adjacency, folds, back_faces, .. } = *overlays;
     // Colours have a bit each above those, but for the mesh's own, which are the first.

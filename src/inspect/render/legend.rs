@@ -104,8 +104,8 @@ pub fn legend_of(settings: &Settings, usual: &Usual, distances: &Distances) -> O
     Some(Legend { title, meaning, shown })
 }
 
-/// The half of a picture whose lower corner has the legend: the right one, unless there it would cover more than twice as much of where
-/// the mesh can be. `size` is the picture's width and height in px, and `room` what the legend takes.
+/// The half of a picture whose lower corner has the legend: the right one, unless there it would cover more than twice as much of
+/// where the mesh can be. `size` is the picture's width and height in px, and `room` what the legend takes.
 pub fn legend_side(scene: &Scene, camera: &Camera, settings: &Settings, [size, room]: [[u32; 2]; 2]) -> SplitSide {
     let viewport = Vec2::from(size.map(|side| side as f32));
     let covered = |from_left: u32| -> u32 {

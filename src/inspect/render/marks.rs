@@ -72,8 +72,8 @@ pub fn bone_lines(scene: &Scene) -> Vec<LineSegment> {
     lines.map(|line| LineSegment { times: BONE_TIMES, ..line }).collect()
 }
 
-/// Lines and dots, by their ends and half their widths, in a colour and above a border of this width in px, which sets them off from
-/// any background.
+/// Lines and dots, by their ends and half their widths, in a colour and above a border of this width in px, which sets them off
+/// from any background.
 pub fn outlined(marks: &[(Vec3, Vec3, f32)], color: [u8; 3], border: f32) -> Vec<LineSegment> {
     let lines = |color, wider: f32| {
         marks.iter().map(move |&(start, end, half_width)| {

@@ -50,8 +50,8 @@ choices! {
         TJunctions => "t-junctions", "T-junctions",
             "Open edges that a point of another triangle lies on; faint behind the surface.";
         Bones => "bones", "Bones",
-            "The joints of the mesh's skins in the pose that is shown, each with a line to the nearest joint above it; seen through \
-             the surface.";
+            "The joints of the mesh's skins in the pose that is shown, each with a line to the nearest joint above it; seen \
+             through the surface.";
         BackFaces => "back-faces", "Back faces", "Triangles seen from behind: of open meshes, or wound the other way.";
         Factors => "factors", "Factors",
             "Colours the surface by tessellation factors after clamping and rounding: the inside factor inside each \

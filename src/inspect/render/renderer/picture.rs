@@ -163,7 +163,7 @@ impl Renderer {
             Some((own, self.scene_group(own, frame), &places[half as usize]))
         });
         let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
-        // The difference comes under lines over nothing. What is compared has a background, since its alpha is that of the wireframe.
+        // The difference comes under lines over nothing. What is compared has a background: its alpha is that of the wireframe.
         let is_alone = step == Step::Difference;
         let is_empty = if matches!(steps.last(), Some(Step::Difference)) { is_alone } else { target.is_transparent };
         let own = linear_color(picture.settings.background_color());
