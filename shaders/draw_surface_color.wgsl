@@ -112,23 +112,26 @@ fn bare_color(
 
 const WIRE_COLOR: vec4<f32> = vec4<f32>(0.008, 0.010, 0.014, 1.0);
 
-// How opaque the wireframe is at the place, in a picture that is compared: there it is drawn over the difference, and the picture
-// keeps it as what it lacks of alpha 1.
-var<private> wire_opacity: f32 = 0.0;
+struct SurfaceColor {
+    // The colour of the surface with lines over it, and how much of the place marks and lines cover.
+    color: vec4<f32>,
+    // How opaque the wireframe is in a picture that is compared: there it is drawn over the difference, and the picture keeps it
+    // as what it lacks of alpha 1.
+    wire: f32,
+}
 
-// The colour of the surface with lines over it, and how much of the place marks and lines cover.
-fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32>) -> vec4<f32> {
+fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32>) -> SurfaceColor {
     // Derivatives first: they need uniform control flow.
     let edge_heights = heights(in.domain);
     let to_edges = in.domain * edge_heights;
     let side_heights = heights(in.corner);
     let to_sides = in.corner * side_heights;
     var color = bare_color(in, own_normal, front, lit, to_edges, edge_heights);
+    var wire = 0.0;
     if (frame.overlays & OVERLAY_WIREFRAME) != 0u {
         let opacity = 0.75 * sides_opacity(to_sides, side_heights, 0.5 / frame.coarseness);
-        let is_compared = (frame.overlays & OVERLAY_COMPARED) != 0u;
-        wire_opacity = select(0.0, opacity, is_compared);
-        color = mix(color, WIRE_COLOR, opacity - wire_opacity);
+        wire = select(0.0, opacity, (frame.overlays & OVERLAY_COMPARED) != 0u);
+        color = mix(color, WIRE_COLOR, opacity - wire);
     }
     if (frame.overlays & OVERLAY_PATCHES) != 0u {
         let opacity = sides_opacity(to_edges, edge_heights, 0.9 / frame.coarseness);
@@ -150,10 +153,11 @@ fn surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32
         let covered = opacity * line_coverage(nearest_edge, select(1.75, 0.75, is_smooth) / frame.coarseness);
         color = mix(color, vec4<f32>(edge_color(kind), 1.0), covered);
     }
-    return color;
+    return SurfaceColor(color, wire);
 }
 
 // The same where nothing behind is seen.
 fn opaque_surface_color(in: Varyings, own_normal: vec3<f32>, front: bool, lit: vec4<f32>) -> vec4<f32> {
-    return vec4<f32>(surface_color(in, own_normal, front, lit).rgb, 1.0 - wire_opacity);
+    let own = surface_color(in, own_normal, front, lit);
+    return vec4<f32>(own.color.rgb, 1.0 - own.wire);
 }

@@ -18,9 +18,9 @@ fn surface_layer(in: Varyings, normal: vec3<f32>, front: bool, sample: u32) -> v
     let place = lit_surface_place(in, normal, front);
     let own = material_seen(place, frame);
     // Lines and marks aren't seen through.
-    let bare = surface_color(in, normal, front, vec4<f32>(own.color, 1.0));
+    let drawn = surface_color(in, normal, front, vec4<f32>(own.color, 1.0));
     // What is blended has no alpha to keep lines in.
-    let color = mix(bare, WIRE_COLOR, wire_opacity);
+    let color = mix(drawn.color, WIRE_COLOR, drawn.wire);
     if !is_last(in.clip, sample, frame.left) {
         discard;
     }

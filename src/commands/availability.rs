@@ -65,7 +65,6 @@ needs! {
     /// Heights of the mesh, which can displace it.
     Heights => "The mesh has no heights: choose a height image.",
     TextureCoordinates => "The mesh has no texture coordinates.",
-    /// Joints of skins.
     Bones => "The mesh has no bones: no skin moves it.",
     /// Normals that can be evaluated at pixels.
     NormalsAt => NORMALS_FOLLOW_TRIANGLES,

@@ -1,7 +1,5 @@
 //! What a legend says about the surface's colours.
 
-use glam::Vec2;
-
 use super::covered_area::{covered_area, intersection};
 use super::layout::{CHECKER_LIGHT, CHECKER_LINE, CHECKER_U, CHECKER_V, srgb};
 use super::outlines_picture::SILHOUETTE_COLORS;
@@ -107,7 +105,7 @@ pub fn legend_of(settings: &Settings, usual: &Usual, distances: &Distances) -> O
 /// The half of a picture whose lower corner has the legend: the right one, unless there it would cover more than twice as much of
 /// where the mesh can be. `size` is the picture's width and height in px, and `room` what the legend takes.
 pub fn legend_side(scene: &Scene, camera: &Camera, settings: &Settings, [size, room]: [[u32; 2]; 2]) -> SplitSide {
-    let viewport = Vec2::from(size.map(|side| side as f32));
+    let viewport = size.map(|side| side as f32).into();
     let covered = |from_left: u32| -> u32 {
         let legend = [from_left, size[1].saturating_sub(room[1]), room[0], room[1]];
         let halves = SplitSide::BOTH.into_iter().zip(half_places(size, settings));
