@@ -121,7 +121,7 @@ with_defaults! {
 
 impl Look {
     /// How many images pictures show of a material beside that of the base colour. Where more are needed, the last slots' are
-    /// left out. A body that refracts light needs one more, of what is behind it.
+    /// left out. What [distorts](Self::distorts) needs one more, of what is behind it.
     pub const MOST_IMAGES: usize = 12;
 
     /// The maps whose texture coordinates tangents go along: those of the first one that there is.
@@ -148,6 +148,11 @@ impl Look {
     /// Whether light that goes through it is bent, and absorbed behind the surface.
     pub fn refracts(&self) -> bool {
         self.transmits() && self.thickness > 0.0
+    }
+
+    /// Whether what is behind it is seen elsewhere or blurred: by a body that refracts light, or a rough surface.
+    pub fn distorts(&self) -> bool {
+        self.refracts() || self.transmits() && self.roughness > 0.0
     }
 
     /// The part of light that the body absorbs in an object unit, for short ways, as linear RGB (Beer and Lambert's coefficient).

@@ -39,7 +39,7 @@ impl Renderer {
             exposure: settings.exposure,
             tone_curve: settings.tone_curve,
         };
-        let surroundings = environment.surroundings(&self.gpu, &view);
+        let surroundings = view.surroundings(&self.gpu);
         Ok(Some(PictureLight { environment, surroundings }))
     }
 
@@ -51,7 +51,7 @@ impl Renderer {
     }
 
     /// The bind groups of a half's materials for a picture of a scene with these settings, in this light; and what is behind
-    /// bodies that refract it.
+    /// layers that distort it.
     pub(super) fn material_groups(
         &self,
         scene: &Scene,

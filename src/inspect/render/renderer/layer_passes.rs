@@ -177,8 +177,8 @@ fn draws(
         LayerPass::Away { .. } => &[LayerDraw::Away],
         LayerPass::Back { composites: false, .. } => &[LayerDraw::Toward],
         LayerPass::Back { finds, .. } => {
-            // The picture of what is behind a body that refracts light has its colours from elsewhere.
-            let all: &[_] = if material.look.transmits() && !material.look.refracts() {
+            // What distorts has the colours behind it from a picture of them.
+            let all: &[_] = if material.look.transmits() && !material.look.distorts() {
                 &[LayerDraw::Filter, LayerDraw::Add, LayerDraw::Toward]
             } else {
                 &[LayerDraw::Over, LayerDraw::Toward]

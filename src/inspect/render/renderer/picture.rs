@@ -29,8 +29,8 @@ pub(super) struct Picture<'a> {
     /// The same for passes that find layers; none in a picture without layers.
     pub found_materials: [Vec<wgpu::BindGroup>; 2],
     pub steps: Vec<Step>,
-    /// Whether a body refracts light: it is drawn with a picture of what is behind it.
-    refracts: bool,
+    /// Whether a material distorts what is behind it: it is drawn with a picture of that.
+    distorts: bool,
     camera: &'a Camera,
     /// What draws the light behind everything, if it is shown.
     background: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
@@ -74,9 +74,9 @@ impl Renderer {
             }
             _ => Vec::new(),
         };
-        let has_bodies = |own: &Scene| own.tessellator.mesh().materials.iter().any(|own| own.look.refracts());
-        let refracts = has_layers && SplitSide::BOTH.iter().any(|half| scene.half(*half).is_some_and(has_bodies));
-        let behind = if refracts { Some(whole(target.behind(&self.gpu)?)) } else { None };
+        let any_distorts = |own: &Scene| own.tessellator.mesh().materials.iter().any(|own| own.look.distorts());
+        let distorts = has_layers && SplitSide::BOTH.iter().any(|half| scene.half(*half).is_some_and(any_distorts));
+        let behind = if distorts { Some(whole(target.behind(&self.gpu)?)) } else { None };
         let materials = |half| self.material_groups(scene, half, settings, light.as_ref(), behind.as_ref());
         Ok(Picture {
             places,
@@ -87,7 +87,7 @@ impl Renderer {
             background: shown_light.map(|light| self.background(light)).transpose()?,
             ground_step: ground_step(&steps, scene, camera),
             steps,
-            refracts,
+            distorts,
             target,
             camera,
             settings,
@@ -121,7 +121,7 @@ impl Renderer {
             }
         }
         if let Step::Layer(layer) = step {
-            if picture.refracts && layer.pass == LayerPass::Begin {
+            if picture.distorts && layer.pass == LayerPass::Begin {
                 target.keep_behind(recorder, &self.gpu, &self.materials.mipmaps)?;
             }
             return self.draw_layer(recorder, scene, picture, layer);
@@ -156,7 +156,7 @@ impl Renderer {
         let (step, is_first) = (steps[index], ends(index.checked_sub(1)));
         // Layers begin with a picture of what is behind them.
         let next = steps.get(index + 1);
-        let is_behind = picture.refracts && matches!(next, Some(Step::Layer(next)) if next.pass == LayerPass::Begin);
+        let is_behind = picture.distorts && matches!(next, Some(Step::Layer(next)) if next.pass == LayerPass::Begin);
         let is_last = is_behind || ends(Some(index + 1));
         let shown = SplitSide::BOTH.map(|half| {
             let (own, frame) = scene.half(half).zip(frames[half as usize].as_ref())?;

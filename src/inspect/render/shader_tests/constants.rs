@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::modules;
 use crate::for_tests::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::for_tests::tone::{COMPRESSION_START, DESATURATION};
-use crate::render::blur_levels::ENVIRONMENT_LEVELS;
+use crate::render::blur_levels::{ENVIRONMENT_LEVELS, IRRADIANCE_LEVEL};
 use crate::render::camera::FIELD_OF_VIEW;
 use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
@@ -162,6 +162,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("TILE", number(TILE)),
         ("PI", number(std::f32::consts::PI)),
         ("ENVIRONMENT_LEVELS", number(ENVIRONMENT_LEVELS)),
+        ("IRRADIANCE_LEVEL", number(IRRADIANCE_LEVEL)),
         ("DFG_SIZE", number(DFG_SIZE)),
         ("MOST_LIGHTS", number(MOST_LIGHTS as u32)),
         ("HALF_VIEW", Expected(vec![f64::from(0.5 * FIELD_OF_VIEW).to_radians().tan()], 1e-7)),
