@@ -53,8 +53,8 @@ fn layer_output(seen: Seen) -> vec4<f32> {
     return vec4<f32>(seen.color, 1.0 - seen.behind.x);
 }
 
-// What is seen of a place that shows what is behind it. A body that refracts light, and a rough surface, show the picture of what is
-// behind them, at another place or blurred: that takes the place of what is right behind.
+// What is seen of a place that shows what is behind it. A body that refracts light, and a rough surface, show the picture of what
+// is behind them, at another place or blurred: that takes the place of what is right behind.
 fn material_seen(place: SurfacePlace, frame_of_place: Frame) -> Seen {
     let detail = place_detail(place);
     let base = base_color(place, detail);
@@ -79,7 +79,7 @@ fn material_seen(place: SurfacePlace, frame_of_place: Frame) -> Seen {
 }
 
 // What is seen of the picture behind a body, where the refracted ray leaves it (KHR_materials_volume, section
-// "Implementation"), or behind a thin surface, whose thickness is 0; and how much of it is covered. Roughness blurs by mip levels.
+// "Implementation"), or behind a thin surface, of thickness 0; and how much of it is covered. Roughness blurs by mip levels.
 fn seen_through(place: SurfacePlace, detail: PlaceDetail, look: LookAt, normal: vec3<f32>, at: Frame) -> vec4<f32> {
     let thickness = material.thickness * map_texel(place, detail, SLOT_THICKNESS).g;
     // An index of refraction of 0 stands for an infinite one.

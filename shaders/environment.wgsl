@@ -1,5 +1,5 @@
-// The light from all around, which src/inspect/render/environment.rs makes: a cube map that is blurred by roughness from level to level,
-// one of irradiance, and a table of directional albedos. Directions are in object space.
+// The light from all around, which src/inspect/render/environment.rs makes: a cube map that is blurred by roughness from level to
+// level, one of irradiance, and a table of directional albedos. Directions are in object space.
 
 struct Surroundings {
     // Turns a direction in object space into the light's own.

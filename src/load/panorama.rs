@@ -76,11 +76,13 @@ impl Panorama {
     fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let length = |row: usize| ((row.min(self.height - 1) as f32 + 0.5) / self.height as f32 * PI).sin();
+        let lower_part = |y: usize| length(2 * y + 1) / (length(2 * y) + length(2 * y + 1));
+        let lower_parts: Vec<f32> = (0..height).map(lower_part).collect();
         let mean = |x: usize, y: usize| {
             // A half of each, since their sum may be beyond the largest number.
             let [upper, lower] =
                 [2 * y, 2 * y + 1].map(|row| 0.5 * self.pixel(2 * x, row) + 0.5 * self.pixel(2 * x + 1, row));
-            upper + (lower - upper) * (length(2 * y + 1) / (length(2 * y) + length(2 * y + 1)))
+            upper + (lower - upper) * lower_parts[y]
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
         Self { width, height, pixels }
@@ -150,6 +152,18 @@ mod tests {
                 assert!(found.distance(0.5 + 0.5 * direction.normalize()) < 0.03, "{direction}: {found}");
             }
         }
+    }
+
+    /// A sun near the zenith, where pixels of two rows differ most.
+    #[test]
+    fn lights_fill_the_sphere_and_a_smaller_copy_has_as_much_light() {
+        let sun = Vec3::new(0.05, 1.0, 0.02).normalize();
+        let whole = Panorama::from_radiance([512, 256], |direction| Vec3::splat((direction.dot(sun) > 0.9995).into()));
+        let sphere: f32 = whole.lights().map(|(_, solid_angle, _)| solid_angle).sum();
+        assert!((sphere / (4.0 * PI) - 1.0).abs() < 1e-3, "{sphere}");
+        let all = |panorama: &Panorama| panorama.lights().map(|(_, angle, light)| angle * light.x).sum::<f32>();
+        let [of_whole, of_reduced] = [all(&whole), all(&whole.clone().reduced(64))];
+        assert!(of_whole > 0.0 && (of_reduced / of_whole - 1.0).abs() < 1e-3, "{of_reduced} {of_whole}");
     }
 
     #[test]

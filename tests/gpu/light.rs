@@ -337,8 +337,8 @@ fn matte(environment: &Environment, exposure: f32, normals: &[Vec3]) -> Vec<Foun
     run_in(environment, &view, &normals.iter().map(case).collect::<Vec<_>>())
 }
 
-/// A small sun that gives half of all light, of which the side that faces it has the byte 200: within 3 of 255 steps of the sum over
-/// all pixels of the panorama.
+/// A small sun that gives half of all light, exposed so that the side that faces it has the byte 200: within 3 of 255 steps of the
+/// sum over all pixels of the panorama.
 #[test]
 fn a_sun_lights_a_matte_surface_as_the_sum_over_all_pixels_says() {
     for toward in [vec3(0.6, 0.1, -0.8), vec3(-0.3, 0.9, 0.4), vec3(0.05, 1.0, 0.02)] {

@@ -152,7 +152,7 @@ impl Look {
 
     /// Whether what is behind it is seen elsewhere or blurred: by a body that refracts light, or a rough surface.
     pub fn distorts(&self) -> bool {
-        self.refracts() || self.transmits() && self.roughness > 0.0
+        self.transmits() && (self.thickness > 0.0 || self.roughness > 0.0)
     }
 
     /// The part of light that the body absorbs in an object unit, for short ways, as linear RGB (Beer and Lambert's coefficient).

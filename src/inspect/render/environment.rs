@@ -60,7 +60,7 @@ pub struct LightView {
 }
 
 impl LightView {
-    /// The `Surroundings` of a picture. Each picture has its own, so that one that is recorded on another thread doesn't change them.
+    /// The `Surroundings` of a picture. Each has its own, so that one that is recorded on another thread doesn't change them.
     pub fn surroundings(&self, gpu: &Gpu) -> wgpu::Buffer {
         let turn = Mat3::from_rotation_y(-self.rotation.to_radians());
         let surroundings = Surroundings {

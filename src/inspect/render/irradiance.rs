@@ -16,8 +16,8 @@ pub struct LightPart {
     pub light: Vec4,
 }
 
-/// Joins lights (unit direction, solid angle in sr, and linear RGB) whose directions lie in one cell. Of grey light, this changes only
-/// what reaches surfaces whose horizon crosses the cell: even a bright sun stays where it is, since directions count by their light.
+/// Joins lights (unit direction, solid angle in sr, and linear RGB) whose directions lie in one cell. Of grey light, this changes
+/// only what surfaces get whose horizon crosses the cell: even a bright sun stays where it is, as directions count by their light.
 pub fn light_parts(lights: impl Iterator<Item = (Vec3, f32, Vec3)>) -> Vec<LightPart> {
     let mut cells = vec![LightPart::default(); CELLS * CELLS * CELLS];
     for (direction, solid_angle, light) in lights {

@@ -18,8 +18,8 @@ pub(crate) struct PrefilterParams {
     pub source_size: u32,
 }
 
-/// Fills all [`ENVIRONMENT_LEVELS`] levels of the first of two cubes from one of the same size with all mip levels, and a level of the
-/// second with the irradiance of light that is divided into these parts. The result is the same every time.
+/// Fills all [`ENVIRONMENT_LEVELS`] levels of the first of two cubes from one of the same size with all mip levels, and a level of
+/// the second with the irradiance of light that is divided into these parts. The result is the same every time.
 ///
 /// # Errors
 /// The pipeline can't be made: out of memory, or a lost device.

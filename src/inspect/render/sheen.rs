@@ -1,4 +1,4 @@
-//! The sheen of cloth: functions of `shaders/sheen.wgsl`, which explains them. The table of directional albedos is made with them.
+//! The sheen of cloth: functions of `shaders/sheen.wgsl`, which explains them. They make the table of directional albedos.
 
 use std::f32::consts::PI;
 

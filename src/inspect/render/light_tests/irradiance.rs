@@ -48,8 +48,8 @@ fn smooth_lights_and_the_studio_give_their_integral() {
     }
 }
 
-/// A small sun that gives half of all light, high, low and at the zenith, in a panorama that is halved first: within 2 of 255 steps of
-/// the sum over all of its pixels.
+/// A small sun that gives half of all light, high, low and at the zenith, in a panorama that is halved first: within 2 of 255 steps
+/// of the sum over all of its pixels.
 #[test]
 fn a_sun_lights_a_matte_surface_as_the_sum_over_all_pixels_says() {
     for toward in [vec3(0.6, 0.1, -0.8), vec3(-0.3, 0.9, 0.4), vec3(0.05, 1.0, 0.02)] {

@@ -100,8 +100,8 @@ fn a_sheen_shows_along_outlines_and_backwards_in_both_directions() {
     assert!((there - back).abs() < 1e-5 * there, "{there} {back}");
 }
 
-/// White sheen on a black sphere in the studio, from the irradiance about the direction half way to the eye, against the sum over all of
-/// the light: the mean difference, relative to the mean brightness. The page about materials states these bounds.
+/// White sheen on a black sphere in the studio, from the irradiance about the direction half way to the eye, against the sum over
+/// all of the light: the mean difference, relative to the mean brightness. The page about materials states these bounds.
 #[test]
 fn a_sphere_with_sheen_is_near_its_integral() {
     let (studio, coarse, to_eye) = (Studio::new(), CubeMap::new(32, studio_light), Vec3::Z);
