@@ -1,0 +1,312 @@
+//! Makes polygons of NURBS surfaces, which are then read as meshes are. ufbx evaluates a surface, and cuts each of its spans into
+//! as many pieces as it is told; how many are needed is measured here.
+
+use std::collections::HashMap;
+
+use glam::{DVec2, DVec3, Vec3};
+use ufbx::{AllocatorOpts, Mesh, MeshRoot, MirrorAxis, Node, NurbsBasis, NurbsSurface, NurbsTopology, Scene};
+
+use super::convert::{at_corner, vec3, vec4};
+use super::{looks, parse};
+use crate::memory_budget::Budget;
+use crate::notes::{Notes, counted};
+use crate::read_error::ReadError;
+use geometry::casts::to_usize;
+use geometry::mesh::Borrowed;
+use geometry::near::closest_on_triangle;
+use geometry::progress::Progress;
+
+/// The greatest distance between a surface and its polygons, as a share of the diagonal of the box around it.
+const TOLERANCE: f64 = 0.001;
+
+/// Points of a surface's outline that are nearer to each other, in units of the file, become one in ufbx.
+const JOINED: f64 = 3.2e-4;
+
+/// The greatest order, which is the degree plus 1, that ufbx evaluates.
+const MAX_ORDER: u32 = 128;
+
+/// How much work all surfaces may be, and how much more for each byte of the file: points times the control points that one
+/// depends on, and this many for the polygon there.
+const MOST_WORK: u64 = 1 << 23;
+const WORK_A_BYTE: u64 = 16;
+const PER_POLYGON: u64 = 16;
+
+/// The memory of a surface's polygons in bytes: for each point, and for lists of less than a block, which ufbx puts into blocks.
+const PER_POINT: u64 = 256;
+const BLOCK: usize = 4096;
+const BLOCKS: u64 = 12;
+
+/// The meshes of nodes: those of the file, and the polygons of NURBS surfaces.
+pub(super) struct Meshes<'s> {
+    pub scene: &'s Scene,
+    /// By the number of the object that nodes have.
+    surfaces: HashMap<u32, Polygons>,
+    /// What the polygons take of the budget, in bytes.
+    pub memory: u64,
+}
+
+/// The polygons of a NURBS surface.
+pub(super) struct Polygons {
+    mesh: MeshRoot,
+    /// -1 if the file turns the surface, and if the scene is mirrored, or else 1.
+    turns: [f64; 2],
+    /// The least u and v, and the greatest.
+    domain: [DVec2; 2],
+}
+
+impl<'s> Meshes<'s> {
+    /// Cuts the surfaces that nodes have; trimmed ones are cut whole.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`] and [`ReadError::Cancelled`]. A surface that can't be evaluated causes a warning.
+    pub(super) fn new(
+        scene: &'s Scene,
+        budget: &Budget,
+        progress: &Progress,
+        notes: &mut Notes,
+    ) -> Result<Self, ReadError> {
+        let whole = scene.nurbs_surfaces.into_iter().map(|surface| (&surface.element, surface));
+        let trimmed = scene.nurbs_trim_surfaces.into_iter().filter_map(|own| {
+            let surface = own.element.connections_dst.iter().find_map(|link| ufbx::as_nurbs_surface(&link.src))?;
+            Some((&own.element, surface))
+        });
+        let used: Vec<_> = whole.chain(trimmed).filter(|(owner, _)| !owner.instances.is_empty()).collect();
+        let uses: u64 = used.iter().map(|(owner, _)| owner.instances.len() as u64).sum();
+        let mut left = MOST_WORK.saturating_add(budget.files().saturating_mul(WORK_A_BYTE));
+        let share = left / uses.max(1);
+        let mut meshes = Self { scene, surfaces: HashMap::new(), memory: 0 };
+        let (mut trimmed, mut worst) = (0, TOLERANCE);
+        for (owner, surface) in used {
+            let refined = match Cut::new(surface, share, &mut left) {
+                Ok(cut) => cut.refined(share, budget, progress)?,
+                Err(reason) => Err(reason),
+            };
+            match refined {
+                Ok((cut, off)) => {
+                    meshes.surfaces.insert(owner.element_id, cut.polygons(scene, budget)?);
+                    meshes.memory += cut.memory();
+                    trimmed += usize::from(owner.element_id != surface.element.element_id);
+                    worst = worst.max(off);
+                }
+                Err(reason) => {
+                    let name = owner.instances.first().map(|node| looks::name(&node.element)).unwrap_or_default();
+                    notes.push(format!("the NURBS surface of \"{name}\" is left out: {reason}."));
+                }
+            }
+        }
+        let made = format!("NURBS surfaces, made polygons that differ from them by up to {worst:.3} of their size");
+        let counts = [(meshes.surfaces.len(), &*made), (trimmed, "NURBS surfaces whose trimming isn't read")];
+        notes.extend(counted(counts));
+        Ok(meshes)
+    }
+
+    /// Returns the mesh of a node, or the polygons of its surface.
+    pub(super) fn of<'n>(&'n self, node: &'n Node) -> Option<&'n Mesh> {
+        node.mesh.as_deref().or_else(|| Some(&*self.surface(node)?.mesh))
+    }
+
+    /// Returns the polygons of a node's surface.
+    pub(super) fn surface(&self, node: &Node) -> Option<&Polygons> {
+        let own = node.attrib.as_ref().filter(|_| node.mesh.is_none())?;
+        self.surfaces.get(&own.element_id)
+    }
+}
+
+impl Polygons {
+    /// Whether the front of the surface is the polygons' back.
+    pub(super) fn is_turned(&self) -> bool {
+        self.turns[0] * self.turns[1] < 0.0
+    }
+
+    /// Returns a corner's normal: the surface's, or the polygons' where a derivative is 0 but for rounding, as at a pole.
+    pub(super) fn normal(&self, corner: usize) -> Vec3 {
+        let lists = [&self.mesh.vertex_tangent, &self.mesh.vertex_bitangent, &self.mesh.vertex_normal];
+        let vectors = lists.map(|list| at_corner(&list.values, &list.indices, corner).map_or(DVec3::ZERO, vec3));
+        let ([along_u, along_v, polygons], [turned, mirrored]) = (vectors, self.turns);
+        let exact = along_u.cross(along_v).normalize_or_zero() * turned;
+        let normal = if exact.dot(polygons) > 0.95 { exact } else { polygons };
+        (normal * mirrored).as_vec3()
+    }
+
+    /// Returns the texture coordinates at u and v, which run from 0 to 1 over the whole surface.
+    pub(super) fn uv(&self, place: DVec2) -> DVec2 {
+        let [least, greatest] = self.domain;
+        (place - least) / (greatest - least)
+    }
+}
+
+/// A surface, and how many pieces each of its spans along u and v is cut into.
+#[derive(Clone, Copy)]
+struct Cut<'s> {
+    surface: &'s NurbsSurface,
+    pieces: [usize; 2],
+}
+
+impl<'s> Cut<'s> {
+    /// Cuts each span into as many pieces as its degree, so that no bend lies between the places that are measured; or into fewer
+    /// if that is more work than a surface's share of it.
+    ///
+    /// # Errors
+    /// A clause that says why the surface can't be evaluated.
+    fn new(surface: &'s NurbsSurface, share: u64, left: &mut u64) -> Result<Self, &'static str> {
+        let [u, v] = [&surface.basis_u, &surface.basis_v];
+        let fit = knots_fit(u, surface.num_control_points_u) && knots_fit(v, surface.num_control_points_v);
+        let are_finite = surface.control_points.iter().all(|point| vec4(point).is_finite());
+        let checks = [
+            (!surface.control_points.is_empty(), "it has no control points"),
+            (u.order.min(v.order) >= 2 && u.order.max(v.order) <= MAX_ORDER, "its degree isn't between 1 and 127"),
+            (fit, "its knots don't ascend, or don't fit its degree and control points"),
+            (are_finite, "a control point, or its weight, isn't a finite number"),
+        ];
+        if let Some((_, reason)) = checks.into_iter().find(|(is_right, _)| !is_right) {
+            return Err(reason);
+        }
+        // Of a single polygon, if it is a triangle, ufbx would have too few texture coordinates.
+        let mut cut = Self { surface, pieces: [u.order as usize - 1, v.order.max(3) as usize - 1] };
+        while cut.work() > share && cut.pieces != [1, 1] {
+            cut.pieces = cut.pieces.map(|pieces| pieces.div_ceil(2));
+        }
+        *left = left.checked_sub(cut.work()).ok_or("it has too many spans")?;
+        Ok(cut)
+    }
+
+    /// How many points there are along u and v.
+    fn points(&self) -> [u64; 2] {
+        let spans = [&self.surface.basis_u, &self.surface.basis_v].map(|basis| basis.spans.len() as u64 - 1);
+        [0, 1].map(|i| spans[i].saturating_mul(self.pieces[i] as u64).saturating_add(1))
+    }
+
+    fn work(&self) -> u64 {
+        let [u, v] = self.points();
+        let orders = u64::from(self.surface.basis_u.order) * u64::from(self.surface.basis_v.order);
+        u.saturating_mul(v).saturating_mul(orders + PER_POLYGON)
+    }
+
+    fn memory(&self) -> u64 {
+        let [u, v] = self.points();
+        u.saturating_mul(v).saturating_mul(PER_POINT).saturating_add(BLOCKS * BLOCK as u64)
+    }
+
+    /// Doubles pieces until the polygons are within the tolerance, or would be more work than a surface's share. Also returns by
+    /// which share of its size they then differ from the surface; the inner error says why it is left out.
+    fn refined(
+        mut self,
+        share: u64,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<Result<(Self, f64), &'static str>, ReadError> {
+        loop {
+            let Some((off, size)) = self.measured(budget, progress)? else {
+                return Ok(Err("its weights add up to 0, or all of it is one point"));
+            };
+            let [u, v, inside] = off.map(|off| off > TOLERANCE);
+            let is_twisted = inside && !u && !v;
+            let [along_u, along_v] = self.pieces;
+            let doubled = |pieces, is_off| if is_off || is_twisted { 2 * pieces } else { pieces };
+            let finer = Self { pieces: [doubled(along_u, u), doubled(along_v, v)], ..self };
+            // The mesh that is made of the polygons takes memory, too.
+            let is_too_much = finer.work() > share || finer.memory() > budget.left() / 4;
+            if finer.pieces == self.pieces || is_too_much {
+                return Ok(Ok((self, off.into_iter().fold(0.0, f64::max) + JOINED / size)));
+            }
+            self = finer;
+        }
+    }
+
+    /// Measures how far the surface is from its polygons at the middles of their sides along u, of those along v, and of the
+    /// polygons: the largest distances, as shares of its size, and its size. Returns none if a point of it isn't finite, or all
+    /// are one.
+    fn measured(&self, budget: &Budget, progress: &Progress) -> Result<Option<([f64; 3], f64)>, ReadError> {
+        const PER_PLACE: u64 = 2 * (8 + 3 * 24);
+        let _scope = Borrowed::from(budget);
+        let [u, v] = self.points();
+        budget.borrow(u.saturating_add(v).saturating_mul(PER_PLACE))?;
+        let us = places(&self.surface.basis_u, self.pieces[0]);
+        let mut off = [0.0_f64; 3];
+        let mut extent = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        let mut rows: [Vec<DVec3>; 3] = Default::default();
+        for (k, v) in places(&self.surface.basis_v, self.pieces[1]).into_iter().enumerate() {
+            progress.check()?;
+            rows.rotate_left(1);
+            rows[2].clear();
+            for &u in &us {
+                let point = ufbx::evaluate_nurbs_surface(self.surface, u, v);
+                let (is_valid, point) = (point.valid, vec3(&point.position));
+                if !is_valid || !point.as_vec3().is_finite() {
+                    return Ok(None);
+                }
+                extent = [extent[0].min(point), extent[1].max(point)];
+                rows[2].push(point);
+            }
+            if k % 2 == 0 {
+                compare(&rows, k == 0, &mut off);
+            }
+        }
+        let size = extent[0].distance(extent[1]);
+        Ok((size > 0.0).then(|| (off.map(|off| off / size), size)))
+    }
+
+    fn polygons(&self, scene: &Scene, budget: &Budget) -> Result<Polygons, ReadError> {
+        budget.hold(self.memory())?;
+        let memory_limit = to_usize(self.memory());
+        let allocator = || AllocatorOpts { memory_limit, max_chunk_size: BLOCK, ..AllocatorOpts::default() };
+        let options = ufbx::TessellateSurfaceOpts {
+            temp_allocator: allocator(),
+            result_allocator: allocator(),
+            span_subdivision_u: self.pieces[0],
+            span_subdivision_v: self.pieces[1],
+            skip_mesh_parts: true,
+        };
+        let mesh = ufbx::tessellate_nurbs_surface(self.surface, options);
+        let mesh = mesh.map_err(|error| parse::refused(&error, budget))?;
+        let is_mirrored = scene.metadata.mirror_axis != MirrorAxis::None;
+        let turns = [self.surface.flip_normals, is_mirrored].map(|turns| if turns { -1.0 } else { 1.0 });
+        let [u, v] = [&self.surface.basis_u, &self.surface.basis_v];
+        Ok(Polygons { mesh, turns, domain: [DVec2::new(u.t_min, v.t_min), DVec2::new(u.t_max, v.t_max)] })
+    }
+}
+
+/// Compares the rows of points below polygons, through their middles and above them with their sides and diagonals: the largest
+/// distances are those of [`Cut::measured`]. The first row of all has nothing below it.
+fn compare([below, middle, above]: &[Vec<DVec3>; 3], is_first: bool, off: &mut [f64; 3]) {
+    let mut add = |kind: usize, triangles: &[[DVec3; 3]], point: DVec3| {
+        let distances = triangles.iter().map(|&triangle| closest_on_triangle(triangle, point).1.distance(point));
+        off[kind] = off[kind].max(distances.fold(f64::INFINITY, f64::min));
+    };
+    for i in (0..above.len()).step_by(2) {
+        let (d, end) = (above[i], above.get(i + 2).copied());
+        if let Some(c) = end {
+            add(0, &[[d, c, c]], above[i + 1]);
+        }
+        if !is_first {
+            add(1, &[[below[i], d, d]], middle[i]);
+        }
+        if let Some(c) = end.filter(|_| !is_first) {
+            // Either diagonal may cut the polygon.
+            let (a, b, point) = (below[i], below[i + 2], middle[i + 1]);
+            add(2, &[[a, b, c], [c, d, a]], point);
+            add(2, &[[b, c, d], [d, a, b]], point);
+        }
+    }
+}
+
+/// Whether a surface can be evaluated with these knots: ufbx lets pass those that aren't finite, and those that are all the same.
+fn knots_fit(basis: &NurbsBasis, points: usize) -> bool {
+    let used = basis.knot_vector.len().saturating_sub(basis.order as usize);
+    let is_all = match basis.topology {
+        NurbsTopology::Open => used == points,
+        NurbsTopology::Closed | NurbsTopology::Periodic => used <= points + basis.num_wrap_control_points,
+    };
+    is_all && basis.valid && basis.spans.len() > 1 && basis.knot_vector.iter().all(|knot| knot.is_finite())
+}
+
+/// The ends of all pieces, and their middles. Where a surface closes, ufbx takes its first points as its last.
+fn places(basis: &NurbsBasis, pieces: usize) -> Vec<f64> {
+    let (spans, steps) = (&basis.spans, 2 * pieces);
+    let within = |i: usize| {
+        let part = (i % steps) as f64 / steps as f64;
+        spans[i / steps] * (1.0 - part) + spans[i / steps + 1] * part
+    };
+    let last = if basis.topology == NurbsTopology::Open { spans[spans.len() - 1] } else { spans[0] };
+    (0..(spans.len() - 1) * steps).map(within).chain([last]).collect()
+}
