@@ -12,9 +12,8 @@ use crate::memory_budget::Budget;
 use crate::notes::{Notes, counted};
 use crate::read_error::ReadError;
 use geometry::casts::to_usize;
-use geometry::mesh::Borrowed;
 use geometry::near::closest_on_triangle;
-use geometry::progress::Progress;
+use geometry::progress::{Cancelled, Progress};
 
 /// The greatest distance between a surface and its polygons, as a share of the diagonal of the box around it.
 const TOLERANCE: f64 = 0.001;
@@ -27,7 +26,7 @@ const MAX_ORDER: u32 = 128;
 
 /// How much work all surfaces may be, and how much more for each byte of the file: points times the control points that one
 /// depends on, and this many for the polygon there.
-const MOST_WORK: u64 = 1 << 23;
+const MOST_WORK: u64 = 1 << 22;
 const WORK_A_BYTE: u64 = 16;
 const PER_POLYGON: u64 = 16;
 
@@ -196,7 +195,7 @@ impl<'s> Cut<'s> {
         progress: &Progress,
     ) -> Result<Result<(Self, f64), &'static str>, ReadError> {
         loop {
-            let Some((off, size)) = self.measured(budget, progress)? else {
+            let Some((off, size)) = self.measured(progress)? else {
                 return Ok(Err("its weights add up to 0, or all of it is one point"));
             };
             let [u, v, inside] = off.map(|off| off > TOLERANCE);
@@ -216,34 +215,49 @@ impl<'s> Cut<'s> {
     /// Measures how far the surface is from its polygons at the middles of their sides along u, of those along v, and of the
     /// polygons: the largest distances, as shares of its size, and its size. Returns none if a point of it isn't finite, or all
     /// are one.
-    fn measured(&self, budget: &Budget, progress: &Progress) -> Result<Option<([f64; 3], f64)>, ReadError> {
-        const PER_PLACE: u64 = 2 * (8 + 3 * 24);
-        let _scope = Borrowed::from(budget);
-        let [u, v] = self.points();
-        budget.borrow(u.saturating_add(v).saturating_mul(PER_PLACE))?;
-        let us = places(&self.surface.basis_u, self.pieces[0]);
+    fn measured(&self, progress: &Progress) -> Result<Option<([f64; 3], f64)>, Cancelled> {
         let mut off = [0.0_f64; 3];
         let mut extent = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let mut rows: [Vec<DVec3>; 3] = Default::default();
-        for (k, v) in places(&self.surface.basis_v, self.pieces[1]).into_iter().enumerate() {
+        let [columns, rows] = self.points().map(|points| to_usize(points) - 1);
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
             progress.check()?;
-            rows.rotate_left(1);
-            rows[2].clear();
-            for &u in &us {
-                let point = ufbx::evaluate_nurbs_surface(self.surface, u, v);
-                let (is_valid, point) = (point.valid, vec3(&point.position));
-                if !is_valid || !point.as_vec3().is_finite() {
-                    return Ok(None);
-                }
-                extent = [extent[0].min(point), extent[1].max(point)];
-                rows[2].push(point);
+            let points = [0, 1, 2].map(|y| [0, 1, 2].map(|x| self.point([2 * column + x, 2 * row + y])));
+            if !points.as_flattened().iter().all(|point| point.as_vec3().is_finite()) {
+                return Ok(None);
             }
-            if k % 2 == 0 {
-                compare(&rows, k == 0, &mut off);
+            let [[a, below, b], [left, middle, right], [d, above, c]] = points;
+            extent = [a, b, c, d].into_iter().fold(extent, |[least, most], point| [least.min(point), most.max(point)]);
+            // A side is a triangle without area, and either diagonal may cut the polygon.
+            for (kind, point, triangles) in [
+                (0, below, [[a, b, b]; 2]),
+                (0, above, [[d, c, c]; 2]),
+                (1, left, [[a, d, d]; 2]),
+                (1, right, [[b, c, c]; 2]),
+                (2, middle, [[a, b, c], [c, d, a]]),
+                (2, middle, [[b, c, d], [d, a, b]]),
+            ] {
+                let [one, other] = triangles.map(|triangle| closest_on_triangle(triangle, point).1.distance(point));
+                off[kind] = off[kind].max(one.min(other));
             }
         }
         let size = extent[0].distance(extent[1]);
         Ok((size > 0.0).then(|| (off.map(|off| off / size), size)))
+    }
+
+    /// Returns the point at so many halves of pieces along u and v. Where a surface closes, ufbx takes its first points as its last.
+    fn point(&self, halves: [usize; 2]) -> DVec3 {
+        let bases = [&self.surface.basis_u, &self.surface.basis_v];
+        let [u, v] = [0, 1].map(|i| {
+            let (spans, steps) = (&bases[i].spans, 2 * self.pieces[i]);
+            let (span, part) = (halves[i] / steps, (halves[i] % steps) as f64 / steps as f64);
+            match spans.get(span + 1) {
+                Some(next) => spans[span] * (1.0 - part) + next * part,
+                None if bases[i].topology == NurbsTopology::Open => spans[span],
+                None => spans[0],
+            }
+        });
+        let point = ufbx::evaluate_nurbs_surface(self.surface, u, v);
+        if point.valid { vec3(&point.position) } else { DVec3::NAN }
     }
 
     fn polygons(&self, scene: &Scene, budget: &Budget) -> Result<Polygons, ReadError> {
@@ -266,30 +280,6 @@ impl<'s> Cut<'s> {
     }
 }
 
-/// Compares the rows of points below polygons, through their middles and above them with their sides and diagonals: the largest
-/// distances are those of [`Cut::measured`]. The first row of all has nothing below it.
-fn compare([below, middle, above]: &[Vec<DVec3>; 3], is_first: bool, off: &mut [f64; 3]) {
-    let mut add = |kind: usize, triangles: &[[DVec3; 3]], point: DVec3| {
-        let distances = triangles.iter().map(|&triangle| closest_on_triangle(triangle, point).1.distance(point));
-        off[kind] = off[kind].max(distances.fold(f64::INFINITY, f64::min));
-    };
-    for i in (0..above.len()).step_by(2) {
-        let (d, end) = (above[i], above.get(i + 2).copied());
-        if let Some(c) = end {
-            add(0, &[[d, c, c]], above[i + 1]);
-        }
-        if !is_first {
-            add(1, &[[below[i], d, d]], middle[i]);
-        }
-        if let Some(c) = end.filter(|_| !is_first) {
-            // Either diagonal may cut the polygon.
-            let (a, b, point) = (below[i], below[i + 2], middle[i + 1]);
-            add(2, &[[a, b, c], [c, d, a]], point);
-            add(2, &[[b, c, d], [d, a, b]], point);
-        }
-    }
-}
-
 /// Whether a surface can be evaluated with these knots: ufbx lets pass those that aren't finite, and those that are all the same.
 fn knots_fit(basis: &NurbsBasis, points: usize) -> bool {
     let used = basis.knot_vector.len().saturating_sub(basis.order as usize);
@@ -298,15 +288,4 @@ fn knots_fit(basis: &NurbsBasis, points: usize) -> bool {
         NurbsTopology::Closed | NurbsTopology::Periodic => used <= points + basis.num_wrap_control_points,
     };
     is_all && basis.valid && basis.spans.len() > 1 && basis.knot_vector.iter().all(|knot| knot.is_finite())
-}
-
-/// The ends of all pieces, and their middles. Where a surface closes, ufbx takes its first points as its last.
-fn places(basis: &NurbsBasis, pieces: usize) -> Vec<f64> {
-    let (spans, steps) = (&basis.spans, 2 * pieces);
-    let within = |i: usize| {
-        let part = (i % steps) as f64 / steps as f64;
-        spans[i / steps] * (1.0 - part) + spans[i / steps + 1] * part
-    };
-    let last = if basis.topology == NurbsTopology::Open { spans[spans.len() - 1] } else { spans[0] };
-    (0..(spans.len() - 1) * steps).map(within).chain([last]).collect()
 }
