@@ -4,7 +4,10 @@
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, Vec3};
-use ufbx::{AllocatorOpts, Mesh, MeshRoot, MirrorAxis, Node, NurbsBasis, NurbsSurface, NurbsTopology, Scene};
+use ufbx::{
+    AllocatorOpts, Element, ElementType, Mesh, MeshRoot, MirrorAxis, Node, NurbsBasis, NurbsSurface, NurbsTopology,
+    Scene,
+};
 
 use super::convert::{at_corner, vec3, vec4};
 use super::{looks, parse};
@@ -26,7 +29,7 @@ const MAX_ORDER: u32 = 128;
 
 /// How much work all surfaces may be, and how much more for each byte of the file: points times the control points that one
 /// depends on, and this many for the polygon there.
-const MOST_WORK: u64 = 1 << 22;
+const MOST_WORK: u64 = 1 << 20;
 const WORK_A_BYTE: u64 = 16;
 const PER_POLYGON: u64 = 16;
 
@@ -39,18 +42,16 @@ const BLOCKS: u64 = 12;
 pub(super) struct Meshes<'s> {
     pub scene: &'s Scene,
     /// By the number of the object that nodes have.
-    surfaces: HashMap<u32, Polygons>,
+    surfaces: HashMap<u32, Polygons<'s>>,
     /// What the polygons take of the budget, in bytes.
     pub memory: u64,
 }
 
-/// The polygons of a NURBS surface.
-pub(super) struct Polygons {
+/// A NURBS surface and its polygons.
+pub(super) struct Polygons<'s> {
+    surface: &'s NurbsSurface,
     mesh: MeshRoot,
-    /// -1 if the file turns the surface, and if the scene is mirrored, or else 1.
-    turns: [f64; 2],
-    /// The least u and v, and the greatest.
-    domain: [DVec2; 2],
+    is_mirrored: bool,
 }
 
 impl<'s> Meshes<'s> {
@@ -74,7 +75,7 @@ impl<'s> Meshes<'s> {
         let mut left = MOST_WORK.saturating_add(budget.files().saturating_mul(WORK_A_BYTE));
         let share = left / uses.max(1);
         let mut meshes = Self { scene, surfaces: HashMap::new(), memory: 0 };
-        let (mut trimmed, mut worst) = (0, TOLERANCE);
+        let (mut trimmed, mut still, mut worst) = (0, 0, TOLERANCE);
         for (owner, surface) in used {
             let refined = match Cut::new(surface, share, &mut left) {
                 Ok(cut) => cut.refined(share, budget, progress)?,
@@ -84,6 +85,7 @@ impl<'s> Meshes<'s> {
                 Ok((cut, off)) => {
                     meshes.surfaces.insert(owner.element_id, cut.polygons(scene, budget)?);
                     meshes.memory += cut.memory();
+                    still += usize::from(surface.element.connections_dst.iter().any(|link| is_deformer(&link.src)));
                     trimmed += usize::from(owner.element_id != surface.element.element_id);
                     worst = worst.max(off);
                 }
@@ -94,8 +96,11 @@ impl<'s> Meshes<'s> {
             }
         }
         let made = format!("NURBS surfaces, made polygons that differ from them by up to {worst:.3} of their size");
-        let counts = [(meshes.surfaces.len(), &*made), (trimmed, "NURBS surfaces whose trimming isn't read")];
-        notes.extend(counted(counts));
+        notes.extend(counted([
+            (meshes.surfaces.len(), &*made),
+            (trimmed, "NURBS surfaces whose trimming isn't read"),
+            (still, "NURBS surfaces that skins or blend shapes would move, shown without them"),
+        ]));
         Ok(meshes)
     }
 
@@ -105,32 +110,33 @@ impl<'s> Meshes<'s> {
     }
 
     /// Returns the polygons of a node's surface.
-    pub(super) fn surface(&self, node: &Node) -> Option<&Polygons> {
+    pub(super) fn surface(&self, node: &Node) -> Option<&Polygons<'s>> {
         let own = node.attrib.as_ref().filter(|_| node.mesh.is_none())?;
         self.surfaces.get(&own.element_id)
     }
 }
 
-impl Polygons {
+impl Polygons<'_> {
     /// Whether the front of the surface is the polygons' back.
     pub(super) fn is_turned(&self) -> bool {
-        self.turns[0] * self.turns[1] < 0.0
+        self.surface.flip_normals != self.is_mirrored
     }
 
     /// Returns a corner's normal: the surface's, or the polygons' where a derivative is 0 but for rounding, as at a pole.
     pub(super) fn normal(&self, corner: usize) -> Vec3 {
         let lists = [&self.mesh.vertex_tangent, &self.mesh.vertex_bitangent, &self.mesh.vertex_normal];
-        let vectors = lists.map(|list| at_corner(&list.values, &list.indices, corner).map_or(DVec3::ZERO, vec3));
-        let ([along_u, along_v, polygons], [turned, mirrored]) = (vectors, self.turns);
-        let exact = along_u.cross(along_v).normalize_or_zero() * turned;
-        let normal = if exact.dot(polygons) > 0.95 { exact } else { polygons };
-        (normal * mirrored).as_vec3()
+        let [along_u, along_v, polygons] =
+            lists.map(|list| at_corner(&list.values, &list.indices, corner).map_or(DVec3::ZERO, vec3));
+        let turned = |normal: DVec3, is_turned: bool| if is_turned { -normal } else { normal };
+        let exact = turned(along_u.cross(along_v).normalize_or_zero(), self.surface.flip_normals);
+        turned(if exact.dot(polygons) > 0.95 { exact } else { polygons }, self.is_mirrored).as_vec3()
     }
 
     /// Returns the texture coordinates at u and v, which run from 0 to 1 over the whole surface.
     pub(super) fn uv(&self, place: DVec2) -> DVec2 {
-        let [least, greatest] = self.domain;
-        (place - least) / (greatest - least)
+        let [u, v] = [&self.surface.basis_u, &self.surface.basis_v];
+        let least = DVec2::new(u.t_min, v.t_min);
+        (place - least) / (DVec2::new(u.t_max, v.t_max) - least)
     }
 }
 
@@ -260,7 +266,7 @@ impl<'s> Cut<'s> {
         if point.valid { vec3(&point.position) } else { DVec3::NAN }
     }
 
-    fn polygons(&self, scene: &Scene, budget: &Budget) -> Result<Polygons, ReadError> {
+    fn polygons(&self, scene: &Scene, budget: &Budget) -> Result<Polygons<'s>, ReadError> {
         budget.hold(self.memory())?;
         let memory_limit = to_usize(self.memory());
         let allocator = || AllocatorOpts { memory_limit, max_chunk_size: BLOCK, ..AllocatorOpts::default() };
@@ -273,11 +279,12 @@ impl<'s> Cut<'s> {
         };
         let mesh = ufbx::tessellate_nurbs_surface(self.surface, options);
         let mesh = mesh.map_err(|error| parse::refused(&error, budget))?;
-        let is_mirrored = scene.metadata.mirror_axis != MirrorAxis::None;
-        let turns = [self.surface.flip_normals, is_mirrored].map(|turns| if turns { -1.0 } else { 1.0 });
-        let [u, v] = [&self.surface.basis_u, &self.surface.basis_v];
-        Ok(Polygons { mesh, turns, domain: [DVec2::new(u.t_min, v.t_min), DVec2::new(u.t_max, v.t_max)] })
+        Ok(Polygons { surface: self.surface, mesh, is_mirrored: scene.metadata.mirror_axis != MirrorAxis::None })
     }
+}
+
+fn is_deformer(element: &Element) -> bool {
+    matches!(element.type_, ElementType::SkinDeformer | ElementType::BlendDeformer)
 }
 
 /// Whether a surface can be evaluated with these knots: ufbx lets pass those that aren't finite, and those that are all the same.

@@ -19,7 +19,7 @@ use geometry::mesh::rig::Delta;
 pub(super) struct Vertices<'a> {
     pub mesh: &'a Mesh,
     /// The NURBS surface whose polygons the mesh is.
-    pub surface: Option<&'a Polygons>,
+    pub surface: Option<&'a Polygons<'a>>,
     pub skin: Option<&'a Skin<'a>>,
     pub morphs: Morphs<'a>,
     /// The weights of its morph targets.

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use glam::Vec3;
 
 use super::documents::{Link, Nurbs, document, model, prism, quarter_cylinder};
-use super::tree::{Arrays, Entry, binary, object, one, properties};
+use super::tree::{Arrays, Entry, binary, object, one, properties, text};
 use super::{loaded, near, read};
 use crate::loaded_mesh::LoadedMesh;
 
@@ -219,4 +219,46 @@ fn a_broken_surface_is_left_out_and_the_others_stay() {
         let alone = file(Vec::new(), &[]).map(|_| ()).expect_err("nothing is left").to_string();
         assert!(alone.contains("1 NURBS and procedural surfaces"), "{alone}");
     }
+}
+
+#[test]
+fn changed_surfaces_are_read_or_refused() {
+    let bytes = binary(&with_surface(&quarter_cylinder()), Arrays::Plain);
+    let start = memchr::memmem::find(&bytes, b"NurbsSurfaceOrder").expect("the surface");
+    let end = memchr::memmem::find(&bytes, b"FlipNormals").expect("its last entry");
+    for at in start..end {
+        for changed in [0xff, bytes[at] ^ 0x10, bytes[at] ^ 1] {
+            let mut bytes = bytes.clone();
+            bytes[at] = changed;
+            if let Ok(mesh) = read(&bytes) {
+                assert!(mesh.corners.iter().all(|corner| corner.position.is_finite()), "{at} {changed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn many_copies_of_many_spans_are_cut_coarsely_and_too_many_spans_are_left_out() {
+    // Its 4096 spans are arcs of more than 130 degrees.
+    let curve: Vec<_> = (0..4099).map(|i| f64::from(i) * 2.4).map(|angle| [angle.cos(), angle.sin(), 1.0]).collect();
+    let coil = Nurbs::extruded(4, "Open", &curve, (0..4103).map(f64::from).collect(), 2.0);
+    let nodes = (20..36).map(|id| model(id, "copy", "Mesh", &[]));
+    let objects = [coil.entry(10)].into_iter().chain(nodes).collect();
+    let links: Vec<_> = (20..36).flat_map(|id| [Link(id, 0, ""), Link(10, id, "")]).collect();
+    let mesh = read(&text(&document(false, 100.0, objects, &links))).expect("a file without a fault");
+    assert_eq!(mesh.triangles.len(), 16 * 4096 * 2 * 2);
+    assert!(mesh.warnings[0].contains("made polygons") && !mesh.warnings[0].contains("0.001"), "{:?}", mesh.warnings);
+    // Each point would be the mean of 16384.
+    let places = (0..130 * 130).flat_map(|i| [f64::from(i % 130), f64::from(i / 130), 0.0, 1.0]);
+    let knots: Vec<f64> = (0..130 + 127 + 128).map(f64::from).collect();
+    let slow = Nurbs {
+        orders: [128, 128],
+        sizes: [130, 130],
+        forms: ["Periodic", "Periodic"],
+        points: places.collect(),
+        knots: [knots.clone(), knots],
+        flips: false,
+    };
+    let refused = read(&text(&with_surface(&slow))).map(|_| ()).expect_err("nothing is left").to_string();
+    assert!(refused.contains("1 NURBS and procedural surfaces"), "{refused}");
 }
