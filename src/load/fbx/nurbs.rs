@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, Vec3};
 use ufbx::{
-    AllocatorOpts, Element, ElementType, Mesh, MeshRoot, MirrorAxis, Node, NurbsBasis, NurbsSurface, NurbsTopology,
+    AllocatorOpts, Connection, ElementType, Mesh, MeshRoot, MirrorAxis, Node, NurbsBasis, NurbsSurface, NurbsTopology,
     Scene,
 };
 
@@ -24,19 +24,16 @@ const TOLERANCE: f64 = 0.001;
 /// Points of a surface's outline that are nearer to each other, in units of the file, become one in ufbx.
 const JOINED: f64 = 3.2e-4;
 
-/// The greatest order, which is the degree plus 1, that ufbx evaluates.
-const MAX_ORDER: u32 = 128;
+/// The greatest order, which is the degree plus 1. A point takes as many control points as the product of both orders.
+const MAX_ORDER: u32 = 16;
 
-/// How much work all surfaces may be, and how much more for each byte of the file: points times the control points that one
-/// depends on, and this many for the polygon there.
-const MOST_WORK: u64 = 1 << 20;
-const WORK_A_BYTE: u64 = 16;
-const PER_POLYGON: u64 = 16;
+/// How many points the polygons of all surfaces may get to be within the tolerance, besides one for each byte of the file.
+const MOST_POINTS: u64 = 1 << 16;
 
 /// The memory of a surface's polygons in bytes: for each point, and for lists of less than a block, which ufbx puts into blocks.
 const PER_POINT: u64 = 256;
-const BLOCK: usize = 4096;
-const BLOCKS: u64 = 12;
+const BLOCK: usize = 1024;
+const BLOCKS: u64 = 14;
 
 /// The meshes of nodes: those of the file, and the polygons of NURBS surfaces.
 pub(super) struct Meshes<'s> {
@@ -72,20 +69,17 @@ impl<'s> Meshes<'s> {
         });
         let used: Vec<_> = whole.chain(trimmed).filter(|(owner, _)| !owner.instances.is_empty()).collect();
         let uses: u64 = used.iter().map(|(owner, _)| owner.instances.len() as u64).sum();
-        let mut left = MOST_WORK.saturating_add(budget.files().saturating_mul(WORK_A_BYTE));
-        let share = left / uses.max(1);
+        let share = MOST_POINTS.saturating_add(budget.files()) / uses.max(1);
         let mut meshes = Self { scene, surfaces: HashMap::new(), memory: 0 };
         let (mut trimmed, mut still, mut worst) = (0, 0, TOLERANCE);
+        let moves =
+            |link: &Connection| matches!(link.src.type_, ElementType::SkinDeformer | ElementType::BlendDeformer);
         for (owner, surface) in used {
-            let refined = match Cut::new(surface, share, &mut left) {
-                Ok(cut) => cut.refined(share, budget, progress)?,
-                Err(reason) => Err(reason),
-            };
-            match refined {
+            match Cut::refined(surface, share, budget, progress)? {
                 Ok((cut, off)) => {
-                    meshes.surfaces.insert(owner.element_id, cut.polygons(scene, budget)?);
+                    meshes.surfaces.insert(owner.element_id, cut.tessellated(scene, budget)?);
                     meshes.memory += cut.memory();
-                    still += usize::from(surface.element.connections_dst.iter().any(|link| is_deformer(&link.src)));
+                    still += usize::from(surface.element.connections_dst.iter().any(moves));
                     trimmed += usize::from(owner.element_id != surface.element.element_id);
                     worst = worst.max(off);
                 }
@@ -148,73 +142,76 @@ struct Cut<'s> {
 }
 
 impl<'s> Cut<'s> {
-    /// Cuts each span into as many pieces as its degree, so that no bend lies between the places that are measured; or into fewer
-    /// if that is more work than a surface's share of it.
+    /// Cuts each span into as many pieces as its degree, so that no bend lies between the places that are measured.
     ///
     /// # Errors
     /// A clause that says why the surface can't be evaluated.
-    fn new(surface: &'s NurbsSurface, share: u64, left: &mut u64) -> Result<Self, &'static str> {
+    fn new(surface: &'s NurbsSurface) -> Result<Self, &'static str> {
         let [u, v] = [&surface.basis_u, &surface.basis_v];
         let fit = knots_fit(u, surface.num_control_points_u) && knots_fit(v, surface.num_control_points_v);
         let are_finite = surface.control_points.iter().all(|point| vec4(point).is_finite());
         let checks = [
             (!surface.control_points.is_empty(), "it has no control points"),
-            (u.order.min(v.order) >= 2 && u.order.max(v.order) <= MAX_ORDER, "its degree isn't between 1 and 127"),
+            (u.order.min(v.order) >= 2 && u.order.max(v.order) <= MAX_ORDER, "its degree isn't between 1 and 15"),
             (fit, "its knots don't ascend, or don't fit its degree and control points"),
             (are_finite, "a control point, or its weight, isn't a finite number"),
         ];
-        if let Some((_, reason)) = checks.into_iter().find(|(is_right, _)| !is_right) {
-            return Err(reason);
+        match checks.into_iter().find(|(is_right, _)| !is_right) {
+            Some((_, reason)) => Err(reason),
+            // Of a single polygon, if it is a triangle, ufbx would have too few texture coordinates.
+            None => Ok(Self { surface, pieces: [u.order as usize - 1, v.order.max(3) as usize - 1] }),
         }
-        // Of a single polygon, if it is a triangle, ufbx would have too few texture coordinates.
-        let mut cut = Self { surface, pieces: [u.order as usize - 1, v.order.max(3) as usize - 1] };
-        while cut.work() > share && cut.pieces != [1, 1] {
-            cut.pieces = cut.pieces.map(|pieces| pieces.div_ceil(2));
-        }
-        *left = left.checked_sub(cut.work()).ok_or("it has too many spans")?;
-        Ok(cut)
     }
 
-    /// How many points there are along u and v.
-    fn points(&self) -> [u64; 2] {
-        let spans = [&self.surface.basis_u, &self.surface.basis_v].map(|basis| basis.spans.len() as u64 - 1);
-        [0, 1].map(|i| spans[i].saturating_mul(self.pieces[i] as u64).saturating_add(1))
+    /// How many polygons there are along u and v.
+    fn polygons(&self) -> [usize; 2] {
+        let spans = [&self.surface.basis_u, &self.surface.basis_v].map(|basis| basis.spans.len() - 1);
+        [0, 1].map(|i| spans[i].saturating_mul(self.pieces[i]))
     }
 
-    fn work(&self) -> u64 {
-        let [u, v] = self.points();
-        let orders = u64::from(self.surface.basis_u.order) * u64::from(self.surface.basis_v.order);
-        u.saturating_mul(v).saturating_mul(orders + PER_POLYGON)
+    fn points(&self) -> u64 {
+        let [columns, rows] = self.polygons().map(|polygons| polygons as u64 + 1);
+        columns.saturating_mul(rows)
     }
 
     fn memory(&self) -> u64 {
-        let [u, v] = self.points();
-        u.saturating_mul(v).saturating_mul(PER_POINT).saturating_add(BLOCKS * BLOCK as u64)
+        self.points().saturating_mul(PER_POINT).saturating_add(BLOCKS * BLOCK as u64)
     }
 
-    /// Doubles pieces until the polygons are within the tolerance, or would be more work than a surface's share. Also returns by
-    /// which share of its size they then differ from the surface; the inner error says why it is left out.
+    /// Cuts a surface so that the polygons are within the tolerance, or have its share of points. Also returns by which share of
+    /// its size they then differ from it; the inner error says why the surface is left out.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
     fn refined(
-        mut self,
+        surface: &'s NurbsSurface,
         share: u64,
         budget: &Budget,
         progress: &Progress,
     ) -> Result<Result<(Self, f64), &'static str>, ReadError> {
+        let mut cut = match Self::new(surface) {
+            Ok(cut) => cut,
+            Err(reason) => return Ok(Err(reason)),
+        };
+        while cut.points() > share && cut.pieces != [1, 1] {
+            cut.pieces = cut.pieces.map(|pieces| pieces.div_ceil(2));
+        }
+        budget.check(cut.memory())?;
         loop {
-            let Some((off, size)) = self.measured(progress)? else {
+            let Some((off, size)) = cut.measured(progress)? else {
                 return Ok(Err("its weights add up to 0, or all of it is one point"));
             };
             let [u, v, inside] = off.map(|off| off > TOLERANCE);
             let is_twisted = inside && !u && !v;
-            let [along_u, along_v] = self.pieces;
+            let [along_u, along_v] = cut.pieces;
             let doubled = |pieces, is_off| if is_off || is_twisted { 2 * pieces } else { pieces };
-            let finer = Self { pieces: [doubled(along_u, u), doubled(along_v, v)], ..self };
+            let finer = Self { surface, pieces: [doubled(along_u, u), doubled(along_v, v)] };
             // The mesh that is made of the polygons takes memory, too.
-            let is_too_much = finer.work() > share || finer.memory() > budget.left() / 4;
-            if finer.pieces == self.pieces || is_too_much {
-                return Ok(Ok((self, off.into_iter().fold(0.0, f64::max) + JOINED / size)));
+            let is_too_much = finer.points() > share || finer.memory() > budget.left() / 4;
+            if finer.pieces == cut.pieces || is_too_much {
+                return Ok(Ok((cut, off.into_iter().fold(0.0, f64::max) + JOINED / size)));
             }
-            self = finer;
+            cut = finer;
         }
     }
 
@@ -224,7 +221,7 @@ impl<'s> Cut<'s> {
     fn measured(&self, progress: &Progress) -> Result<Option<([f64; 3], f64)>, Cancelled> {
         let mut off = [0.0_f64; 3];
         let mut extent = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let [columns, rows] = self.points().map(|points| to_usize(points) - 1);
+        let [columns, rows] = self.polygons();
         for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
             progress.check()?;
             let points = [0, 1, 2].map(|y| [0, 1, 2].map(|x| self.point([2 * column + x, 2 * row + y])));
@@ -266,7 +263,8 @@ impl<'s> Cut<'s> {
         if point.valid { vec3(&point.position) } else { DVec3::NAN }
     }
 
-    fn polygons(&self, scene: &Scene, budget: &Budget) -> Result<Polygons<'s>, ReadError> {
+    /// Lets ufbx make the polygons, in memory that is held before.
+    fn tessellated(&self, scene: &Scene, budget: &Budget) -> Result<Polygons<'s>, ReadError> {
         budget.hold(self.memory())?;
         let memory_limit = to_usize(self.memory());
         let allocator = || AllocatorOpts { memory_limit, max_chunk_size: BLOCK, ..AllocatorOpts::default() };
@@ -281,10 +279,6 @@ impl<'s> Cut<'s> {
         let mesh = mesh.map_err(|error| parse::refused(&error, budget))?;
         Ok(Polygons { surface: self.surface, mesh, is_mirrored: scene.metadata.mirror_axis != MirrorAxis::None })
     }
-}
-
-fn is_deformer(element: &Element) -> bool {
-    matches!(element.type_, ElementType::SkinDeformer | ElementType::BlendDeformer)
 }
 
 /// Whether a surface can be evaluated with these knots: ufbx lets pass those that aren't finite, and those that are all the same.
