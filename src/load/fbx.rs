@@ -1,6 +1,6 @@
-//! Reads FBX, binary and text: the polygons of all meshes and NURBS surfaces that the file shows, in their rest pose, with materials,
-//! skins, blend shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres, unless another axis or unit was
-//! chosen: then its coordinates are taken as they are.
+//! Reads FBX, binary and text: the polygons of all meshes and NURBS surfaces that the file shows, in their rest pose, with
+//! materials, skins, blend shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres, unless
+//! another axis or unit was chosen: then its coordinates are taken as they are.
 //!
 //! FBX has no public specification. The library ufbx parses the file, with limits on its memory; what it returns is checked like
 //! the file itself, since its lists hold what the file says. It runs in this process, on a thread of its own, so that the stack is the

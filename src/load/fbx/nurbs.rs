@@ -247,7 +247,7 @@ impl<'s> Cut<'s> {
         Ok((size > 0.0).then(|| (off.map(|off| off / size), size)))
     }
 
-    /// Returns the point at so many halves of pieces along u and v. Where a surface closes, ufbx takes its first points as its last.
+    /// Returns the point at so many halves of pieces along u and v. Where a surface closes, ufbx takes its first points as the last.
     fn point(&self, halves: [usize; 2]) -> DVec3 {
         let bases = [&self.surface.basis_u, &self.surface.basis_v];
         let [u, v] = [0, 1].map(|i| {
