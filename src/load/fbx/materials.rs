@@ -67,7 +67,7 @@ impl<'a> Materials<'a> {
         self.heights.reserved = reserved;
         let mut seen = HashSet::new();
         let sources = meshes.flat_map(|(node, mesh)| {
-            let is_new = seen.insert(mesh.element.typed_id);
+            let is_new = seen.insert(std::ptr::from_ref(mesh));
             let own = mesh.materials.iter().filter(move |_| is_new);
             node.materials.iter().chain(own).map(move |material| LookSource::new(material, mesh))
         });
@@ -250,7 +250,7 @@ pub(super) fn need_details<'a>(meshes: impl Iterator<Item = (&'a Node, &'a Mesh)
     };
     let mut seen = HashSet::new();
     for (node, mesh) in meshes {
-        let is_new = seen.insert(mesh.element.typed_id);
+        let is_new = seen.insert(std::ptr::from_ref(mesh));
         if needed(&node.materials, mesh) || is_new && (mesh.vertex_color.exists || needed(&mesh.materials, mesh)) {
             return true;
         }

@@ -1,11 +1,12 @@
 //! Reads the polygons of all meshes that a scene shows.
 
 use glam::{DMat3, Vec2, Vec3, Vec4};
-use ufbx::{Face, Mesh, Node, Scene, SubdivisionBoundary, SubdivisionDisplayMode, VertexVec2};
+use ufbx::{Face, Mesh, Node, SubdivisionBoundary, SubdivisionDisplayMode, VertexVec2};
 
-use super::convert::{vec2, vec4};
+use super::convert::{at_corner, vec2, vec4};
 use super::materials::{self, Materials, Resolved};
 use super::nodes::Placed;
+use super::nurbs::{Meshes, Polygons};
 use super::skin::Skin;
 use super::vertices::{PosedCorner, Vertices};
 use crate::cage_faces::CageFaces;
@@ -34,7 +35,7 @@ const PER_CORNER: u64 = 32;
 
 /// Collects polygons.
 pub(super) struct Surfaces<'s, 'a> {
-    scene: &'s Scene,
+    meshes: &'s Meshes<'s>,
     placed: &'s Placed,
     budget: &'a Budget,
     materials: Materials<'a>,
@@ -61,20 +62,21 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     /// # Errors
     /// [`ReadError::TooLarge`].
     pub(super) fn new(
-        scene: &'s Scene,
+        meshes: &'s Meshes<'s>,
         placed: &'s Placed,
         file: &ModelFile,
         files: &'a Files<'a>,
         binder: Option<RigBuilder>,
     ) -> Result<Self, ReadError> {
         let budget = files.budget;
-        let meshes = || {
+        let scene = meshes.scene;
+        let shown = || {
             let nodes = placed.shown.iter().map(|&node| &scene.nodes[node]);
-            nodes.filter_map(|node| Some((node, node.mesh.as_deref()?)))
+            nodes.filter_map(|node| Some((node, meshes.of(node)?)))
         };
-        let is_detailed = materials::need_details(meshes());
+        let is_detailed = materials::need_details(shown());
         let mut faces = FaceBuilder::new(file, budget);
-        let triangles = meshes().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
+        let triangles = shown().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
         // Many copies of a mesh are refused before any is read.
         let memory = (triangles as u64).saturating_mul(12);
         budget.check(memory)?;
@@ -82,15 +84,15 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         // Placed nodes are in metres, unless another unit was chosen.
         let unit = if file.selected.import.unit.is_none() { scene.settings.unit_meters } else { 1.0 };
         let mut materials = Materials::new(files, to_f32(unit));
-        let corners = meshes().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
+        let corners = shown().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
         let details = if is_detailed { DetailTable::bytes_for(to_usize(corners)) } else { 0 };
         // What the parsed file takes has been freed when the edges are made.
         let parsed = scene.metadata.result_memory_used as u64;
         let edges = edge_bytes(corners, triangles as u64).saturating_sub(parsed);
         let ahead = corners.saturating_mul(PER_CORNER).saturating_add(memory);
-        materials.read_images(meshes(), ahead.max(edges).saturating_add(details))?;
+        materials.read_images(shown(), ahead.max(edges).saturating_add(details))?;
         Ok(Self {
-            scene,
+            meshes,
             placed,
             budget,
             materials,
@@ -104,12 +106,14 @@ impl<'s, 'a> Surfaces<'s, 'a> {
 
     /// Adds the polygons of a node's mesh.
     pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<(), ReadError> {
-        let node = &self.scene.nodes[index];
-        let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
+        let nodes = &self.meshes.scene.nodes;
+        let node = &nodes[index];
+        let Some(mesh) = self.meshes.of(node) else { return Ok(()) };
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
         let skin = Skin::new(node, mesh, global);
-        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
+        let mut vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
+        vertices.surface = self.meshes.surface(node);
         let is_without_normals = vertices.is_without_normals();
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
@@ -117,10 +121,10 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         });
         let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
         let levels = &self.placed.levels;
-        let own = |node: usize| (&*self.scene.nodes[node].element.name, false);
+        let own = |node: usize| (&*nodes[node].element.name, false);
         let named = |node: usize| levels.get(&node).map_or_else(|| own(node), |level| (level.as_str(), true));
         // The scene's root isn't one of the file's nodes.
-        let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
+        let (path, level) = node_path(above.filter(|&node| !nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;
         let mut reader = MeshReader {
             node,
@@ -259,7 +263,7 @@ impl MeshReader<'_, '_, '_> {
             corners.push(read);
             is_mirrored = mirrored;
         }
-        if is_mirrored {
+        if is_mirrored != self.vertices.surface.is_some_and(Polygons::is_turned) {
             corners.reverse();
         }
         self.faces.add(material.index, corners, FilePosition::Everywhere)
@@ -323,8 +327,9 @@ impl MeshReader<'_, '_, '_> {
             Some(set) if set.vertex_uv.exists => &set.vertex_uv,
             _ => return Vec2::ZERO,
         };
-        let uv = list.indices.get(corner).and_then(|&index| list.values.get(index as usize));
-        let uv = uv.map(|uv| vec2(uv).as_vec2()).filter(|uv| uv.is_finite());
+        let uv = at_corner(&list.values, &list.indices, corner).map(vec2);
+        let uv = uv.map(|uv| self.vertices.surface.map_or(uv, |surface| surface.uv(uv)).as_vec2());
+        let uv = uv.filter(|uv| uv.is_finite());
         self.found.bad_uvs += usize::from(uv.is_none());
         uv.map_or(Vec2::ZERO, |uv| Vec2::new(uv.x, 1.0 - uv.y))
     }
@@ -339,7 +344,7 @@ impl MeshReader<'_, '_, '_> {
         if !list.exists {
             return Vec4::ONE;
         }
-        let color = list.indices.get(corner).and_then(|&index| list.values.get(index as usize));
+        let color = at_corner(&list.values, &list.indices, corner);
         let color = color.map(|color| vec4(color).as_vec4()).filter(|color| color.is_finite());
         self.found.bad_colors += usize::from(color.is_none());
         color.map_or(Vec4::ONE, |color| color.clamp(Vec4::ZERO, Vec4::ONE))

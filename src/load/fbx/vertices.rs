@@ -3,8 +3,9 @@
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use ufbx::{Mesh, Node};
 
-use super::convert::{matrix, vec3};
+use super::convert::{at_corner, matrix, vec3};
 use super::morphs::{Morphs, rest_weights};
+use super::nurbs::Polygons;
 use super::skin::Skin;
 use super::{looks, smoothing};
 use crate::binding_space::turned;
@@ -17,6 +18,8 @@ use geometry::mesh::rig::Delta;
 /// The vertices of a node's mesh.
 pub(super) struct Vertices<'a> {
     pub mesh: &'a Mesh,
+    /// The NURBS surface whose polygons the mesh is.
+    pub surface: Option<&'a Polygons<'a>>,
     pub skin: Option<&'a Skin<'a>>,
     pub morphs: Morphs<'a>,
     /// The weights of its morph targets.
@@ -60,6 +63,7 @@ impl<'a> Vertices<'a> {
         let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
             mesh,
+            surface: None,
             skin,
             morphs: Morphs::new(mesh, budget)?,
             rest: rest_weights(mesh, selected),
@@ -124,8 +128,10 @@ impl<'a> Vertices<'a> {
         if let Some(made) = &self.made {
             return made.get(corner).copied();
         }
-        let normals = &self.mesh.vertex_normal;
-        let normal = normals.indices.get(corner).and_then(|&index| normals.values.get(index as usize));
-        normal.map(|normal| vec3(normal).as_vec3())
+        let Some(surface) = self.surface else {
+            let normals = &self.mesh.vertex_normal;
+            return at_corner(&normals.values, &normals.indices, corner).map(|normal| vec3(normal).as_vec3());
+        };
+        Some(surface.normal(corner))
     }
 }
