@@ -43,7 +43,7 @@ pub enum CageError {
     #[error("face {face} has {corners} corners, but a face needs at least 3: leave it out")]
     TooFewCorners { face: u32, corners: u32 },
     #[error(
-        "face {face} has {corners} corners, but Loop's scheme refines triangles: triangulate it, or use Catmull-Clark"
+        "face {face} has {corners} corners, but Loop's and the butterfly scheme refine triangles: triangulate it, or use Catmull-Clark"
     )]
     NoTriangle { face: u32, corners: u32 },
     #[error("face {face} has point {point} twice: leave the face out, or split it there")]
@@ -91,8 +91,8 @@ impl Cage<'_> {
             let corners = end.saturating_sub(start);
             match self.scheme {
                 _ if corners < 3 => return Err(CageError::TooFewCorners { face, corners }),
-                Scheme::Loop if corners > 3 => return Err(CageError::NoTriangle { face, corners }),
-                _ => {}
+                Scheme::Loop | Scheme::Butterfly if corners > 3 => return Err(CageError::NoTriangle { face, corners }),
+                Scheme::CatmullClark | Scheme::Loop | Scheme::Butterfly => {}
             }
         }
         let of_one = |point: u32, sharpness| ([point; 2], sharpness);
@@ -115,11 +115,11 @@ impl Cage<'_> {
         Ok(())
     }
 
-    /// Connects the faces of a cage that was checked.
+    /// Connects the faces of a cage that was checked. Also returns how many creases aren't edges.
     ///
     /// # Errors
     /// [`CageError::RepeatedPoint`] and [`CageError::NonManifold`].
-    pub(super) fn level(&self) -> Result<Level, CageError> {
+    pub(super) fn level(&self) -> Result<(Level, usize), CageError> {
         let mut level = Level {
             points: self.points,
             polygons: self.polygons(),
@@ -133,8 +133,8 @@ impl Cage<'_> {
         check_repeated(&level)?;
         let ends = connect(&mut level)?;
         set_first_sides(&mut level);
-        self.sharpen(&mut level, &ends);
-        Ok(level)
+        let lone_creases = self.sharpen(&mut level, &ends);
+        Ok((level, lone_creases))
     }
 
     fn polygons(&self) -> Polygons {
@@ -150,15 +150,17 @@ impl Cage<'_> {
         }
     }
 
-    /// Gives edges, by the ends of each, and points their sharpness.
-    fn sharpen(&self, level: &mut Level, ends: &[[u32; 2]]) {
+    /// Gives edges, by the ends of each, and points their sharpness. Returns how many creases aren't edges.
+    fn sharpen(&self, level: &mut Level, ends: &[[u32; 2]]) -> usize {
         let is_sharp = |sides: &[u32; 2]| sides[1] == NONE || level.is_inconsistent(*sides);
         let own = |sides| if is_sharp(sides) { INFINITELY_SHARP } else { 0.0 };
         let mut edges: Vec<f32> = level.edge_sides.iter().map(own).collect();
+        let mut lone_creases = 0;
         for (crease, sharpness) in self.creases {
             let [a, b] = *crease;
-            if let Ok(edge) = ends.binary_search(&[a.min(b), a.max(b)]) {
-                edges[edge] = edges[edge].max(*sharpness).min(INFINITELY_SHARP);
+            match ends.binary_search(&[a.min(b), a.max(b)]) {
+                Ok(edge) => edges[edge] = edges[edge].max(*sharpness).min(INFINITELY_SHARP),
+                Err(_) => lone_creases += 1,
             }
         }
         let mut points = vec![0.0; self.points];
@@ -175,6 +177,7 @@ impl Cage<'_> {
         }
         let unless_smooth = |list: Vec<f32>| if list.iter().all(|s| *s == 0.0) { Vec::new() } else { list };
         (level.edge_sharpness, level.point_sharpness) = (unless_smooth(edges), unless_smooth(points));
+        lone_creases
     }
 }
 
@@ -211,7 +214,7 @@ fn connect(level: &mut Level) -> Result<Vec<[u32; 2]>, CageError> {
 }
 
 /// Finds the side of each point from which all faces around it are reached counter-clockwise.
-fn set_first_sides(level: &mut Level) {
+pub(super) fn set_first_sides(level: &mut Level) {
     let mut faces = vec![0_usize; level.points];
     for side in 0..to_u32(level.origins.len()) {
         let point = level.origins[side as usize] as usize;
