@@ -64,8 +64,8 @@ impl CageFaces {
         Self { subdivision, moves, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
     }
 
-    /// Adds a face of three or more corners. Schemes for triangles get its triangles. Returns how many faces have a point twice: these are left
-    /// out.
+    /// Adds a face of three or more corners. Schemes for triangles get its triangles. Returns how many faces have a point twice:
+    /// these are left out.
     ///
     /// # Errors
     /// [`MemoryRefused`].

@@ -32,7 +32,7 @@ choices! {
         CatmullClark => "catmull-clark", "Catmull-Clark",
             "Polygons are the cage of a Catmull-Clark surface. Refined points and their normals are those of its limit.";
         Loop => "loop", "Loop", "Triangles are the cage of a Loop surface. Refined points and their normals are those of its limit.";
-        Butterfly => "butterfly", "Butterfly", "A modified butterfly surface goes through the corners of triangles. Its normals are approximations.";
+        Butterfly => "butterfly", "Butterfly", "Triangles are the cage of a butterfly surface, which goes through their corners.";
     }
 }
 

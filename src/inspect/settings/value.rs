@@ -344,8 +344,8 @@ macro_rules! named_fields {
 }
 
 named_fields! {
-    Clip, Convention, CurvatureKind, Displacement, Edges, FaceVarying, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals,
-    NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
+    Clip, Convention, CurvatureKind, Displacement, Edges, FaceVarying, FileLights, Lighting, Lod, Matcap, NormalMaps,
+    NormalSource, Normals, NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {

@@ -1,9 +1,9 @@
-//! Tags of subdivision surfaces (the statement `t`): creases, sharp points, holes, and rules for boundaries. They count where polygons
-//! are taken as a cage.
+//! Tags of subdivision surfaces (the statement `t`): creases, sharp points, holes, and rules for boundaries. They count where
+//! polygons are taken as a cage.
 //!
-//! Source: the shapes of OpenSubdiv's regression tests (`regression/common`, `shape_utils.h` and `vtr_utils.h`). After its name a tag
-//! says how many integers, floats and strings follow, as in `2/1/0`. Vertices and faces count from 0. As in RenderMan, a crease is
-//! a chain of vertices, with a sharpness for all of its edges or for each.
+//! Source: the shapes of OpenSubdiv's regression tests (`regression/common`, `shape_utils.h` and `vtr_utils.h`). After its name a
+//! tag says how many integers, floats and strings follow, as in `2/1/0`. Vertices and faces count from 0. As in RenderMan, a crease
+//! is a chain of vertices, with a sharpness for all of its edges or for each.
 
 use glam::Vec3;
 
@@ -34,7 +34,7 @@ pub(super) struct Tags {
 
 counts! {
     struct TagFlaws {
-        unknown => "subdivision tags with other names or numbers than creases, corners, holes and rules for boundaries have, left out";
+        unknown => "subdivision tags other than creases, corners, holes and known rules for boundaries, left out";
         dull => "creases and sharp points whose sharpness is negative or not a number, left out";
         absent => "creases, sharp points and holes with the number of a vertex or face that isn't in the file, left out";
     }

@@ -368,7 +368,7 @@ fn flawed_tags_are_left_out_and_counted() {
     let mesh = refined(&format!("{TENT}{flawed}"), limit());
     assert_eq!(mesh.corners, refined(TENT, limit()).corners);
     let expected = [
-        "and rules for boundaries have, left out: 9.",
+        "and known rules for boundaries, left out: 9.",
         "whose sharpness is negative or not a number, left out: 2.",
         "of a vertex or face that isn't in the file, left out: 4.",
         "creases and sharp points that no face has, left out: 1.",

@@ -1,9 +1,9 @@
-//! The modified butterfly scheme: points stay where they are, and new ones lie on smooth surfaces and curves through those around them.
+//! The modified butterfly scheme: points stay where they are, and new ones lie on smooth surfaces and curves through those around.
 //!
-//! Source: Zorin, Schröder and Sweldens 1996, "Interpolating subdivision for meshes with arbitrary topology", with w = 0; Dyn, Gregory
-//! and Levin 1987, "A 4-point interpolatory subdivision scheme for curve design", for boundaries. What an edge needs from beyond a
-//! boundary is mirrored there, as the former say. Creases are treated as boundaries of both sides, and the points of either
-//! as if they had the regular number of faces; sharp points are the ends of such curves.
+//! Source: Zorin, Schröder and Sweldens 1996, "Interpolating subdivision for meshes with arbitrary topology", with w = 0; Dyn,
+//! Gregory and Levin 1987, "A 4-point interpolatory subdivision scheme for curve design", for boundaries. What an edge needs from
+//! beyond a boundary is mirrored there, as the former say. Creases are treated as boundaries of both sides, and the points of
+//! either as if they had the regular number of faces; sharp points are the ends of such curves.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -46,9 +46,9 @@ impl<T: Linear> Values<'_, T> {
         (sharp.next().is_none() && level.point_sharpness(point) == 0.0).then_some(ends)
     }
 
-    /// What a smooth point of other than six edges makes of each of these: 3/4 of itself, and of its neighbours j steps away from the
-    /// edge (1/4 + cos(ja) + cos(2ja)/2) / n, where a is a turn divided by n. The published weights for four edges have half as much
-    /// of the last term, and those for three nothing of it. The sums of all waves take time linear in the number of edges.
+    /// What a smooth point of other than six edges makes of each: 3/4 of itself, and of its neighbours j steps away from the edge
+    /// (1/4 + cos(ja) + cos(2ja)/2) / n, where a is a turn divided by n. The published weights for four edges have half as much of
+    /// the last term, and those for three nothing of it. The sums of all waves take time linear in the number of edges.
     fn around(&self, point: u32) -> Vec<(u32, T)> {
         let level = self.level;
         let spokes: Vec<Spoke> = level.first_side(point).into_iter().flat_map(|first| level.ring(first)).collect();

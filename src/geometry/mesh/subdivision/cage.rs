@@ -43,7 +43,7 @@ pub enum CageError {
     #[error("face {face} has {corners} corners, but a face needs at least 3: leave it out")]
     TooFewCorners { face: u32, corners: u32 },
     #[error(
-        "face {face} has {corners} corners, but Loop's and the butterfly scheme refine triangles: triangulate it, or use Catmull-Clark"
+        "face {face} has {corners} corners, but this scheme refines triangles: triangulate it, or use Catmull-Clark"
     )]
     NoTriangle { face: u32, corners: u32 },
     #[error("face {face} has point {point} twice: leave the face out, or split it there")]
@@ -120,19 +120,7 @@ impl Cage<'_> {
     /// # Errors
     /// [`CageError::RepeatedPoint`] and [`CageError::NonManifold`].
     pub(super) fn level(&self) -> Result<(Level, usize), CageError> {
-        let mut level = Level {
-            points: self.points,
-            polygons: self.polygons(),
-            origins: self.corners.to_vec(),
-            edges: vec![0; self.corners.len()],
-            edge_sides: Vec::new(),
-            edge_sharpness: Vec::new(),
-            point_sharpness: Vec::new(),
-            first_sides: vec![NONE; self.points],
-        };
-        check_repeated(&level)?;
-        let ends = connect(&mut level)?;
-        set_first_sides(&mut level);
+        let (mut level, ends) = connected(self.points, self.polygons(), self.corners.to_vec())?;
         let lone_creases = self.sharpen(&mut level, &ends);
         Ok((level, lone_creases))
     }
@@ -181,6 +169,26 @@ impl Cage<'_> {
     }
 }
 
+/// Connects polygons of so many points, which are given for each corner; all is smooth. Also returns the points of each edge.
+///
+/// # Errors
+/// [`CageError::RepeatedPoint`] and [`CageError::NonManifold`].
+pub(super) fn connected(
+    points: usize,
+    polygons: Polygons,
+    origins: Vec<u32>,
+) -> Result<(Level, Vec<[u32; 2]>), CageError> {
+    let (edges, first_sides) = (vec![0; origins.len()], vec![NONE; points]);
+    let [edge_sharpness, point_sharpness] = [Vec::new(), Vec::new()];
+    let edge_sides = Vec::new();
+    let mut level =
+        Level { points, polygons, origins, edges, edge_sides, edge_sharpness, point_sharpness, first_sides };
+    check_repeated(&level)?;
+    let ends = connect(&mut level)?;
+    set_first_sides(&mut level);
+    Ok((level, ends))
+}
+
 fn check_repeated(level: &Level) -> Result<(), CageError> {
     let mut last_faces = vec![NONE; level.points];
     for (side, &point) in (0..).zip(&level.origins) {
@@ -214,7 +222,7 @@ fn connect(level: &mut Level) -> Result<Vec<[u32; 2]>, CageError> {
 }
 
 /// Finds the side of each point from which all faces around it are reached counter-clockwise.
-pub(super) fn set_first_sides(level: &mut Level) {
+fn set_first_sides(level: &mut Level) {
     let mut faces = vec![0_usize; level.points];
     for side in 0..to_u32(level.origins.len()) {
         let point = level.origins[side as usize] as usize;

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use glam::DVec4;
 use rayon::prelude::*;
 
-use super::cage::{INFINITELY_SHARP, set_first_sides};
+use super::cage::{INFINITELY_SHARP, connected};
 use super::level::{Level, NONE};
 use super::{Linear, Refinement, Scheme};
 use crate::casts::to_u32;
@@ -19,16 +19,16 @@ choices! {
         Smooth => "smooth", "Smooth", "They are smoothed as the surface is, and so are the curves of boundaries and seams.";
         Corners => "corners", "Keep corners", "The same, but they stay at corners where they belong to a single face.";
         Junctions => "junctions", "Keep corners, junctions", "The same, and where three or more seams meet.";
-        Concave => "concave", "Keep corners, junctions, concave", "The same, and where a seam ends, or turns around another's corner.";
-        Boundaries => "boundaries", "Keep boundaries", "They are smoothed as the surface is, but linear along boundaries and seams.";
+        Concave => "concave", "Keep corners, junctions, concave", "The same, and at ends and concave corners of seams.";
+        Boundaries => "boundaries", "Keep boundaries", "They are smooth within, and linear along boundaries and seams.";
         #[default]
         Linear => "linear", "Linear", "They are linear in each face.";
     }
 }
 
 impl Refinement {
-    /// Refines values at the corners of the cage's faces by a rule, to what they are in the limit. Values at a point are one where
-    /// they are equal. Creases and sharp points of the cage count for them, too.
+    /// Refines values at the corners of the cage's faces by a rule, to what they are in the limit. Equal values at a point are
+    /// one. Creases and sharp points of the cage count for them, too.
     ///
     /// # Panics
     /// If there isn't a value for each corner of the cage.
@@ -47,7 +47,16 @@ impl Refinement {
             })
         };
         let origins = cage.origins.iter().zip(values).map(number).collect();
-        let level = seamed(cage, origins, distinct.len(), rule);
+        // No more faces meet at an edge between values than at that between their points.
+        let Ok((mut level, _)) = connected(distinct.len(), cage.polygons.clone(), origins) else {
+            return self.refine_corners(values);
+        };
+        let of_edge = |&[a, b]: &[u32; 2]| match b {
+            NONE => INFINITELY_SHARP,
+            _ => cage.edge_sharpness(cage.edges[a as usize]),
+        };
+        level.edge_sharpness = level.edge_sides.iter().map(of_edge).collect();
+        level.point_sharpness = sharpness(cage, &level, rule);
         let smooth = Self::divided(level, self.scheme, self.levels.len() - 1);
         let refined = smooth.refine(&distinct);
         let limit = smooth.limit(&refined).values();
@@ -64,37 +73,6 @@ impl Refinement {
         let coarse = &self.levels[..self.levels.len() - 1];
         coarse.iter().fold(values.to_vec(), |values, level| split(level, self.scheme, &values))
     }
-}
-
-/// The faces of a cage with so many values as its points, given for each corner, and with seams as boundaries.
-fn seamed(cage: &Level, origins: Vec<u32>, points: usize, rule: FaceVarying) -> Level {
-    let ends = |side: u32| [side, cage.polygons.after(side)].map(|side| origins[side as usize]);
-    let is_seam = |sides: [u32; 2]| {
-        let reversed = |[a, b]: [u32; 2]| if cage.is_inconsistent(sides) { [a, b] } else { [b, a] };
-        sides[1] != NONE && ends(sides[0]) != reversed(ends(sides[1]))
-    };
-    let (mut edges, mut edge_sides, mut edge_sharpness) = (vec![0; origins.len()], Vec::new(), Vec::new());
-    for (edge, &sides) in (0..).zip(&cage.edge_sides) {
-        let parts = if is_seam(sides) { sides.map(|side| Some([side, NONE])) } else { [Some(sides), None] };
-        for part in parts.into_iter().flatten() {
-            part.iter().filter(|side| **side != NONE).for_each(|side| edges[*side as usize] = to_u32(edge_sides.len()));
-            edge_sides.push(part);
-            edge_sharpness.push(if part[1] == NONE { INFINITELY_SHARP } else { cage.edge_sharpness(edge) });
-        }
-    }
-    let mut level = Level {
-        points,
-        polygons: cage.polygons.clone(),
-        origins,
-        edges,
-        edge_sides,
-        edge_sharpness,
-        point_sharpness: Vec::new(),
-        first_sides: vec![NONE; points],
-    };
-    set_first_sides(&mut level);
-    level.point_sharpness = sharpness(cage, &level, rule);
-    level
 }
 
 /// The sharpness of each value: infinite where the rule keeps it, or else that of its point.

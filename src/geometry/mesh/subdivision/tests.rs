@@ -774,7 +774,7 @@ fn ends_of_seams_junctions_and_concave_corners_are_kept_by_their_rules() {
     assert_eq!(middle(&concave, 2), [60.0; 6]);
 }
 
-/// The sums of all values at corners, and of their squares, that OpenSubdiv 3.5.0 gives (Far, in f64), by all rules in their order.
+/// The sums of all values at corners, and of their squares, that OpenSubdiv 3.5.0 gives (Far, in f64), by each rule.
 const BY_OPEN_SUBDIV: [[f64; 2]; 6] = [
     [5898.330049652913, 126024.598163701885],
     [5963.182032120572, 129215.661506368895],
