@@ -142,12 +142,10 @@ impl<'a> FaceBuilder<'a> {
         )?;
         self.colors = own;
         self.is_refined = Some(self.is_refined.unwrap_or(true) && refined.is_ok());
-        match refined {
-            Ok(lone_creases) => {
-                self.notes.extend(counted([(lone_creases, "creases and sharp points that no face has, left out")]))
-            }
-            Err(why) => self.notes.push(format!("A subdivision surface is shown as its control cage: {why}.")),
-        }
+        let lone_creases = *refined.as_ref().unwrap_or(&0);
+        self.notes.extend(counted([(lone_creases, "creases and sharp points that no face has, left out")]));
+        let why_not = refined.err();
+        self.notes.extend(why_not.map(|why| format!("A subdivision surface is shown as its control cage: {why}.")));
         Ok(())
     }
 

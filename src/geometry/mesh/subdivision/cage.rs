@@ -146,10 +146,9 @@ impl Cage<'_> {
         let mut lone_creases = 0;
         for (crease, sharpness) in self.creases {
             let [a, b] = *crease;
-            match ends.binary_search(&[a.min(b), a.max(b)]) {
-                Ok(edge) => edges[edge] = edges[edge].max(*sharpness).min(INFINITELY_SHARP),
-                Err(_) => lone_creases += 1,
-            }
+            let edge = ends.binary_search(&[a.min(b), a.max(b)]);
+            lone_creases += usize::from(edge.is_err());
+            edge.iter().for_each(|&edge| edges[edge] = edges[edge].max(*sharpness).min(INFINITELY_SHARP));
         }
         let mut points = vec![0.0; self.points];
         for &(point, sharpness) in self.sharp_points {

@@ -16,13 +16,14 @@ choices! {
     /// OpenSubdiv's rules `FVarLinearInterpolation`, in their order.
     #[derive(Default, Hash)]
     pub enum FaceVarying {
-        Smooth => "smooth", "Smooth", "They are smoothed as the surface is, and so are the curves of boundaries and seams.";
-        Corners => "corners", "Keep corners", "The same, but they stay at corners where they belong to a single face.";
-        Junctions => "junctions", "Keep corners, junctions", "The same, and where three or more seams meet.";
-        Concave => "concave", "Keep corners, junctions, concave", "The same, and at ends and concave corners of seams.";
-        Boundaries => "boundaries", "Keep boundaries", "They are smooth within, and linear along boundaries and seams.";
+        Smooth => "smooth", "Smooth", "Smoothed as the surface is, also along boundaries and seams.";
+        Corners => "corners", "Keep corners", "Smooth, but corners that belong to a single face stay.";
+        Junctions => "junctions", "Keep corners, junctions", "Smooth, but such corners stay, and points where three islands meet.";
+        Concave => "concave", "Keep corners, junctions, concave",
+            "Smooth, but such corners and junctions stay, and so do ends and concave corners of seams.";
+        Boundaries => "boundaries", "Keep boundaries", "Smooth within, and linear along boundaries and seams.";
         #[default]
-        Linear => "linear", "Linear", "They are linear in each face.";
+        Linear => "linear", "Linear", "Linear in each face.";
     }
 }
 
