@@ -11,17 +11,9 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 
 use super::level::Spoke;
-use super::values::Values;
+use super::values::{Fans, Values};
 use super::{Linear, Scheme};
 use crate::casts::to_u32;
-
-/// What the edges at each point depend on; empty for other schemes.
-pub(super) struct Fans<T> {
-    /// For each point the far ends of the two sharp edges that go through it, if it isn't the end of any.
-    creases: Vec<Option<[u32; 2]>>,
-    /// For each edge the sum of what its irregular ends make of it, and how many these are, if it has any.
-    pub(super) irregular: HashMap<u32, (T, f64)>,
-}
 
 impl<T: Linear> Values<'_, T> {
     pub(super) fn fans(&self) -> Fans<T> {

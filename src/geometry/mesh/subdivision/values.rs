@@ -1,8 +1,9 @@
 //! Values at the points of a level, such as positions, and how they are averaged.
 
+use std::collections::HashMap;
+
 use rayon::prelude::*;
 
-use super::butterfly::Fans;
 use super::level::Level;
 use super::masks::{CREASE, CREASE_LIMIT, Mask};
 use super::split::decayed;
@@ -24,6 +25,14 @@ pub(super) struct Values<'a, T> {
     pub(super) points: &'a [T],
     /// The mean of each face's points; empty but for Catmull-Clark.
     centers: Vec<T>,
+}
+
+/// What the butterfly scheme makes of the edges at each point; empty for other schemes.
+pub(super) struct Fans<T> {
+    /// For each point the far ends of the two sharp edges that go through it, if it isn't the end of any.
+    pub(super) creases: Vec<Option<[u32; 2]>>,
+    /// For each edge the sum of what its irregular ends make of it, and how many these are, if it has any.
+    pub(super) irregular: HashMap<u32, (T, f64)>,
 }
 
 impl<'a, T: Linear> Values<'a, T> {
