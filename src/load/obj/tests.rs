@@ -314,8 +314,8 @@ const TENT: &str = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nv 0 2 
 /// Takes the faces as the cage of a Catmull-Clark surface, whose limit their corners get.
 fn refined(text: &str, import: Import) -> LoadedMesh {
     let import = Import { subdivide: Subdivide::CatmullClark, ..import };
-    let selected = Selection { import, ..Selection::default() };
-    let file = ModelFile { selected, ..ModelFile::from_test("cage", &Progress::new()) };
+    let (selected, progress) = (Selection { import, ..Selection::default() }, Progress::new());
+    let file = ModelFile { selected, ..ModelFile::from_test("cage", &progress) };
     super::read(text.as_bytes().to_vec(), &file).expect("a mesh")
 }
 
