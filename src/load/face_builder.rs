@@ -8,7 +8,7 @@ use super::import::Import;
 use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
-use super::notes::{Notes, counts};
+use super::notes::{Notes, counted, counts};
 use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
@@ -130,7 +130,7 @@ impl<'a> FaceBuilder<'a> {
     ) -> Result<(), ReadError> {
         let Some(cage) = self.cage.take() else { return Ok(()) };
         let mut own = self.colors.take();
-        let why_not = cage.refine(
+        let refined = cage.refine(
             (self.memory, progress),
             details.or(own.as_mut()),
             rig,
@@ -141,7 +141,10 @@ impl<'a> FaceBuilder<'a> {
             },
         )?;
         self.colors = own;
-        self.is_refined = self.is_refined.map(|all| all && why_not.is_none()).or(Some(why_not.is_none()));
+        self.is_refined = Some(self.is_refined.unwrap_or(true) && refined.is_ok());
+        let lone_creases = *refined.as_ref().unwrap_or(&0);
+        self.notes.extend(counted([(lone_creases, "creases and sharp points that no face has, left out")]));
+        let why_not = refined.err();
         self.notes.extend(why_not.map(|why| format!("A subdivision surface is shown as its control cage: {why}.")));
         Ok(())
     }

@@ -5,7 +5,7 @@ use geometry::choice::choices;
 use geometry::defaults::with_defaults;
 use geometry::mesh::normals::CREASE_ANGLE;
 use geometry::mesh::orientation::reorient;
-use geometry::mesh::subdivision::{Boundary, Scheme};
+use geometry::mesh::subdivision::{Boundary, FaceVarying, Scheme};
 use geometry::mesh::{Mesh, UpAxis};
 
 choices! {
@@ -32,6 +32,7 @@ choices! {
         CatmullClark => "catmull-clark", "Catmull-Clark",
             "Polygons are the cage of a Catmull-Clark surface. Refined points and their normals are those of its limit.";
         Loop => "loop", "Loop", "Triangles are the cage of a Loop surface. Refined points and their normals are those of its limit.";
+        Butterfly => "butterfly", "Butterfly", "Triangles are the cage of a butterfly surface, which goes through their corners.";
     }
 }
 
@@ -45,6 +46,7 @@ pub(super) struct Subdivision {
     pub scheme: Scheme,
     pub levels: u8,
     pub boundary: Boundary,
+    pub face_varying: FaceVarying,
 }
 
 choices! {
@@ -115,6 +117,8 @@ with_defaults! {
         pub subdivide: Subdivide = Subdivide::File,
         /// How often cages are refined, a whole number up to [`MOST_LEVELS`]; none for as often as the file says, or else twice.
         pub levels: Option<f32> = None,
+        /// How texture coordinates of cages are refined; none for what the file says, or else linearly.
+        pub subdivide_uvs: Option<FaceVarying> = None,
     }
 }
 
@@ -136,8 +140,10 @@ impl Import {
             Subdivide::File | Subdivide::Off => return None,
             Subdivide::CatmullClark => Scheme::CatmullClark,
             Subdivide::Loop => Scheme::Loop,
+            Subdivide::Butterfly => Scheme::Butterfly,
         };
-        Some(Subdivision { scheme, levels: self.levels_or(USUAL_LEVELS), ..Subdivision::default() })
+        let face_varying = self.subdivide_uvs.unwrap_or_default();
+        Some(Subdivision { scheme, levels: self.levels_or(USUAL_LEVELS), face_varying, ..Subdivision::default() })
     }
 
     /// Whether all polygons are refined, whatever the file says.

@@ -14,6 +14,7 @@ mod materials;
 mod mtl;
 mod pieces;
 mod smoothing;
+mod tags;
 mod textures;
 mod vertices;
 
@@ -29,12 +30,14 @@ use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::{Line, Lines, first_word, in_utf8};
 use super::uri::Files;
+use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::InputCorner;
 
 use faces::{FacePiece, Found, StatementCounts};
 use materials::Materials;
 use pieces::{Piece, in_pieces};
 use smoothing::Smoothing;
+use tags::Tags;
 use vertices::{VertexPiece, Vertices};
 
 /// Builds a mesh from a file's bytes.
@@ -54,14 +57,17 @@ fn gather<'a>(
     let (budget, progress) = (files.budget, files.progress);
     let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
+    let mut tags = Tags::default();
     let mut materials = Materials::new(files);
     let take = |more: VertexPiece| {
         above.push(vertices.counts());
         vertices.add(&more, budget)?;
         more.libraries.iter().for_each(|names| materials.add_library(names));
+        more.tags.iter().try_for_each(|tag| tags.take(tag, budget))?;
         more.error.map_or(Ok(()), Err)
     };
     in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, budget, &progress.part(0.0, 0.25))?;
+    tags.holes.sort_unstable();
     let counts = vertices.counts();
     let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
     let held = budget.held();
@@ -73,6 +79,7 @@ fn gather<'a>(
     let of_smoothing = budget.held() - held;
     let mut reader = Reader {
         vertices: &vertices,
+        holes: &tags.holes,
         faces,
         materials,
         part: Default::default(),
@@ -90,6 +97,7 @@ fn gather<'a>(
     reader.smoothing = None;
     budget.release(of_smoothing);
     let Reader { mut faces, mut materials, found, .. } = reader;
+    tags.apply(&mut faces, &vertices.positions, found.faces);
     materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
     faces.notes.extend(materials.warnings());
     let lacking = faces.lacking_normals(found.without_normals, "faces without normals, or with some missing");
@@ -207,6 +215,8 @@ impl Counts {
 /// Reads the faces of a file.
 struct Reader<'v, 'a> {
     vertices: &'v Vertices,
+    /// The faces that are holes of a subdivision surface.
+    holes: &'v [u32],
     faces: FaceBuilder<'a>,
     materials: Materials<'a>,
     /// The names of the object and of the group that the next faces belong to.
@@ -227,6 +237,7 @@ impl Reader<'_, '_> {
         for found in found {
             match found {
                 Found::Face { line, end } => {
+                    self.faces.is_hole = self.holes.binary_search(&to_u32(self.found.faces)).is_ok();
                     self.found.faces += 1;
                     self.add_face(&corners[start..end as usize], FilePosition::Line(line))?;
                     start = end as usize;

@@ -71,6 +71,7 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
     use geometry::mesh::UpAxis;
+    use geometry::mesh::subdivision::FaceVarying;
     use load::import::Subdivide;
     use load::{FileUnit, LengthUnit, NormalSource};
 
@@ -88,6 +89,7 @@ mod tests {
             show_hidden: true,
             subdivide: Subdivide::Loop,
             levels: Some(3.0),
+            subdivide_uvs: Some(FaceVarying::Corners),
         };
         assert!(options(&["a.obj"]).is_empty());
         assert_eq!(options(&["a.obj"]).import(usual), usual);

@@ -99,7 +99,8 @@ pub trait Known: Send + Sync {
 pub struct ReferenceShape {
     known: Box<dyn Known>,
     /// How far a cage that was refined is at most from the same one refined once less, in object units. Each refinement moves it
-    /// about a quarter as far as the one before, so about a third of this is missing to the limit. `None` for other surfaces.
+    /// about a quarter as far as the one before, so about a third of this is missing to the limit; under the butterfly scheme it is
+    /// a third as far, and half of this. These are observed and not proven. `None` for other surfaces.
     pub step: Option<f64>,
 }
 

@@ -9,6 +9,7 @@ use super::{
     Range, SectionAxis, Settings, SplitView, SurfaceUnit, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
+use geometry::mesh::subdivision::FaceVarying;
 use geometry::tessellate::{
     Clip, Convention, CurvatureKind, Displacement, Edges, Lod, LodReads, Normals, Partitioning, Surface, Tessellation,
 };
@@ -570,6 +571,14 @@ options! {
         placeholder: "N",
         text: "How often cages are refined. Each level has four times as many faces.",
         unset: Description::new("file", "As the file says", "As often as an FBX file says for its preview, or else twice."),
+    }
+
+    SUBDIVIDE_UVS: field!(import.subdivide_uvs), Kind::Choice(descriptions::<FaceVarying>) => {
+        name: "subdivide-uvs",
+        label: "Cage UVs",
+        placeholder: "RULE",
+        text: "How texture coordinates of cages are refined.",
+        unset: Description::new("file", "As the file says", "As tags in an OBJ file say, or else linearly."),
     }
 }
 

@@ -9,6 +9,7 @@ use super::{
     SplitView, SurfaceUnit, ToneCurve,
 };
 use geometry::mesh::UpAxis;
+use geometry::mesh::subdivision::FaceVarying;
 use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 use load::import::Subdivide;
 use load::{FileUnit, LengthUnit, NormalSource};
@@ -343,8 +344,8 @@ macro_rules! named_fields {
 }
 
 named_fields! {
-    Clip, Convention, CurvatureKind, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals,
-    NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
+    Clip, Convention, CurvatureKind, Displacement, Edges, FaceVarying, FileLights, Lighting, Lod, Matcap, NormalMaps,
+    NormalSource, Normals, NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {

@@ -196,7 +196,7 @@ impl MeshReader<'_, '_, '_> {
         let is_wanted = match import.subdivide {
             Subdivide::Off => false,
             Subdivide::File => is_marked,
-            Subdivide::CatmullClark | Subdivide::Loop => true,
+            Subdivide::CatmullClark | Subdivide::Loop | Subdivide::Butterfly => true,
         };
         if !is_wanted || self.moves_in_part() {
             if is_wanted || is_marked {
@@ -210,7 +210,9 @@ impl MeshReader<'_, '_, '_> {
             _ => Boundary::EdgesAndCorners,
         };
         let levels = import.levels_or(if is_marked { mesh.subdivision_preview_levels } else { 2 });
-        Some(Subdivision { levels, boundary, ..import.subdivision().unwrap_or_default() })
+        // ufbx reads no rule for texture coordinates.
+        let face_varying = import.subdivide_uvs.unwrap_or_default();
+        Some(Subdivision { levels, boundary, face_varying, ..import.subdivision().unwrap_or_default() })
     }
 
     /// Whether clips move the mesh, and joints some of its vertices but not all.
@@ -236,11 +238,7 @@ impl MeshReader<'_, '_, '_> {
         for ([a, b], sharpness) in sharp {
             let places = [self.posed(a as usize)?, self.posed(b as usize)?];
             let places = places.map(|(vertex, posed, _)| (posed.corner.position, vertex));
-            match &mut self.faces.cage {
-                Some(cage) if a == b => cage.sharpen(places[0], sharpness),
-                Some(cage) => cage.crease(places, sharpness),
-                None => {}
-            }
+            self.faces.cage.iter_mut().for_each(|cage| cage.sharpen(places, sharpness));
         }
         Ok(())
     }

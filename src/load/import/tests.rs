@@ -26,6 +26,7 @@ const MADE: Import = Import {
     show_hidden: false,
     subdivide: Subdivide::File,
     levels: None,
+    subdivide_uvs: None,
 };
 
 fn loaded(format: Format, bytes: &[u8], import: Import) -> LoadedMesh {

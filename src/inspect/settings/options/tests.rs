@@ -37,7 +37,8 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         background,
         import,
     } = settings;
-    let Import { normals: mesh_normals, crease_angle, up, unit, show_hidden, subdivide, levels } = import;
+    let Import { normals: mesh_normals, crease_angle, up, unit, show_hidden, subdivide, levels, subdivide_uvs } =
+        import;
     let Tessellation {
         surface,
         alpha,
@@ -106,6 +107,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("show_hidden", format!("{show_hidden:?}")),
         ("subdivide", format!("{subdivide:?}")),
         ("levels", format!("{levels:?}")),
+        ("subdivide_uvs", format!("{subdivide_uvs:?}")),
     ]
 }
 
