@@ -6,7 +6,7 @@ use crate::app::App;
 use crate::app::dialogs::Forgetting;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::panels::destinations::{Destination, Step};
-use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
+use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
 use inspect::settings::{ColorSource, Declaration, Settings, options};
@@ -80,6 +80,7 @@ impl App {
         match action {
             Action::File(action) => self.perform_on_files(context, action),
             Action::Camera(action) => self.move_camera_by(context, *action),
+            Action::Setting(Change::SwapHalves) => self.swap_halves(),
             Action::Setting(change) => change.apply(&mut self.settings),
             Action::Prepare(preparing) => self.prepare_as(context, *preparing),
             Action::Undo => self.undo(context),

@@ -180,6 +180,17 @@ impl App {
         if choices.overlays { settings } else { Settings { overlays: Overlays::default(), ..settings } }
     }
 
+    /// From where a picture with these choices is seen.
+    pub(in crate::app) fn shot_view(&self, choices: &PictureChoices) -> ShotView {
+        ShotView {
+            camera: self.viewport.camera,
+            lod_camera: self.viewport.frozen.map(|frozen| (frozen.camera, frozen.viewport)),
+            size: self.saved_size(choices),
+            transparent: choices.transparent,
+            legend: choices.legend,
+        }
+    }
+
     /// What a picture with these choices is drawn from; none without a mesh. `command` draws the same.
     pub(in crate::app) fn shot_parts(&self, theme: egui::Theme, choices: &PictureChoices) -> Option<ShotParts> {
         let document = self.document.as_ref()?;
@@ -195,6 +206,7 @@ impl App {
             loaded: document.loaded.clone(),
             left: self.left_mesh.as_ref().map(|left| left.content.clone()),
             moment: document.moment,
+            left_pose: document.scene.left_pose(),
             given: document.scene.tessellator.given().cloned(),
             surface_shader: document.scene.tessellator.surface_shader().cloned(),
             matcap: self.matcap.as_ref().map(|chosen| chosen.content.clone()),
@@ -206,15 +218,8 @@ impl App {
             more_lines: if choices.overlays { SplitSide::BOTH.map(lines) } else { Default::default() },
             arena_bytes: arena_bytes(&self.engine),
         };
-        let view = ShotView {
-            camera: self.viewport.camera,
-            lod_camera: self.viewport.frozen.map(|frozen| (frozen.camera, frozen.viewport)),
-            size: self.saved_size(choices),
-            transparent: choices.transparent,
-            legend: choices.legend,
-        };
         let make = Box::new(document.scene.sibling(subject.arena_bytes));
-        Some(ShotParts { engine: self.engine.clone(), make, subject, view })
+        Some(ShotParts { engine: self.engine.clone(), make, subject, view: self.shot_view(choices) })
     }
 
     /// What commands compare with, and its name: the chosen surface; and while the overlay is on, an exact one.

@@ -52,8 +52,9 @@ impl App {
                     "The settings of surface, level of detail, displacement and below Advanced are those of this half.";
                 ui.selectable_value(&mut self.panels.edited, half, name).on_hover_text(hover);
             }
-            if ui.button("Swap").on_hover_text("Exchanges the tessellations left and right.").clicked() {
-                Change::SwapHalves.apply(&mut self.settings);
+            let hover = "Exchanges the tessellations left and right, and poses of their own.";
+            if ui.button("Swap").on_hover_text(hover).clicked() {
+                self.swap_halves();
             }
         };
         ui.add_enabled_ui(has_left, |ui| ui.horizontal(row));

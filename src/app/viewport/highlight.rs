@@ -4,7 +4,7 @@ use super::frozen_camera::FrozenCamera;
 use super::ruler::Ruler;
 use crate::app::{App, Document};
 use geometry::mesh::{Bounds, Moment, Topology};
-use inspect::render::{LineSegment, axis_lines, crack_lines, t_junction_lines};
+use inspect::render::{LeftPose, LineSegment, axis_lines, crack_lines, t_junction_lines};
 use inspect::settings::SplitSide;
 
 /// Everything that the lines over the mesh depend on.
@@ -14,6 +14,7 @@ pub(crate) struct Highlight {
     measured: [u64; 2],
     /// The number of the scene in the left half; 0 for none.
     left: u64,
+    left_pose: LeftPose,
     /// Whose axes are drawn, if they are.
     axes: Option<Bounds>,
     cracks: bool,
@@ -44,6 +45,7 @@ impl App {
         let wanted = Highlight {
             measured: document.halves.each_ref().map(|half| if shows_measured { half.measure.generation } else { 0 }),
             left: document.scene.half(SplitSide::Left).map_or(0, |_| document.left_made),
+            left_pose: document.scene.left_pose(),
             axes: overlays.grid.then_some(document.scene.bounds),
             cracks: overlays.cracks,
             t_junctions: junctions.is_some(),
@@ -73,7 +75,7 @@ impl App {
 
     /// The lines over a half, in its pose if that is known on the CPU.
     fn marks(&self, half: SplitSide, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
-        let posed = posed.filter(|_| document.scene.shares_mesh(half));
+        let posed = posed.filter(|_| document.scene.shares_pose(half));
         let overlays = self.settings.overlays;
         let mut lines = if overlays.grid { axis_lines(&document.scene.bounds) } else { Vec::new() };
         if let Some((topology, junctions)) = posed.zip(document.checks.t_junctions()).filter(|_| overlays.t_junctions) {

@@ -14,7 +14,7 @@ use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use inspect::engine::Engine;
-use inspect::render::{Camera, Pixel, Renderer, Scene, Target, half_at, section};
+use inspect::render::{Camera, LeftPose, Pixel, Renderer, Scene, Target, half_at, section};
 use inspect::settings::{ColorSource, Settings, SplitSide};
 
 /// Everything that the picture depends on.
@@ -22,6 +22,7 @@ use inspect::settings::{ColorSource, Settings, SplitSide};
 pub(crate) struct PictureRequest {
     pub document: u64,
     pub moment: Option<Moment>,
+    pub left_pose: LeftPose,
     pub lines: u64,
     /// The number of the deviation result that is shown.
     pub deviation: u64,

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use std::fmt::{Display, Write};
 use std::path::Path;
 
+use super::ShotView;
 use super::turn::Turn;
 use crate::engine::Preparation;
 use crate::render::Camera;
@@ -14,20 +15,21 @@ use load::files::Limits;
 use load::import::Subdivide;
 use load::{HeightSource, Source};
 
+/// What stands for the pose without a clip where a clip is named.
+pub const AT_REST: &str = "rest";
+
 /// What a window shows, and from where.
 pub struct CopiedCommand<'a> {
     pub source: &'a Source,
     pub preparation: &'a Preparation,
     pub settings: &'a Settings,
-    pub camera: &'a Camera,
-    /// The camera that LOD and clipping are frozen for and its view's width and height in px, if they are.
-    pub lod_camera: Option<(&'a Camera, [u32; 2])>,
+    pub view: ShotView,
     /// The bounding radius of what is drawn, in object units. The command has the camera's distance in bounding radii.
     pub radius: f32,
-    /// The view's width and height, in px.
-    pub size: [u32; 2],
     /// A clip's name, and the time in it in s.
     pub animation: Option<(&'a str, f64)>,
+    /// The same left of the split, if that has a pose of its own: [`AT_REST`] for none.
+    pub left_animation: Option<(&'a str, f64)>,
     pub reference_shape: Option<&'a Source>,
     /// How the mesh's own cage is refined, if its limit is the reference surface.
     pub reference_subdivide: Option<Subdivide>,
@@ -45,10 +47,6 @@ pub struct CopiedCommand<'a> {
     pub environment: Option<&'a Path>,
     /// The selected triangle's number in the mesh, from 0.
     pub triangle: Option<u32>,
-    /// Whether nothing is behind the mesh, rather than the background's colour.
-    pub transparent: bool,
-    /// Whether the legend is drawn into the picture.
-    pub legend: bool,
     /// The file to write; without one, it is named after the mesh.
     pub output: Option<&'a Path>,
     /// The turn of a turntable, and whether it is a GIF; none for one picture.
@@ -111,7 +109,7 @@ impl CopiedCommand<'_> {
 
     /// Writes every setting that has an effect and isn't at its default. A transparent picture has no colour behind the mesh.
     fn settings(&self, line: &mut Line) {
-        let background = self.settings.background.filter(|_| !self.transparent);
+        let background = self.settings.background.filter(|_| !self.view.transparent);
         // What takes the place of LOD takes none of its options.
         let Tessellation { lod, factor, .. } = Tessellation::default();
         let own = self.settings.tessellation;
@@ -180,7 +178,7 @@ impl CopiedCommand<'_> {
         if let Some(left) = self.left_mesh.filter(|_| self.settings.split.is_some()) {
             line.option("--split-with", named(left));
         }
-        if self.animation.is_none() {
+        if self.animation.is_none() && self.left_animation.is_none() {
             self.reference_shape.iter().for_each(|own| line.option("--reference-surface", named(own)));
             self.reference_subdivide.iter().for_each(|own| line.option("--reference-subdivide", own.name()));
         }
@@ -189,13 +187,19 @@ impl CopiedCommand<'_> {
             line.option("--animation", name);
             line.changed("--time", &time, &0.0);
         }
-        line.switch("--transparent", self.transparent);
-        line.switch("--legend", self.legend);
-        line.option("--size", Px(self.size));
-        self.camera(line, "", self.camera);
-        if let Some((camera, size)) = self.lod_camera.filter(|own| *own != (self.camera, self.size)) {
-            self.camera(line, "lod-", camera);
-            line.changed("--lod-size", &Px(size), &Px(self.size));
+        if let Some((name, time)) = self.left_animation {
+            line.option("--split-animation", name);
+            line.changed("--split-time", &time, &0.0);
+        }
+        line.switch("--transparent", self.view.transparent);
+        line.switch("--legend", self.view.legend);
+        line.option("--size", Px(self.view.size));
+        let ShotView { camera, lod_camera, size, .. } = &self.view;
+        self.camera(line, "", camera);
+        let lod_camera = lod_camera.map(|(camera, viewport)| (camera, viewport.to_array().map(|side| side as u32)));
+        if let Some((lod_camera, lod_size)) = lod_camera.filter(|own| *own != (*camera, *size)) {
+            self.camera(line, "lod-", &lod_camera);
+            line.changed("--lod-size", &Px(lod_size), &Px(*size));
         }
     }
 

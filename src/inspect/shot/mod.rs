@@ -24,7 +24,7 @@ use std::sync::Arc;
 use glam::Vec2;
 use image::RgbaImage;
 
-pub use copied_command::{CopiedCommand, given};
+pub use copied_command::{AT_REST, CopiedCommand, given};
 pub use error::ShotError;
 pub use factors_report::{FactorsFile, agreement_lines, read_factors, said};
 pub use judging::Numbers;
@@ -51,8 +51,8 @@ use crate::measure::{
 };
 use crate::reference_shape::ReferenceShape;
 use crate::render::{
-    Camera, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines, deviation_scale, lay_over,
-    lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
+    Camera, Distances, LeftPose, LineSegment, Renderer, Scale, Scene, Target, axis_lines, crack_lines, deviation_scale,
+    lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
 use crate::settings::{ARENA_BYTES, ColorSource, Settings, SplitSide, SplitView};
 use geometry::mesh::{Bounds, Mesh, Moment, Texture, t_junctions};
@@ -70,6 +70,7 @@ pub struct Subject {
     /// The mesh left of a split, if it is another one.
     pub left: Option<Loaded>,
     pub moment: Option<Moment>,
+    pub left_pose: LeftPose,
     /// What takes the place of LOD: factors of a file, or a shader.
     pub given: Option<Given>,
     /// What takes the place of the surface, except left of a split.
@@ -145,7 +146,7 @@ impl Subject {
         Self { loaded, settings, arena_bytes: ARENA_BYTES, ..Self::default() }
     }
 
-    /// Gives a scene of the mesh its factors, its control points, its matcap and its pose.
+    /// Gives a scene of the mesh its factors, its control points, its matcap and its poses.
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
@@ -154,6 +155,7 @@ impl Subject {
         scene.tessellator.give(self.given.clone())?;
         scene.tessellator.set_surface_shader(self.surface_shader.clone())?;
         scene.frame_clip(self.moment.map(|moment| moment.clip));
+        scene.set_left_pose(self.left_pose)?;
         scene.set_moment(self.moment)
     }
 }
@@ -299,6 +301,7 @@ impl Shot {
         let measured = self.results(half).and_then(|results| results.survey.as_ref());
         let facts = HalfFacts {
             mesh: meshes.map(|meshes| meshes[half as usize].source.title()),
+            pose: self.scene.pose_title(half),
             triangles: self.scene.half(half).map(|own| own.tessellator.totals().1),
             cracked_edges: measured.map(|measured| measured.cracks.cracked().len() as u64),
             ..HalfFacts::default()
@@ -415,7 +418,7 @@ impl Shot {
     }
 
     fn lines(&self, half: SplitSide, progress: &Progress) -> Result<Vec<LineSegment>, ShotError> {
-        let (settings, is_same) = (&self.subject.settings, self.scene.shares_mesh(half));
+        let (settings, is_same) = (&self.subject.settings, self.scene.shares_pose(half));
         let other = self.scene.half(half).filter(|_| !is_same).map(|own| own.tessellator.topology());
         let topology = other.unwrap_or(&self.posed.topology);
         let results = self.results(half);
