@@ -198,8 +198,8 @@ impl App {
         let topology = document.shown().1;
         let lines = |half| {
             let hit = if half == SplitSide::Right { self.hit_lines() } else { Vec::new() };
-            let is_of_mesh = half == SplitSide::Right || self.left_mesh.is_none();
-            let selected = if is_of_mesh { self.selection_lines(&topology, half) } else { Vec::new() };
+            let selected =
+                if document.scene.shares_pose(half) { self.selection_lines(&topology, half) } else { Vec::new() };
             [self.ruler_lines(), selected, hit].concat()
         };
         let subject = Subject {
