@@ -18,7 +18,7 @@ use inspect::gates::{Gate, GateKind};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::environment::Environment;
 use inspect::render::{Camera, LeftPose, Scene, framed_size};
-use inspect::settings::{Choice, ColorSource, Lighting};
+use inspect::settings::{Choice, ColorSource, Lighting, Settings};
 use inspect::shot::{AT_REST, FactorsFile, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
@@ -83,10 +83,11 @@ impl ShotOptions {
         self.surface.check(self.picture.0.left_surface())?;
         self.user_lod.check_alone(&self.given)?;
         refuse(
-            self.matcap_image.is_some() && self.picture.0.overlays.colors.source() != ColorSource::LitSphere,
+            self.matcap_image.is_some() && !self.shows(|own| own.overlays.colors.source() == ColorSource::LitSphere),
             "--matcap-image needs --overlay matcap, which shows it",
         )?;
-        let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
+        let (has_file, needs_file) =
+            (self.environment.is_some(), self.shows(|own| own.lighting == Lighting::Environment));
         refuse(has_file && !needs_file, "--environment is the light of --lighting environment: choose one light")?;
         refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
         let is_hidden = self.split_with.is_some() && self.picture.0.split.is_none();
@@ -100,6 +101,11 @@ impl ShotOptions {
         let own = [file_of(file), reference_shape, left, factors, matcap, self.environment.as_deref()];
         let own = own.into_iter().chain(files_of_heights(&self.surface.height));
         keep_apart(own.chain(shaders).chain(read.iter().copied()), written.iter().copied())
+    }
+
+    /// Whether a half of the picture has settings like this.
+    fn shows(&self, is_shown: impl Fn(&Settings) -> bool) -> bool {
+        self.picture.0.halves().any(|own| is_shown(&own))
     }
 
     /// Width and height in px of the middle of the picture that shows all of the mesh.
@@ -181,14 +187,14 @@ impl ShotOptions {
     /// The surface to compare with, and its name: the one that was chosen, or if the overlay is shown the exact surface; none for
     /// the limit surface.
     fn reference_surface(&self, loaded: &Loaded) -> Result<Option<(String, Arc<ReferenceShape>)>, CliError> {
-        let Self { surface, picture, reference, .. } = self;
+        let Self { surface, reference, .. } = self;
         let moves = surface.animation.is_some() || self.split_animation.is_some();
         let chosen = reference.load(&loaded.source, &loaded.preparation, Source::to_string)?;
         refuse(
             moves && chosen.is_some(),
             "--reference-surface and --reference-subdivide can't be combined with --animation: that surface doesn't move",
         )?;
-        if chosen.is_some() || picture.0.overlays.colors.source() != ColorSource::ReferenceSurface {
+        if chosen.is_some() || !self.shows(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface) {
             return Ok(chosen.map(|(name, chosen)| (name, Arc::new(chosen))));
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();

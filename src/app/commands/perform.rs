@@ -9,7 +9,7 @@ use crate::app::panels::destinations::{Destination, Step};
 use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
-use inspect::settings::{ColorSource, Declaration, Settings, options};
+use inspect::settings::{Declaration, Settings, options};
 use load::format::Format;
 use load::{HeightSource, Import, Source};
 
@@ -55,7 +55,7 @@ impl App {
             (Need::Culling, self.can_cull_back_faces()),
             (Need::Split, self.settings.split.is_some()),
             (Need::Frozen, self.viewport.frozen.is_some()),
-            (Need::Deviation, self.settings.overlays.colors.source() == ColorSource::ReferenceSurface),
+            (Need::Deviation, self.shows_deviation()),
             (Need::MeasurableChart, self.can_measure_chart()),
             (Need::Chart, !self.chart_rows().is_empty()),
             (Need::Clips, !clips.is_empty()),

@@ -322,8 +322,12 @@ impl App {
     /// Stops reading a file. The light before it stays.
     pub(in crate::app) fn cancel_environment(&mut self) {
         self.jobs.stop(Work::Companion(CompanionFile::Environment));
-        if self.environment.is_none() && self.settings.lighting == Lighting::Environment {
-            self.settings.lighting = Lighting::Studio;
+        if self.environment.is_none() {
+            self.settings.change_looks(|own| {
+                if own.lighting == Lighting::Environment {
+                    own.lighting = Lighting::Studio;
+                }
+            });
         }
     }
 }

@@ -176,8 +176,11 @@ impl App {
     }
 
     pub(in crate::app) fn saved_settings_of(&self, theme: egui::Theme, choices: &PictureChoices) -> Settings {
-        let settings = self.settings_in(theme);
-        if choices.overlays { settings } else { Settings { overlays: Overlays::default(), ..settings } }
+        let mut settings = self.settings_in(theme);
+        if !choices.overlays {
+            settings.change_looks(|own| own.overlays = Overlays::default());
+        }
+        settings
     }
 
     /// From where a picture with these choices is seen.
@@ -224,7 +227,7 @@ impl App {
 
     /// What commands compare with, and its name: the chosen surface; and while the overlay is on, an exact one.
     fn reference_surface(&self, settings: &Settings) -> Option<(String, Arc<ReferenceShape>)> {
-        let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
+        let is_shown = settings.halves().any(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface);
         let (own, reference_shape) = (self.source()?.to_string(), self.yardstick().1?);
         let name = match self.reference_shape.as_ref().map(|chosen| &chosen.from) {
             Some(Some(source)) => source.to_string(),

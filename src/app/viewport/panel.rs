@@ -337,11 +337,12 @@ impl App {
         let preview = &self.viewport.preview;
         let previewed = preview.shown(&self.viewport.picture).map(|(_, shape)| preview.mark(shape));
         let frozen = self.viewport.frozen.map(|_| "LOD camera frozen".to_owned());
-        let grid = self.document.as_ref().filter(|_| self.settings.overlays.grid).map(|document| {
-            let spacing = Ground::under(&document.scene.bounds).spacing;
-            let unit = if spacing == 1.0 { "unit" } else { "units" };
-            format!("Grid: {spacing} {unit}")
-        });
+        let grid =
+            self.document.as_ref().filter(|_| self.settings.halves().any(|own| own.overlays.grid)).map(|document| {
+                let spacing = Ground::under(&document.scene.bounds).spacing;
+                let unit = if spacing == 1.0 { "unit" } else { "units" };
+                format!("Grid: {spacing} {unit}")
+            });
         let has_left = self.document.as_ref().is_some_and(|document| document.scene.half(SplitSide::Left).is_some());
         let difference = (has_left && self.settings.shows_difference())
             .then(|| "Difference: black where both halves are equal".to_owned());

@@ -1,7 +1,6 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
-use crate::commands::Change;
 use geometry::mesh::Moment;
 use geometry::mesh::rig::Clip;
 use inspect::render::LeftPose;
@@ -89,7 +88,7 @@ impl App {
 
     /// Exchanges what is left and right of the split, with their poses.
     pub(in crate::app) fn swap_halves(&mut self) {
-        Change::SwapHalves.apply(&mut self.settings);
+        self.settings.swap_halves();
         if let LeftPose::Own(own) = self.viewport.playback.left {
             let left = LeftPose::Own(self.moment());
             self.choose_clip(own.map(|moment| moment.clip));

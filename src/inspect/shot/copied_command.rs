@@ -116,11 +116,15 @@ impl CopiedCommand<'_> {
         let has_lod = self.factors.is_none() && self.lod_shader.is_none();
         let tessellation = if has_lod { own } else { Tessellation { lod, factor, ..own } };
         let usual = Settings::default().under(tessellation.lod);
-        let usual = if has_lod {
+        let mut usual = if has_lod {
             usual.with(Tessellation { lod: Settings::usual().tessellation.lod, ..usual.tessellation })
         } else {
             usual
         };
+        if self.light_file().is_some() && self.settings.lighting != Lighting::Environment {
+            // The file is the light of both halves unless they say otherwise.
+            usual.lighting = Lighting::Environment;
+        }
         let shown = Settings { background, ..self.settings.with(tessellation) };
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {
@@ -138,14 +142,13 @@ impl CopiedCommand<'_> {
         };
         // The left half is said by what differs from the right one, as whoever reads the command gets that.
         let mut said = usual;
-        options::TESSELLATION
-            .into_iter()
-            .filter(written)
-            .for_each(|option| _ = option.set(&mut said, option.get(&own)));
+        let of_halves = || options::TESSELLATION.into_iter().chain(options::LOOKS);
+        of_halves().filter(written).for_each(|option| _ = option.set(&mut said, option.get(&own)));
         let differs = |(name, value): &(&str, Value)| {
-            let option = options::TESSELLATION.into_iter().find(|option| option.name == *name);
+            let option = of_halves().find(|option| option.name == *name);
             // What these are without being said depends on others.
-            let always = [options::SURFACE.name, options::LOD.name, options::PARTITIONING.name];
+            let always =
+                [&options::SURFACE, &options::LOD, &options::PARTITIONING, &options::OVERLAY].map(|own| own.name);
             always.contains(name) || option.is_none_or(|option| option.get(&said) != *value)
         };
         for option in options::all().filter(written) {
@@ -163,14 +166,13 @@ impl CopiedCommand<'_> {
 
     /// Writes the files of factors, of shaders, of a matcap and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
-        let colors_are_of_matcap = self.settings.overlays.colors.source() == ColorSource::LitSphere;
-        let uses_file = self.settings.lighting == Lighting::Environment && self.settings.shows_materials();
+        let shows_matcap = self.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::LitSphere);
         let files = [
             ("--factors", self.factors),
             ("--lod-shader", self.lod_shader),
             ("--surface-shader", self.surface_shader),
-            ("--matcap-image", self.matcap_image.filter(|_| colors_are_of_matcap)),
-            ("--environment", self.environment.filter(|_| uses_file)),
+            ("--matcap-image", self.matcap_image.filter(|_| shows_matcap)),
+            ("--environment", self.light_file()),
         ];
         for (name, path) in files.into_iter().filter_map(|(name, path)| Some((name, path?))) {
             line.option(name, named(&Source::File(path.to_owned())));
@@ -201,6 +203,13 @@ impl CopiedCommand<'_> {
             self.camera(line, "lod-", &lod_camera);
             line.changed("--lod-size", &Px(lod_size), &Px(*size));
         }
+    }
+
+    /// The file of light, if it shines in a half, or is said to.
+    fn light_file(&self) -> Option<&Path> {
+        let is_said = self.settings.left_looks.is_some();
+        let is_used = |own: Settings| own.lighting == Lighting::Environment && (own.shows_materials() || is_said);
+        self.environment.filter(|_| self.settings.halves().any(is_used))
     }
 
     /// Writes the options of a camera, whose names begin with `prefix`.

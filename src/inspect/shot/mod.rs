@@ -344,16 +344,16 @@ impl Shot {
 
     /// Measures each half with one walk over its output: what the overlays show, and what the stats say.
     fn measure(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<(), ShotError> {
-        let (view, settings) = (self.view(), self.subject.settings);
+        let view = self.view();
         let reference_surface = self.subject.reference_surface.as_ref().map(|(_, own)| own);
-        let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
         // Both halves are compared with the same surface. The CPU doesn't know the limit surface of a shader.
         let limit = self.inputs(SplitSide::Right).filter(|_| self.subject.surface_shader.is_none());
         let limit = limit.map(|inputs| DeviationTarget::Limit(Box::new(inputs)));
-        let target = reference_surface.cloned().map(DeviationTarget::ReferenceShape).or(limit).filter(|_| is_shown);
+        let target = reference_surface.cloned().map(DeviationTarget::ReferenceShape).or(limit);
         for half in SplitSide::BOTH {
-            let inputs = self.inputs(half);
-            let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
+            let own = self.inputs(half).zip(self.subject.settings.half(half));
+            let Some(((inputs, settings), scene)) = own.as_ref().zip(self.scene.half_mut(half)) else { continue };
+            let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
             let wanted = Measurements {
                 survey: settings.overlays.cracks || self.subject.selected.is_some() || stats.is_some(),
                 // The CPU doesn't know the surface of a shader.
@@ -361,7 +361,7 @@ impl Shot {
                     .filter(|_| scene.tessellator.surface_shader().is_none())
                     .is_some_and(|stats| stats.error)
                     .then_some(inputs),
-                deviation: target.as_ref(),
+                deviation: target.as_ref().filter(|_| is_shown),
                 accuracy: reference_surface
                     .filter(|_| stats.is_some())
                     .map(|reference_shape| (&**reference_shape, &inputs.view, AccuracyOptions::default())),
@@ -376,7 +376,7 @@ impl Shot {
 
     /// Compares outlines, if they are shown: those of the right half, in all of the picture.
     fn compare_outlines(&mut self, progress: &Progress) -> Result<(), ShotError> {
-        if self.subject.settings.overlays.colors.source() == ColorSource::Outlines {
+        if self.subject.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::Outlines) {
             let seen = self.view.camera.lod_view(self.target.viewport(), &self.scene.bounds);
             let view = SilhouetteView { size: self.target.size, seen, lod: self.lod_view };
             let tessellation = &self.subject.settings.tessellation;
@@ -418,7 +418,8 @@ impl Shot {
     }
 
     fn lines(&self, half: SplitSide, progress: &Progress) -> Result<Vec<LineSegment>, ShotError> {
-        let (settings, is_same) = (&self.subject.settings, self.scene.shares_pose(half));
+        let settings = self.subject.settings.half(half).unwrap_or(self.subject.settings);
+        let is_same = self.scene.shares_pose(half);
         let other = self.scene.half(half).filter(|_| !is_same).map(|own| own.tessellator.topology());
         let topology = other.unwrap_or(&self.posed.topology);
         let results = self.results(half);

@@ -44,7 +44,7 @@ pub fn half_title(settings: &Settings, half: SplitSide, facts: HalfFacts) -> Str
     lines.into_iter().filter(|line| !line.is_empty()).map(|line| line.join(", ")).collect::<Vec<_>>().join("\n")
 }
 
-/// What a half's tessellation has otherwise than the other half's, beside the surface.
+/// What a half has otherwise than the other one, beside the surface.
 fn differing(settings: &Settings, half: SplitSide) -> Vec<String> {
     let [left, right] = SplitSide::BOTH.map(|half| settings.half(half).unwrap_or(*settings));
     let own = if half == SplitSide::Left { &left } else { &right };
@@ -54,7 +54,7 @@ fn differing(settings: &Settings, half: SplitSide) -> Vec<String> {
             && (option.no_effect)(own).is_none()
     };
     let compared = options::TESSELLATION.into_iter().filter(|_| settings.has_left_tessellation());
-    compared.filter(differs).map(|option| option.shown(own)).collect()
+    compared.chain(options::LOOKS).filter(differs).map(|option| option.shown(own)).collect()
 }
 
 fn counted(count: Option<u64>, one: &str) -> Option<String> {
