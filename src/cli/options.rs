@@ -33,7 +33,7 @@ pub(crate) use declared::{
 };
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
-    CameraOption, ending_in, heights, model, picture, picture_or_page, size, source, whole, whole_from, within,
+    CameraOption, ending_in, heights, model, picture, picture_or_page, seconds, size, source, whole, whole_from, within,
 };
 pub(crate) use view::{LodCameraOption, MeshAt, ViewOptions};
 
@@ -62,7 +62,7 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,
     /// Time in the animation, in s; after its end the pose is that of the end
-    #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = values::seconds, default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = seconds, default_value_t = 0.0, allow_hyphen_values = true)]
     pub time: f64,
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]

@@ -45,7 +45,7 @@ impl Change {
             Self::BlinkHalves => {
                 settings.split = settings.split.map(|split| if split < 1.0 { 1.0 } else { 0.0 });
             }
-            Self::SwapHalves => std::mem::swap(&mut settings.left, &mut settings.tessellation),
+            Self::SwapHalves => settings.swap_halves(),
             Self::Option(name, value) => {
                 if let Some(option) = options::all().find(|option| option.name == name) {
                     option.set(settings, value.map_or(Value::Unset, Value::Name));

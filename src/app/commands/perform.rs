@@ -6,10 +6,10 @@ use crate::app::App;
 use crate::app::dialogs::Forgetting;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::panels::destinations::{Destination, Step};
-use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
+use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
-use inspect::settings::{ColorSource, Declaration, Settings, options};
+use inspect::settings::{Declaration, Settings, options};
 use load::format::Format;
 use load::{HeightSource, Import, Source};
 
@@ -55,7 +55,7 @@ impl App {
             (Need::Culling, self.can_cull_back_faces()),
             (Need::Split, self.settings.split.is_some()),
             (Need::Frozen, self.viewport.frozen.is_some()),
-            (Need::Deviation, self.settings.overlays.colors.source() == ColorSource::ReferenceSurface),
+            (Need::Deviation, self.shows_deviation()),
             (Need::MeasurableChart, self.can_measure_chart()),
             (Need::Chart, !self.chart_rows().is_empty()),
             (Need::Clips, !clips.is_empty()),
@@ -80,6 +80,7 @@ impl App {
         match action {
             Action::File(action) => self.perform_on_files(context, action),
             Action::Camera(action) => self.move_camera_by(context, *action),
+            Action::Setting(Change::SwapHalves) => self.swap_halves(),
             Action::Setting(change) => change.apply(&mut self.settings),
             Action::Prepare(preparing) => self.prepare_as(context, *preparing),
             Action::Undo => self.undo(context),

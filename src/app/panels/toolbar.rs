@@ -29,12 +29,14 @@ impl App {
             let now = self.availability();
             let commands = all(&now);
             self.command_button(ui, &commands, &now, &Action::SplitView, ["Split", "Split view"]);
-            for overlay in ON_TOOLBAR {
-                let action = Action::Setting(Change::Overlay(overlay));
-                self.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
-            }
-            self.overlays_list(ui);
-            self.colors_list(ui);
+            self.of_half(|app| {
+                for overlay in ON_TOOLBAR {
+                    let action = Action::Setting(Change::Overlay(overlay));
+                    app.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
+                }
+                app.overlays_list(ui);
+                app.colors_list(ui);
+            });
             divider(ui, "Frame");
             self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
             let names = ["Freeze LOD", "Freeze LOD camera"];

@@ -14,7 +14,7 @@ use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use inspect::engine::Engine;
-use inspect::render::{Camera, Pixel, Renderer, Scene, Target, half_at, section};
+use inspect::render::{Camera, LeftPose, Pixel, Renderer, Scene, Target, half_at, section};
 use inspect::settings::{ColorSource, Settings, SplitSide};
 
 /// Everything that the picture depends on.
@@ -22,6 +22,7 @@ use inspect::settings::{ColorSource, Settings, SplitSide};
 pub(crate) struct PictureRequest {
     pub document: u64,
     pub moment: Option<Moment>,
+    pub left_pose: LeftPose,
     pub lines: u64,
     /// The number of the deviation result that is shown.
     pub deviation: u64,
@@ -272,13 +273,14 @@ impl Picture {
         let from_here = |drawn: &PictureRequest| {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
+        let is_shown = |own: &Settings| own.overlays.colors.source() == ColorSource::ReferenceSurface;
+        let shown = |half| wanted.settings.half(half).filter(is_shown).and(scene.half(half));
+        let is_known = SplitSide::BOTH.into_iter().filter_map(shown).all(Scene::knows_deviation);
         // Nothing may be measured of a surface shader.
-        let shows =
-            wanted.settings.overlays.colors.source() == ColorSource::ReferenceSurface && wanted.from_files.surface == 0;
-        let mut halves =
-            SplitSide::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
-        let is_known = halves.all(Scene::knows_deviation);
-        shows && self.drawing.is_none() && !is_known && self.drawn.as_ref().is_some_and(from_here)
+        wanted.from_files.surface == 0
+            && self.drawing.is_none()
+            && !is_known
+            && self.drawn.as_ref().is_some_and(from_here)
     }
 
     /// Whether no picture is under way, so that the scene may change.

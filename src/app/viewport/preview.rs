@@ -221,12 +221,14 @@ fn shape_of(
     if !follows && (triangles <= kept || wanted.from_files.factors != 0) {
         return Shape::Same;
     }
-    // It stands for the mesh alone, not for another one beside it, and has no parts with surfaces of their own.
+    // It stands for the mesh alone, not for another one or another pose beside it, and has no parts with surfaces of their own.
     if patches > most
         && document.loaded.mesh.part_styles.is_empty()
         && document.moment.is_none()
         && (wanted.settings.split.is_none()
-            || document.left_of == 0 && wanted.settings.split_view == SplitView::Divider)
+            || document.scene.shares_pose(SplitSide::Left)
+                && wanted.settings.split_view == SplitView::Divider
+                && wanted.settings.left_looks.is_none())
         && document.stand_in.is_made(jobs, context, engine, &document.loaded, most as usize)
     {
         return Shape::StandIn;
@@ -238,9 +240,11 @@ fn shape_of(
 fn settings_of(shape: Shape, settings: &Settings) -> Settings {
     let mut cheap = *settings;
     // Both need data that is computed for what is emitted.
-    if matches!(cheap.overlays.colors.source(), ColorSource::ReferenceSurface | ColorSource::MinimumTriangles) {
-        cheap.overlays.colors = Colors::default();
-    }
+    cheap.change_looks(|own| {
+        if matches!(own.overlays.colors.source(), ColorSource::ReferenceSurface | ColorSource::MinimumTriangles) {
+            own.overlays.colors = Colors::default();
+        }
+    });
     let factor = match shape {
         Shape::Same => return cheap,
         Shape::Factor(factor) => factor,

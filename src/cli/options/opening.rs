@@ -51,15 +51,15 @@ impl OpeningOptions {
 }
 
 impl Group for GivenImport {
-    const ALL: &'static [&'static Declaration] = &options::IMPORT;
+    const ALL: &'static [&'static [&'static Declaration]] = &[&options::IMPORT];
 
     fn arg(declaration: &'static Declaration) -> Arg {
         arg(declaration)
     }
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        let value = |declaration: &&'static Declaration| Some((declaration.name, given(declaration, matches)?));
-        self.0 = Self::ALL.iter().filter_map(value).collect();
+        let value = |declaration: &'static Declaration| Some((declaration.name, given(declaration, matches)?));
+        self.0 = options::IMPORT.into_iter().filter_map(value).collect();
         Ok(())
     }
 }

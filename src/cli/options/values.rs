@@ -122,7 +122,7 @@ pub(crate) fn angle(text: &str) -> Result<f32, String> {
 }
 
 /// Parses a time that is finite and not negative.
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     number(text, |time: &f64| time.is_finite() && *time >= 0.0, "a number of seconds, 0 or more")
 }
 

@@ -31,7 +31,8 @@ const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
 const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
 const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 
-/// Draws the legend into the lower right corner, if the picture's colours have one, of a mesh on which these numbers are `usual`.
+/// Draws the legend into the lower right corner, if the picture's colours have one, of a mesh on which these numbers are `usual`. In a
+/// split picture it is the right half's, or if that has none the left one's.
 ///
 /// # Errors
 /// The font can't be used.
@@ -41,7 +42,8 @@ pub(crate) fn draw_legend(
     usual: &Usual,
     distances: &Distances,
 ) -> Result<(), ChartError> {
-    let Some(legend) = legend_of(settings, usual, distances) else { return Ok(()) };
+    let legend = settings.halves().rev().find_map(|own| legend_of(&own, usual, distances));
+    let Some(legend) = legend else { return Ok(()) };
     let point = point_in(picture.dimensions(), inner_size(&legend), None);
     let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
     lay_in_corner(picture, &plate, Side::Right, point);
