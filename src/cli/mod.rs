@@ -50,7 +50,6 @@ use geometry::names::{on_one_line, shown};
 use geometry::progress::{Cancelled, Progress};
 use gpu::GpuError;
 use inspect::engine::{Loaded, Preparation};
-use inspect::export::ExportError;
 use inspect::shader_files::ShaderError;
 use inspect::shot::files::{file_error, read_bytes, read_text, to_json, write_bytes, write_text};
 use inspect::shot::{ShotError, given};
@@ -151,14 +150,10 @@ pub enum CliError {
     Matcap(#[from] MatcapError),
     #[error(transparent)]
     UserShader(#[from] UserShaderError),
-    #[error(transparent)]
-    Export(#[from] ExportError),
     #[error("{path}: there is no folder {folder} to write it in; make it first")]
     NoFolder { path: String, folder: String },
     #[error("{path} is {by} by the same command, so it isn't overwritten; choose another name")]
     Taken { path: String, by: &'static str },
-    #[error(transparent)]
-    Gallery(#[from] lab::gallery::GalleryError),
     #[error("{0}")]
     Usage(&'static str),
     #[error(
@@ -207,8 +202,6 @@ pub enum CliError {
     Interrupted { done: usize, all: usize, what: &'static str },
     #[error(transparent)]
     Shaders(#[from] ShaderError),
-    #[error(transparent)]
-    Chart(#[from] inspect::plot::ChartError),
     #[error("{}", .0.join("; "))]
     Gates(Vec<String>),
     #[error("{0}")]

@@ -24,7 +24,7 @@ use inspect::measure::{
     CrossingMeasurement, EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor,
 };
 use inspect::render::{Camera, Scene};
-use inspect::shot::{Shot, ShotView, Subject, report_user_lod, report_user_surface};
+use inspect::shot::{Shot, ShotError, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;
 
 #[derive(Debug, clap::Args)]
@@ -112,13 +112,13 @@ struct Ready<'a> {
 impl Ready<'_> {
     /// Checks that the view's file can hold so many vertices and triangles, before they are there.
     fn check(&self, view: &View, vertices: u64, triangles: u64) -> Result<(), CliError> {
-        Ok(Exported::check(&view.file, &self.mesh.posed.mesh, vertices, triangles)?)
+        Ok(Exported::check(&view.file, &self.mesh.posed.mesh, vertices, triangles).map_err(ShotError::from)?)
     }
 
     /// Writes what was tessellated for a view. Standard error tells what couldn't be written.
     fn write(&self, view: &View, tessellated: &Tessellated) -> Result<(), CliError> {
         let exported = Exported::new(&self.mesh.posed.mesh, &self.mesh.posed.topology, tessellated);
-        warn(&exported.write(&view.file)?);
+        warn(&exported.write(&view.file).map_err(ShotError::from)?);
         Ok(())
     }
 

@@ -2,6 +2,7 @@
 
 use geometry::progress::Cancelled;
 use gpu::GpuError;
+use load::LoadError;
 use thiserror::Error;
 
 use super::picture_comparison::CompareError;
@@ -14,6 +15,8 @@ use crate::plot::ChartError;
 pub enum ShotError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Load(#[from] LoadError),
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error(transparent)]

@@ -22,7 +22,7 @@ pub use pen::RADIUS;
 pub use picture::{bitmap, svg};
 pub use race::{Cost, front, has_converged};
 pub(crate) use race::{Race, Win};
-pub use save::{SaveError, save};
+pub use save::save;
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
 use geometry::near::Interval;

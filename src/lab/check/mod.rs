@@ -10,7 +10,7 @@ mod pattern;
 mod report;
 mod sarif;
 
-pub use assets::{FolderError, assets};
+pub use assets::assets;
 pub use cache::{Cache, Inputs};
 pub use config::{Config, ConfigError, OptionValue, Section};
 pub use junit::junit;
