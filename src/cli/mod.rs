@@ -54,7 +54,6 @@ use inspect::shader_files::ShaderError;
 use inspect::shot::files::{file_error, read_bytes, read_text, to_json, write_bytes, write_text};
 use inspect::shot::{ShotError, given};
 use inspect::user_shader::UserShaderError;
-use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
 use load::files::file_reason;
 use load::selection::choice;
@@ -206,8 +205,6 @@ pub enum CliError {
     Gates(Vec<String>),
     #[error("{0}")]
     Check(String),
-    #[error(transparent)]
-    Config(#[from] ConfigError),
     #[error("there is nothing to check: no meshes found in these folders; name others")]
     NoAssets,
     #[error("the output could not be written: {0}")]

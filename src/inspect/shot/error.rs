@@ -31,6 +31,8 @@ pub enum ShotError {
     Different { picture: String, reference: String, how: String, see: String },
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },
+    #[error("{path}: {reason}")]
+    Clash { path: String, reason: String },
     #[error(
         "{path}: the factors of patch {triangle} are not all equal, as subtriangulation needs them: choose another \
          --partitioning"
