@@ -14,6 +14,7 @@ use std::sync::LazyLock;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use geometry::choice::texts;
 use geometry::mesh::Shape;
 use geometry::names::every;
 use inspect::render::Standpoint;
@@ -191,27 +192,17 @@ pub enum Direction {
     Down,
 }
 
-/// A menu of the menu bar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Menu {
-    File,
-    Edit,
-    View,
-    Help,
+texts! {
+    /// A menu of the menu bar.
+    pub enum Menu, fn name {
+        File => "File",
+        Edit => "Edit",
+        View => "View",
+        Help => "Help",
+    }
 }
 
 impl Menu {
-    pub const ALL: [Self; 4] = [Self::File, Self::Edit, Self::View, Self::Help];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::File => "File",
-            Self::Edit => "Edit",
-            Self::View => "View",
-            Self::Help => "Help",
-        }
-    }
-
     /// The submenus of this menu, each with the number of its group.
     pub fn submenus(self) -> &'static [(u8, Submenu)] {
         match self {
@@ -222,24 +213,13 @@ impl Menu {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Submenu {
-    OpenRecent,
-    Shapes,
-    Bookmarks,
-    LookFrom,
-    FileCameras,
-}
-
-impl Submenu {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::OpenRecent => "Open recent",
-            Self::Shapes => "Shapes",
-            Self::Bookmarks => "Bookmarks",
-            Self::LookFrom => "Look from",
-            Self::FileCameras => "Cameras of the file",
-        }
+texts! {
+    pub enum Submenu, fn name {
+        OpenRecent => "Open recent",
+        Shapes => "Shapes",
+        Bookmarks => "Bookmarks",
+        LookFrom => "Look from",
+        FileCameras => "Cameras of the file",
     }
 }
 

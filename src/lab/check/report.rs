@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use geometry::choice::texts;
 use geometry::numbers::{counted, grouped};
 use inspect::gates::{GateKind, Judgement, Place};
 use inspect::settings::Choice;
@@ -75,23 +76,14 @@ pub struct GateResult {
 pub const GOLDEN: [&str; 2] = ["golden", "The view is the same as its golden picture."];
 pub(super) const OPENS: [&str; 2] = ["opens", "The asset can be opened and measured."];
 
-/// The result of an asset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    Passed,
-    /// A gate failed.
-    Failed,
-    /// It couldn't be checked.
-    Broken,
-}
-
-impl Status {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Broken => "broken",
-        }
+texts! {
+    /// The result of an asset.
+    pub enum Status, fn name {
+        Passed => "passed",
+        /// A gate failed.
+        Failed => "failed",
+        /// It couldn't be checked.
+        Broken => "broken",
     }
 }
 
@@ -150,10 +142,8 @@ impl Report {
     pub fn summary(&self) -> String {
         let number = |count: usize| grouped(count as u64);
         let all = counted(self.assets.len() as u64, "asset");
-        let [passed, failed, broken] =
-            [Status::Passed, Status::Failed, Status::Broken].map(|status| self.count(status));
-        let mut text =
-            format!("{all}: {} passed, {} failed, {} broken", number(passed), number(failed), number(broken));
+        let counts = Status::ALL.map(|status| format!("{} {}", number(self.count(status)), status.name()));
+        let mut text = format!("{all}: {}", counts.join(", "));
         let unchanged = self.assets.iter().filter(|asset| asset.unchanged).count();
         for (count, words) in
             [(unchanged, "unchanged and not measured again"), (self.left_out, "left out because of the interruption")]

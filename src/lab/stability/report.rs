@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::{Quantity, Row, Subject};
+use geometry::choice::texts;
 use load::markdown;
 
 /// The results of one method on one case: for each quantity, the worst number over devices and partitionings.
@@ -14,26 +15,20 @@ pub struct Line {
     pub verdict: Verdict,
 }
 
-/// The verdict on one method and case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
-    /// Everything measured holds.
-    Holds,
-    /// Something doesn't hold, but this program doesn't promise it: a published method fails there.
-    Fails,
-    /// Something doesn't hold that this program promises.
-    BreaksPromise,
+texts! {
+    /// The verdict on one method and case.
+    #[derive(PartialOrd, Ord)]
+    pub enum Verdict, fn text {
+        /// Everything measured holds.
+        Holds => "holds",
+        /// Something doesn't hold, but this program doesn't promise it: a published method fails there.
+        Fails => "fails",
+        /// Something doesn't hold that this program promises.
+        BreaksPromise => "BREAKS A PROMISE",
+    }
 }
 
 impl Verdict {
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::Fails => "fails",
-            Self::BreaksPromise => "BREAKS A PROMISE",
-        }
-    }
-
     fn new(row: &Row) -> Self {
         match (row.holds, row.promised) {
             (true, _) => Self::Holds,
