@@ -110,8 +110,7 @@ fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, comp
         .chunk_by(|a, b| a.patch == b.patch)
         .filter_map(|patch| patch.iter().map(|difference| difference.meaning).max())
         .collect();
-    let differ = if worst.len() == 1 { "differs" } else { "differ" };
-    Err(CliError::OtherIndices { path: name, different: worst.len(), patches, differ, meanings: counted(worst) })
+    Err(CliError::OtherIndices { path: name, different: worst.len(), patches, meanings: counted(worst) })
 }
 
 fn difference_text(loaded: &Loaded, difference: &IndexDifference, given: &[u32], computed: &[u32]) -> String {

@@ -179,8 +179,8 @@ pub enum CliError {
     NoPatch { file: String, triangle: u32 },
     #[error("{path}: {fault}")]
     Indices { path: String, fault: inspect::adjacency_file::IndicesFault },
-    #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
-    OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
+    #[error("{path}: {different} of {patches} patches {}: {meanings}", if *different == 1 { "differs" } else { "differ" })]
+    OtherIndices { path: String, different: usize, patches: usize, meanings: String },
     #[error(
         "{file}: --corners needs one height image over all triangles, which its materials don't have: name one with --height"
     )]
