@@ -251,18 +251,6 @@ impl Command {
         Self { action, name, text, keys: Vec::new(), place: None, needs: &[] }
     }
 
-    fn keys(self, keys: impl Into<Vec<KeyboardShortcut>>) -> Self {
-        Self { keys: keys.into(), ..self }
-    }
-
-    fn at(self, place: Place) -> Self {
-        Self { place: Some(place), ..self }
-    }
-
-    fn needs(self, needs: &'static [Need]) -> Self {
-        Self { needs, ..self }
-    }
-
     /// Why it is not possible now, in a sentence; none if it is.
     pub fn why_not(&self, now: &Availability) -> Option<&'static str> {
         now.why_not(self.needs)
@@ -330,9 +318,7 @@ fn with_symbols(name: String) -> String {
 }
 
 pub fn all(now: &Availability) -> Vec<Command> {
-    let mut all = fixed::commands();
-    all.extend(generated::commands(now));
-    all
+    [fixed::commands(), generated::commands(now)].into_iter().flatten().collect()
 }
 
 /// The shortcut that closes the window, for a screen that has no other command.
