@@ -420,7 +420,7 @@ fn exact_reach(ours: &OurTessellation, patch: u32, exact: f64) -> f64 {
 
 /// The largest number of segments into which we cut a side, or the inside, of a patch.
 fn segments_of(our_mesh: &OurMesh, patch: u32) -> f64 {
-    let factors = our_mesh.factors(patch);
+    let factors = our_mesh.tessellated.patch_factors[patch as usize];
     let outside = factors.outside.into_iter().map(segments).max().unwrap_or(1);
     f64::from(outside.max((factors.inside & FACTOR_VALUE).div_ceil(1 << 16)).max(1))
 }
