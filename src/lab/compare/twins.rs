@@ -62,7 +62,8 @@ impl<'a> Twins<'a> {
         let (_, points) = weld_alike(own.len() + positions.len(), |i| (at(i), 0), tolerance);
         let (our_points, their_points) = points.split_at(own.len());
         let of = |triangle: &[u32; 3], points: &[u32]| triangle.map(|vertex| points[vertex as usize]);
-        let our_triangles = Triangle::sorted(ours.tessellated.triangles.iter().map(|triangle| of(triangle, our_points)));
+        let our_triangles =
+            Triangle::sorted(ours.tessellated.triangles.iter().map(|triangle| of(triangle, our_points)));
         let their_triangles = Triangle::sorted(theirs.triangles.iter().map(|triangle| of(triangle, their_points)));
         let mut corners = vec![None; theirs.triangles.len()];
         let mut our_groups = our_triangles.chunk_by(|a, b| a.points == b.points).peekable();
