@@ -26,7 +26,7 @@ use load::format::known_extensions;
 use load::import::Subdivide;
 use load::{HeightSource, ShownParts, Source};
 
-pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
+pub(crate) use cameras::{CamerasOption, NamedView, check_view_name, said};
 use declared::GivenTessellation;
 pub(crate) use declared::{
     Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,

@@ -7,7 +7,7 @@ use clap::{Arg, ArgAction, Command, CommandFactory, Parser};
 
 use super::Args;
 use super::golden::Golden;
-use crate::cli::options::check_view_name;
+use crate::cli::options::{check_view_name, said};
 use crate::cli::shot_options::ShotOptions;
 use crate::cli::{CliError, note, refuse};
 use geometry::names::{on_one_line, shown, shown_path};
@@ -258,12 +258,4 @@ fn clash(config: &Config, error: CliError) -> CliError {
         CliError::Usage(reason) => config.clash(reason).into(),
         other => other,
     }
-}
-
-/// What an error of the command line says, in one line.
-fn said(error: &clap::Error) -> String {
-    let text = error.to_string();
-    let lines = text.lines().take_while(|line| !line.trim().is_empty());
-    let line = lines.map(str::trim).collect::<Vec<_>>().join(" ");
-    line.strip_prefix("error: ").unwrap_or(&line).to_owned()
 }

@@ -115,14 +115,17 @@ fn read(path: &Path) -> Result<Vec<NamedView>, CliError> {
 
 /// Reads a camera from its words: its name and then its options.
 fn parse_words(words: Vec<String>) -> Result<NamedView, String> {
-    // A parser's first line says what is wrong, and the others how the command line is used.
-    let said = |error: clap::Error| {
-        let text = error.to_string();
-        on_one_line(text.lines().next().unwrap_or_default().trim_start_matches("error: "))
-    };
-    let own = NamedView::try_parse_from(words).map_err(said)?;
+    let own = NamedView::try_parse_from(words).map_err(|error| said(&error))?;
     check_view_name(&own.name)?;
     Ok(own)
+}
+
+/// What an error of the command line says, in one line, without how the command line is used.
+pub(crate) fn said(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let lines = text.lines().take_while(|line| !line.trim().is_empty());
+    let line = lines.map(str::trim).collect::<Vec<_>>().join(" ");
+    on_one_line(line.strip_prefix("error: ").unwrap_or(&line))
 }
 
 /// Refuses the name of a view that its files can't have.
