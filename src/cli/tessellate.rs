@@ -32,7 +32,7 @@ pub struct Args {
     #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// Mesh to write, a .glb or .obj file. With --cameras, a name with {} where each view's name goes
-    #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::model())]
+    #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::ending_in(&["glb", "obj"], "meshes are written as .glb or .obj files: name it one of these"))]
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,
