@@ -23,7 +23,7 @@ use inspect::gates::{Facts, GateKind, Judgement, judge};
 use inspect::measure::{
     CrossingMeasurement, EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor,
 };
-use inspect::render::{Camera, Scene};
+use inspect::render::Camera;
 use inspect::shot::{Shot, ShotError, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;
 
@@ -144,19 +144,20 @@ impl Ready<'_> {
         given: Option<Given>,
         surface_shader: Option<Arc<SurfaceShader>>,
     ) -> Result<Vec<String>, CliError> {
-        let mut scene = engine.scene(&self.mesh.loaded, self.args.surface.arena_bytes())?;
+        let Args { gates, surface, file, .. } = self.args;
+        let mut scene = engine.scene(&self.mesh.loaded, surface.arena_bytes())?;
         let mut subject = Subject {
             moment: self.mesh.moment,
             given,
             surface_shader,
-            arena_bytes: self.args.surface.arena_bytes(),
-            ..Subject::new(self.mesh.loaded.clone(), self.args.surface.settings())
+            arena_bytes: surface.arena_bytes(),
+            ..Subject::new(self.mesh.loaded.clone(), surface.settings())
         };
         subject.apply_to_scene(&engine, &mut scene)?;
         let mut failed = Vec::new();
         for (index, (view, camera)) in views.iter().enumerate() {
             let lod_view = self.mesh.lod_view(camera);
-            let settings = self.args.surface.within_budget_on(&engine, &mut scene, lod_view)?;
+            let settings = surface.within_budget_on(&engine, &mut scene, lod_view)?;
             engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
             if index == 0 {
                 report_user_surface(&engine, &scene)?;
@@ -165,28 +166,17 @@ impl Ready<'_> {
             let (vertices, triangles) = scene.tessellator.totals();
             self.check(view, vertices, triangles)?;
             self.write(view, &engine.read_tessellated(&mut scene)?)?;
-            if !self.args.gates.gates.fail_on.is_empty() {
-                let mut shot = self.shot(engine.clone(), scene, Subject { settings, ..subject }, *camera)?;
-                failed.extend(self.judged_on_gpu(&mut shot, view)?);
+            if !gates.gates.fail_on.is_empty() {
+                let size = surface.size;
+                let seen = ShotView { camera: *camera, lod_camera: None, size, transparent: false, legend: false };
+                let mut shot = Shot::new(engine.clone(), scene, Subject { settings, ..subject }, seen)?;
+                let judged = shot.judge(&gates.gates.fail_on, surface.tessellation().tolerance, &Progress::new())?;
+                gates.write_evidence(&mut shot, &judged, &view.file)?;
+                failed.extend(failures(&view.name_of(file), &judged));
                 (scene, subject) = shot.into_parts();
             }
         }
         Ok(failed)
-    }
-
-    /// What gates judge, seen from `camera`.
-    fn shot(&self, engine: Engine, scene: Scene, subject: Subject, camera: Camera) -> Result<Shot, CliError> {
-        let size = self.args.surface.size;
-        let view = ShotView { camera, lod_camera: None, size, transparent: false, legend: false };
-        Ok(Shot::new(engine, scene, subject, view)?)
-    }
-
-    /// Judges what the device emitted for a view by the gates, and draws what they found. Returns a sentence for each that failed.
-    fn judged_on_gpu(&self, shot: &mut Shot, view: &View) -> Result<Vec<String>, CliError> {
-        let Args { gates, surface, file, .. } = self.args;
-        let judged = shot.judge(&gates.gates.fail_on, surface.tessellation().tolerance, &Progress::new())?;
-        gates.write_evidence(shot, &judged, &view.file)?;
-        Ok(failures(&view.name_of(file), &judged))
     }
 
     /// Judges what the CPU emitted by the gates.
