@@ -230,27 +230,22 @@ pub fn run(command: Command) -> ExitCode {
         Command::Info(args) => info::run(&args),
         Command::Adapters(args) => adapters::run(&args),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(CliError::Output(error) | CliError::Shot(ShotError::Output(error)))
+    let Err(error) = result else { return ExitCode::SUCCESS };
+    let code = match &error {
+        CliError::Output(error) | CliError::Shot(ShotError::Output(error))
             if error.kind() == std::io::ErrorKind::BrokenPipe =>
         {
-            ExitCode::SUCCESS
+            return ExitCode::SUCCESS;
         }
-        Err(error @ (CliError::Usage(_) | CliError::Shaders(ShaderError::Unexportable { .. }))) => {
-            fail(&error);
-            ExitCode::from(2)
-        }
-        Err(error @ CliError::Interrupted { .. }) => {
-            fail(&error);
-            ExitCode::from(INTERRUPTED)
-        }
-        Err(CliError::Gates(sentences)) => {
-            sentences.iter().for_each(|sentence| note(sentence));
-            ExitCode::FAILURE
-        }
-        Err(error) => fail(&error),
+        CliError::Usage(_) | CliError::Shaders(ShaderError::Unexportable { .. }) => 2,
+        CliError::Interrupted { .. } => INTERRUPTED,
+        _ => 1,
+    };
+    match &error {
+        CliError::Gates(sentences) => sentences.iter().for_each(|sentence| note(sentence)),
+        error => note(&error.to_string()),
     }
+    ExitCode::from(code)
 }
 
 /// Prints an error on standard error, and returns the exit code of a failure.
