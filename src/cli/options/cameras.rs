@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Parser};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::{CameraOption, ViewOptions};
 use crate::cli::{CliError, file_error, read_text, refuse};
@@ -169,15 +169,13 @@ fn words(line: &str) -> Result<Vec<String>, String> {
 
 /// Reads an array of objects, whose fields are `name` and camera options with underscores in place of hyphens.
 fn parse_json(text: &str) -> Result<Vec<NamedView>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|error| format!("it is no JSON: {error}"))?;
-    let Value::Array(cameras) = value else { return Err("its JSON is no array of cameras".to_owned()) };
-    let read =
-        |(index, camera): (usize, &Value)| parse_object(camera).map_err(|reason| format!("camera {index}: {reason}"));
+    let cameras: Vec<Map<_, _>> =
+        serde_json::from_str(text).map_err(|error| format!("it is no JSON, or no array of objects: {error}"))?;
+    let read = |(index, camera)| parse_object(camera).map_err(|reason| format!("camera {index}: {reason}"));
     cameras.iter().enumerate().map(read).collect()
 }
 
-fn parse_object(camera: &Value) -> Result<NamedView, String> {
-    let Value::Object(fields) = camera else { return Err("it is no object".to_owned()) };
+fn parse_object(fields: &Map<String, Value>) -> Result<NamedView, String> {
     let Some(Value::String(name)) = fields.get("name") else { return Err("it has no name, a string".to_owned()) };
     let mut words = Vec::new();
     for (field, value) in fields.iter().filter(|(field, _)| *field != "name") {
