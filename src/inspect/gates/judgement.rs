@@ -4,7 +4,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::mesh_defects::Defects;
-use super::place::{EdgeSpot, Place, Spot};
+use super::place::{EdgeSpot, PatchSpot, Place, Spot};
 use super::{Gate, GateKind, Limit};
 use crate::measure::{CrackedEdge, CrossedPatches, EdgeSide, Measured, PatchesAbove, Pop, WorstPoint};
 use crate::render::{Leak, Leaks};
@@ -377,7 +377,7 @@ fn on_patch(facts: &Facts, words: &str, patch: u32, at: Vec3) -> Place {
 /// The same for a triangle of the mesh, which has these corners.
 fn on_triangle(words: &str, triangle: u32, corners: [Vec3; 3], at: Vec3) -> Place {
     let text = format!("{words} triangle {triangle} at {}", position(at));
-    Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) }
+    Place { text, triangles: vec![triangle], spot: Spot::Patch(PatchSpot::new(corners, at)) }
 }
 
 fn worst_fold(facts: &Facts) -> Option<Place> {
@@ -433,7 +433,7 @@ fn worst_crossing(facts: &Facts) -> Option<Place> {
     let corners = facts.topology.patch_positions(patches[0]);
     let [a, b] = triangles;
     let text = format!("most triangles cross between those of triangles {a} and {b} at {}", position(at));
-    Some(Place { text, triangles: triangles.to_vec(), spot: Spot::patch(corners, at) })
+    Some(Place { text, triangles: triangles.to_vec(), spot: Spot::Patch(PatchSpot::new(corners, at)) })
 }
 
 fn worst_pop(facts: &Facts) -> Option<Place> {
