@@ -4,7 +4,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::corner_orders::CornerOrder;
-use super::explanations::{Explanation, InsideRule, Rule};
+use super::explanations::{Explanation, Rule};
 use super::matching::Farthest;
 use super::net_mistakes::NetMistake;
 use super::spaces::{Alignment, Space, SpaceKind};
@@ -341,16 +341,12 @@ fn explanation_text(explanation: Explanation, ours: Partitioning, convention: Co
     let Explanation { partitioning, rule } = explanation;
     let cut = (partitioning != ours)
         .then(|| format!("Its partitioning is {}, and ours is {}", partitioning.name(), ours.name()));
-    let of_edges = |which: &str| format!("Its inside factors are the {which} of the edges' factors");
     let rule = match rule {
         Rule::Same => None,
         Rule::Sides(sides) => Some(order_text(rule, sides, convention)),
         Rule::Down => Some("Its factors are rounded down to whole numbers".to_owned()),
         Rule::Nearest => Some("Its factors are rounded to the nearest whole numbers".to_owned()),
-        Rule::Inside(InsideRule::Least) => Some(of_edges("least")),
-        Rule::Inside(InsideRule::Mean) => Some(of_edges("mean")),
-        Rule::Inside(InsideRule::Largest) => Some(of_edges("largest")),
-        Rule::Inside(InsideRule::One) => Some("Its inside factors are 1".to_owned()),
+        Rule::Inside(rule) => Some(format!("Its inside factors are {}", rule.text())),
         Rule::Times(times) => Some(format!("Its factors are {times} times ours")),
         Rule::AtMost(most) => Some(format!("Its factors are limited to {most}")),
         Rule::All(all) => Some(format!("All its factors are {all}")),
