@@ -100,7 +100,7 @@ fn number(x: f64) -> String {
 }
 
 /// What the columns mean.
-pub const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
+pub const LEGEND: &str = "Points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
      sides got different factors; normals: edge points whose normals differ although the mesh's normals agree; not finite: \
      vertices with infinite or NaN coordinates; leaks: pixels that show the inside of a closed mesh (- where they can't be counted). Each \
      number is the worst over factors, views, partitionings and devices.";
@@ -143,7 +143,7 @@ pub fn page(sections: &[(&Subject, Option<String>)], rows: &[Row]) -> String {
          violet, T-junctions yellow.\n\n{}\n",
         devices.join(", "),
         super::Method::all().into_iter().map(super::Method::name).collect::<Vec<_>>().join(", "),
-        capitalised(LEGEND)
+        LEGEND
     );
     let lines = lines(rows);
     for (Subject { name, about, .. }, picture) in sections {
@@ -166,11 +166,6 @@ pub fn page(sections: &[(&Subject, Option<String>)], rows: &[Row]) -> String {
         text.push('\n');
     }
     text
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]
