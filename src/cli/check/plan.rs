@@ -51,7 +51,7 @@ pub(super) type Named = (&'static str, String);
 impl Job {
     pub(super) fn inputs(&self) -> Inputs<'_> {
         let path = if let Source::File(path) = &self.source { path } else { Path::new(&self.name) };
-        Inputs { path, configuration: &self.configuration }
+        (path, &self.configuration)
     }
 }
 
