@@ -94,7 +94,8 @@ pub struct Availability {
 
 impl Availability {
     /// A state in which every command is possible.
-    pub fn everything() -> Self {
+    #[cfg(test)]
+    pub(super) fn everything() -> Self {
         Self {
             has: Need::ALL.into(),
             bookmarks: 1,
