@@ -27,12 +27,16 @@ use inspect::render::Camera;
 use inspect::shot::{Shot, ShotError, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;
 
+/// The endings of meshes, and what is said of an output with another one.
+const ENDINGS: &[&str] = &["glb", "obj"];
+const WANTED: &str = "meshes are written as .glb or .obj files: name it one of these";
+
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// Mesh to write, a .glb or .obj file. With --cameras, a name with {} where each view's name goes
-    #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::ending_in(&["glb", "obj"], "meshes are written as .glb or .obj files: name it one of these"))]
+    #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::ending_in(ENDINGS, WANTED))]
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,
@@ -67,7 +71,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 /// Like [`run`], with an engine that is made once the arguments have been checked.
 pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
-    let files = ViewFiles::new(&args.output, &["glb", "obj"], &args.cameras);
+    let files = ViewFiles::new(&args.output, ENDINGS, &args.cameras);
     let several = "--cameras writes several meshes: put {} into the name of -o where the views' names go";
     let views = files.views(&args.cameras, &args.surface, several)?;
     let written = files.checked(&views);

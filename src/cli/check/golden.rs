@@ -41,8 +41,8 @@ impl Golden {
         if self.is_written { None } else { views.map(there).collect() }
     }
 
-    /// Compares a view that this adapter has drawn with its golden picture, or writes that. Returns the result, and a picture of how
-    /// they differ.
+    /// Compares a view that this adapter has drawn with its golden picture, or writes that. Returns the result, and a picture
+    /// of how they differ.
     pub(super) fn compare(
         &self,
         view: &str,

@@ -17,8 +17,8 @@ const MOST_LISTED: usize = 10_000;
 #[derive(Clone, Debug)]
 pub struct Cache(PathBuf);
 
-/// What an asset's result depends on besides the contents of files: its path, and everything of the configuration that holds for it,
-/// as text.
+/// What an asset's result depends on besides the contents of files: its path, and everything of the configuration that holds
+/// for it, as text.
 pub type Inputs<'a> = (&'a Path, &'a str);
 
 /// A file of the cache.
