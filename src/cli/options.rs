@@ -26,14 +26,14 @@ use load::format::known_extensions;
 use load::import::Subdivide;
 use load::{HeightSource, ShownParts, Source};
 
-pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
+pub(crate) use cameras::{CamerasOption, NamedView, check_view_name, said};
 use declared::GivenTessellation;
 pub(crate) use declared::{
     Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,
 };
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
-    CameraOption, ending_in, heights, model, picture, picture_or_page, seconds, size, source, whole, whole_from, within,
+    CameraOption, ending_in, heights, picture, picture_or_page, seconds, size, source, whole, whole_from, within,
 };
 pub(crate) use view::{LodCameraOption, MeshAt, ViewOptions};
 

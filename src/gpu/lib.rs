@@ -51,7 +51,7 @@ pub(crate) use mesh_buffers::MeshBuffers;
 pub use mesh_buffers::{CURVE_SURFACE_STEP, DETAIL_STEP, SEARCH_COUNTERS, TEXTURED};
 pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
 pub use readback::{Readback, read_buffer, read_buffers, read_texture};
-pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, submit_untimed, take_times};
+pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, ms_of, submit_untimed, take_times};
 pub use tessellator::{ChunkBuffers, Tessellator};
 pub use user_functions::{UserPipelines, UserReport, UserShader};
 pub use user_lod::{Given, LodShader};

@@ -11,7 +11,7 @@ use crate::app::text::{grouped, short, shortened};
 use crate::app::widgets::{fact, marked, number};
 use geometry::tessellate::Inputs;
 use geometry::view::project;
-use inspect::gates::Spot;
+use inspect::gates::{PatchSpot, Spot};
 use inspect::measure::{DeviationTarget, MOST_TRIANGLES};
 use inspect::render::layout::WORST_COLOR;
 use inspect::render::{Distances, LineSegment, Scale, deviation_scale, worst_lines};
@@ -247,6 +247,6 @@ impl App {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };
         let corners = document.patch_positions(half, worst.patch);
-        self.show_place(half, &Spot::patch(corners, worst.emitted.as_vec3()), None);
+        self.show_place(half, &Spot::Patch(PatchSpot::new(corners, worst.emitted.as_vec3())), None);
     }
 }
