@@ -15,12 +15,12 @@ use super::memory_budget::Budget;
 use super::uri::Files;
 use super::warnings::untextured_warning;
 use geometry::mesh::build_limits::{MemoryRefused, borrowing};
-use geometry::mesh::heights::{HeightMap, Heights, MAX_MAPS, bytes_beside_maps};
-use geometry::mesh::{HeightAmount, Material, Mesh};
+use geometry::mesh::heights::{HeightMap, Heights, MAX_MAPS, MOST_BYTES, bytes_beside_maps, bytes_of_maps};
+use geometry::mesh::{HeightAmount, Material, Mesh, Wrap};
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
-use reading::{map_of_bytes, map_of_px, read_map};
+use reading::{ImageFile, map_of_px, read_map};
 
 /// Why heights could not be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -38,8 +38,8 @@ pub enum HeightError {
     )]
     NoImage { name: String, why: String },
     /// The materials have more different images than can be used.
-    #[error("{name} has {count} images to displace by, but at most {MAX_MAPS} can be used; name one height image")]
-    TooMany { name: String, count: usize },
+    #[error("{name} has more than {MAX_MAPS} images to displace by, the most that are used; name one height image")]
+    TooMany { name: String },
     /// The materials' images would take too much memory together.
     #[error("the heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
     TooMuchOfMaterials { name: String, count: usize, reason: String },
@@ -74,14 +74,14 @@ pub enum HeightSource {
 
 impl HeightSource {
     /// Loads heights for a mesh, within the memory that a load may take. Sets `progress` from 0 to 1. `warnings` are
-    /// those of loading the mesh: if it has no image because a texture was left out, the error says why.
+    /// those of loading the mesh: if it has no image because a texture was left out, the error says why. What is scaled down is added.
     ///
     /// # Errors
     /// [`HeightError`].
     pub fn load(
         &self,
         mesh: &Mesh,
-        warnings: &[String],
+        warnings: &mut Vec<String>,
         budget: &Budget,
         progress: &Progress,
     ) -> Result<Heights, HeightError> {
@@ -93,14 +93,13 @@ impl HeightSource {
             Self::Model | Self::Each(_) => of_model(self.images(), mesh, budget, &images)?,
         };
         let are_of_colors = own.iter().all(Option::is_none);
-        let own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
-        let too_much = |refused| too_much(mesh, own.iter().flatten().count(), refused);
+        let mut own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
+        let count = own.iter().flatten().count();
+        let too_much = |refused| too_much(mesh, count, refused);
+        warnings.extend(fit(mesh, &mut own, MOST_BYTES, budget).map_err(too_much)?);
         budget.hold(bytes_beside_maps(mesh)).map_err(too_much)?;
         let heights = Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))?;
-        let count = heights.maps.len();
-        if count > MAX_MAPS {
-            return Err(HeightError::TooMany { name: mesh.name.clone(), count });
-        }
+        let heights = heights.ok_or_else(|| HeightError::TooMany { name: mesh.name.clone() })?;
         progress.set(1.0);
         Ok(Heights { are_of_colors, ..heights })
     }
@@ -172,13 +171,18 @@ fn of_model(
 ) -> Result<Vec<Option<HeightMap>>, HeightError> {
     let mut own: Vec<_> = mesh.materials.iter().map(|material| material.height.clone()).collect();
     let part = |index: usize| index as f32 / images.len() as f32;
+    let mut known: HashMap<&Path, HeightMap> = HashMap::new();
     for (index, NamedImage { material, path, amount }) in images.iter().enumerate() {
         if mesh.materials.iter().all(|known| known.name != *material) {
             let known: Vec<_> = mesh.materials.iter().map(|known| format!("\"{}\"", shown(&known.name))).collect();
             let (name, known) = (mesh.name.clone(), known.join(", "));
             return Err(HeightError::NoMaterial { name, material: shown(material), known });
         }
-        let map = read_map(path, budget, &progress.part(part(index), part(index + 1)))?.with_amount(*amount);
+        let map = match known.get(&**path) {
+            Some(map) => map.with_amount(*amount),
+            None => read_map(path, budget, &progress.part(part(index), part(index + 1)))?.with_amount(*amount),
+        };
+        known.insert(path, map.clone());
         let users = mesh.materials.iter().zip(&mut own).filter(|(known, _)| known.name == *material);
         users.for_each(|(_, own)| *own = Some(map.clone()));
     }
@@ -200,8 +204,9 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         Self { files, known: HashMap::new(), reserved: 0, warnings: Vec::new() }
     }
 
-    /// Returns an image of a material. One that can't be read causes a warning, which names the first material that has it, and so does
-    /// one that is elsewhere than the texture coordinates that corners have themselves.
+    /// Returns an image of a material, which moves the surface by an amount and goes on so beyond its border. One that can't be read causes
+    /// a warning, which names the first material that has it, and so does one that is elsewhere than the texture coordinates that corners
+    /// have themselves.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -209,13 +214,15 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         &mut self,
         key: K,
         [image, material]: [&str; 2],
+        (amount, wrap): (Option<HeightAmount>, [Wrap; 2]),
         is_elsewhere: bool,
         bytes: impl FnOnce() -> Result<Cow<'b, [u8]>, String>,
     ) -> Result<Option<HeightMap>, Cancelled> {
         let Files { budget, progress, .. } = self.files;
         let decode = || {
             let bytes = bytes().map_err(|reason| HeightError::Image { path: image.into(), reason })?;
-            map_of_bytes(Path::new(image), &bytes, self.reserved, budget, &progress.quiet())
+            let (path, progress) = (Path::new(image), &progress.quiet());
+            ImageFile { path, reserved: self.reserved, budget, progress }.decode(&bytes)
         };
         let map = match self.known.get(&key) {
             Some(known) => known.clone(),
@@ -228,17 +235,36 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
                 Ok(map) => Some(map),
             },
         };
-        if is_elsewhere {
-            let said = "lies elsewhere than its base colour, whose texture coordinates are used";
-            self.warnings.push(format!("the height image of material \"{material}\" {said}."));
+        let said = "lies elsewhere than its base colour, whose texture coordinates are used";
+        let said = format!("the height image of material \"{material}\" {said}.");
+        if is_elsewhere && !self.warnings.contains(&said) {
+            self.warnings.push(said);
         }
         self.known.insert(key, map.clone());
-        Ok(map)
+        Ok(map.map(|map| map.with_wrap(wrap).with_amount(amount)))
     }
 }
 
 fn too_much(mesh: &Mesh, count: usize, refused: MemoryRefused) -> HeightError {
     HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason: refused.to_string() }
+}
+
+/// Halves the largest images until all fit so many bytes. Returns a sentence about each, and about each material that has it.
+fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], most: u64, budget: &Budget) -> Result<Vec<String>, MemoryRefused> {
+    let mut said = Vec::new();
+    while bytes_of_maps(own.iter().flatten()) > most {
+        let largest = own.iter().flatten().max_by_key(|map| map.heights.len());
+        let Some((heights, half)) = largest.and_then(|map| Some((map.heights.clone(), map.halved()?))) else { break };
+        budget.hold(bytes_of_maps(std::iter::once(&half)))?;
+        for (material, map) in mesh.materials.iter().zip(&mut *own) {
+            let Some(map) = map.as_mut().filter(|map| Arc::ptr_eq(&map.heights, &heights)) else { continue };
+            *map = half.with_amount(map.amount).with_wrap(map.wrap);
+            let ([width, height], name) = (half.size, shown(&material.name));
+            let scaled = format!("is scaled down to {width} x {height} px: all together don't fit one texture");
+            said.push(format!("the height image of material \"{name}\" {scaled}."));
+        }
+    }
+    Ok(said)
 }
 
 /// The brightness of every material's base colour image. Materials that share an image share its pixels.
@@ -256,6 +282,9 @@ fn of_colors(
         let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
     }
+    if count > MAX_MAPS {
+        return Err(HeightError::TooMany { name: mesh.name.clone() });
+    }
     let kept = textures.values().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
     budget.hold(kept).map_err(|refused| too_much(mesh, count, refused))?;
     let mut maps = HashMap::new();
@@ -263,7 +292,8 @@ fn of_colors(
         let progress = progress.part(index as f32 / count as f32, (index + 1) as f32 / count as f32);
         maps.insert(key, map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)?);
     }
-    Ok(mesh.materials.iter().map(|material| maps.get(&of(material)?.0).cloned()).collect())
+    let own = |material: &Material| Some(maps.get(&of(material)?.0)?.with_wrap(material.sampling.wrap));
+    Ok(mesh.materials.iter().map(own).collect())
 }
 
 #[cfg(test)]
@@ -275,7 +305,8 @@ mod tests {
     #[test]
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
-        let of_colors = |mesh: &Mesh| HeightSource::Materials.load(mesh, &[], &Budget::unlimited(), &Progress::new());
+        let of_colors =
+            |mesh: &Mesh| HeightSource::Materials.load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new());
         assert!(matches!(of_colors(&mesh), Err(HeightError::NoImage { .. })));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = geometry::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
@@ -297,7 +328,9 @@ mod tests {
         mesh.materials = vec![named("wall", Some(map.clone())), named("roof", None), named("door", None)];
         let of = |images: &[NamedImage], mesh: &Mesh| {
             let source = HeightSource::Each(images.to_vec());
-            source.load(mesh, &[], &Budget::unlimited(), &Progress::new()).map_err(|error| error.to_string())
+            source
+                .load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new())
+                .map_err(|error| error.to_string())
         };
         let heights = of(&[], &mesh).expect("an image");
         assert_eq!((heights.maps[0].amount, &heights.of_material[..]), (map.amount, &[Some(0), None, None][..]));
@@ -334,7 +367,7 @@ mod tests {
     fn a_file_that_is_not_an_image_is_refused() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
         let source = HeightSource::File(path.to_owned());
-        let error = source.load(&Mesh::default(), &[], &Budget::unlimited(), &Progress::new());
+        let error = source.load(&Mesh::default(), &mut Vec::new(), &Budget::unlimited(), &Progress::new());
         let error = error.expect_err("no image").to_string();
         assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
     }

@@ -102,7 +102,7 @@ impl TextureRoom {
         }
         let reason = self.refused(host, device);
         let largest =
-            |(index, size): (usize, &[u32; 2])| (pixels(level_size(*size, too_wide[index])), usize::MAX - index);
+            |(index, size): (usize, &[u32; 2])| (decoded_bytes(level_size(*size, too_wide[index])), usize::MAX - index);
         let mut largest: BinaryHeap<_> = sizes.iter().enumerate().map(largest).collect();
         while host > self.host || device > self.device {
             let Some((_, inverse)) = largest.pop() else { break };
@@ -115,7 +115,7 @@ impl TextureRoom {
             halvings[index] += 1;
             host = host - decoded_bytes(before) + decoded_bytes(after);
             device = device - device_bytes(before) + device_bytes(after);
-            largest.push((pixels(after), inverse));
+            largest.push((decoded_bytes(after), inverse));
         }
         let scaling = |(halvings, too_wide): (u32, u32)| match (halvings, &reason) {
             (0, _) => Scaling::default(),
@@ -141,10 +141,6 @@ impl TextureRoom {
 fn within_most_side(size: [u32; 2]) -> u32 {
     let fits = |halvings: &u32| level_size(size, *halvings).iter().all(|side| *side <= MOST_SIDE);
     (0..u32::BITS).find(fits).unwrap_or(0)
-}
-
-fn pixels([width, height]: [u32; 2]) -> u64 {
-    u64::from(width) * u64::from(height)
 }
 
 /// The size of a texture with all its mip levels, in bytes.

@@ -346,7 +346,7 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
     };
     mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
     mesh.heights = Some(Arc::new(
-        HeightSource::Materials.load(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("images"),
+        HeightSource::Materials.load(&mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new()).expect("images"),
     ));
     on_device(Shape::Torus, mesh)
 }

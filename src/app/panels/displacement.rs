@@ -17,7 +17,7 @@ use load::{HeightSource, Source};
 /// Whether a path names an image rather than a mesh.
 fn is_image(path: &Path) -> bool {
     let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg" | "webp" | "tif" | "tiff"))
+    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg" | "webp" | "tga" | "bmp" | "ktx2" | "tif" | "tiff"))
 }
 
 impl App {

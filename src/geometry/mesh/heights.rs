@@ -11,12 +11,19 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::Mesh;
+use super::{Mesh, Wrap};
 use crate::casts::{to_f32, to_u32};
 use crate::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
 pub const MAX_KEPT: u32 = 4096;
+
+/// Width and height in texels of the texture that holds all maps of a mesh, at most: every adapter has textures of that size (WebGPU,
+/// default limits).
+pub const HEIGHTS_ACROSS: u32 = 8192;
+
+/// The greatest size of a mesh's maps together, in bytes: that of this texture.
+pub const MOST_BYTES: u64 = 4 * (HEIGHTS_ACROSS as u64).pow(2);
 
 /// The greatest number of maps of a mesh, for which the shaders have room.
 pub const MAX_MAPS: usize = 256;
@@ -40,9 +47,12 @@ impl HeightAmount {
     }
 
     /// The amount by which a height that is multiplied by `factor` and then has `offset` added moves the surface, both in object
-    /// units; none if the height makes no difference, and as for [`Self::new`].
+    /// units; none as for [`Self::new`].
     pub fn from_factor(factor: f32, offset: f32) -> Option<Self> {
-        Self::new(factor, -offset / factor)
+        // So far below the midlevel all heights of an image are the same number in f32, and an offset alone stays what it is.
+        let least = 2.0 * offset.abs() / MOST_AMOUNT;
+        let scale = if factor.abs() < least { least } else { factor };
+        Self::new(scale, if scale == 0.0 { 0.0 } else { -offset / scale })
     }
 }
 
@@ -55,12 +65,12 @@ pub struct HeightMap {
     pub size: [u32; 2],
     /// The number of levels.
     pub levels: u32,
-    /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
-    /// continue.
-    pub repeats: bool,
+    /// What is beyond the image along u and v. It matters only if some texture coordinate lies outside 0 to 1: otherwise the pixels
+    /// at the border of the maps of [`Heights`] continue.
+    pub wrap: [Wrap; 2],
     /// How far it moves the surface; none if the settings say so.
     pub amount: Option<HeightAmount>,
-    /// The least and the greatest height.
+    /// The least and the greatest height, or beyond them.
     pub range: [f32; 2],
     /// The pixels of all levels, one level after another, each row by row from the top. Maps that differ in the rest share them.
     pub heights: Arc<Vec<f32>>,
@@ -93,13 +103,19 @@ impl HeightMap {
     pub fn with_amount(&self, amount: Option<HeightAmount>) -> Self {
         Self { amount, ..self.clone() }
     }
+
+    /// Returns the same image that goes on so beyond its border.
+    pub fn with_wrap(&self, wrap: [Wrap; 2]) -> Self {
+        Self { wrap, ..self.clone() }
+    }
 }
 
 impl Heights {
     /// Uses one map for all materials of a mesh.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
         // The only possible error is cancellation, and no other code has this handle.
-        Self::of_materials(mesh, &vec![Some(map); mesh.materials.len()], &Progress::new()).expect("not cancelled")
+        let made = Self::of_materials(mesh, &vec![Some(map); mesh.materials.len()], &Progress::new());
+        made.expect("not cancelled").expect("one map")
     }
 
     /// Uses a map made in code, of `side` px a side, with so many waves across and down. It can be repeated without a seam.
@@ -111,30 +127,40 @@ impl Heights {
         Self::everywhere(mesh, HeightMap::new([side; 2], (0..side * side).map(height).collect()))
     }
 
-    /// Uses a map for each material that has one. Materials whose maps are equal share one.
+    /// Uses a map for each material that has one. Materials whose maps are equal share one. None if there are more than [`MAX_MAPS`].
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
-    pub fn of_materials(mesh: &Mesh, own: &[Option<HeightMap>], progress: &Progress) -> Result<Self, Cancelled> {
-        let (mut maps, mut of_material): (Vec<HeightMap>, _) = (Vec::new(), Vec::new());
+    pub fn of_materials(
+        mesh: &Mesh,
+        own: &[Option<HeightMap>],
+        progress: &Progress,
+    ) -> Result<Option<Self>, Cancelled> {
+        let (mut maps, mut of_material, mut known) = (Vec::new(), Vec::new(), HashMap::new());
         for (material, own) in mesh.materials.iter().zip(own) {
+            progress.check()?;
             let Some(own) = own else {
                 of_material.push(None);
                 continue;
             };
-            let is_same = |map: &HeightMap| Arc::ptr_eq(&map.heights, &own.heights) && map.amount == own.amount;
-            let index = maps.iter().position(is_same).unwrap_or(maps.len());
+            let amount = own.amount.map(|own| [own.scale, own.midlevel].map(f32::to_bits));
+            let index = *known.entry((Arc::as_ptr(&own.heights), amount, own.wrap)).or_insert(maps.len());
+            if index == MAX_MAPS {
+                return Ok(None);
+            }
             if index == maps.len() {
-                maps.push(own.clone());
+                maps.push(HeightMap { wrap: [Wrap::Clamp; 2], ..own.clone() });
             }
             of_material.push(Some(to_u32(index)));
             let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
             let mut uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
-            maps[index].repeats |= uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any());
+            if uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any()) {
+                maps[index].wrap = own.wrap;
+            }
         }
         let reliefs = relief::reliefs(mesh, &maps, &of_material, progress)?;
         let (radius, angles) = (mesh.bounds().radius(), angles(mesh));
-        Ok(Self { maps, of_material, are_of_colors: false, radius, angles, reliefs })
+        Ok(Some(Self { maps, of_material, are_of_colors: false, radius, angles, reliefs }))
     }
 
     /// Returns the number of a material's image, if it has one.

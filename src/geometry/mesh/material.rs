@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::HeightMap;
+use super::{HeightMap, Sampling};
 use crate::choice::choices;
 use crate::defaults::with_defaults;
 
@@ -223,30 +223,4 @@ pub enum MapUv {
     /// One of the sets that [`CornerDetails`](super::CornerDetails) has as they are in the file, 0 or 1, then an affine map:
     /// u' = a u + b v + c and v' = d u + e v + f, as `[a, b, c, d, e, f]` (KHR_texture_transform).
     Set(usize, [f32; 6]),
-}
-
-with_defaults! {
-    /// How an image is sampled, in the words of WebGPU.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-    pub struct Sampling {
-        /// Beyond the image, along u and v.
-        pub wrap: [Wrap; 2] = [Wrap::Repeat; 2],
-        /// Whether texels are blended where they are larger than pixels.
-        pub magnify_linear: bool = true,
-        /// The same where they are smaller.
-        pub minify_linear: bool = true,
-        /// Whether mip levels are used, and blended (`Some(true)`).
-        pub mip_linear: Option<bool> = Some(true),
-    }
-}
-
-/// What is beyond an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Wrap {
-    /// The image again.
-    Repeat,
-    /// The image again, mirrored every other time.
-    Mirror,
-    /// Its border.
-    Clamp,
 }

@@ -15,7 +15,7 @@ use super::height_list::{fetch_height, level_place};
 use super::normal::unit_or;
 use super::surface::outline_place;
 use crate::choice::choices;
-use crate::mesh::HeightMap;
+use crate::mesh::{HeightMap, Wrap};
 
 choices! {
     /// Whether a surface is displaced by height images, and what its patches agree on where they meet.
@@ -60,19 +60,22 @@ fn wrapped(x: f32) -> f32 {
 
 /// Returns where the texture coordinate `x` lies along a row or column of `size` px: in px from the centre of px 0. In
 /// images that repeat, `size` is added, so that the result isn't negative.
-fn pixel_coordinate(map: &HeightMap, x: f32, size: u32) -> f32 {
-    if map.repeats {
+fn pixel_coordinate(wrap: Wrap, x: f32, size: u32) -> f32 {
+    if wrap == Wrap::Repeat {
         return wrapped(x) * size as f32 + size as f32 - 0.5;
     }
-    (x * size as f32 - 0.5).clamp(0.0, (size - 1) as f32)
+    // There and back again.
+    let turned = 2.0 * wrapped(0.5 * x);
+    let place = if wrap == Wrap::Mirror { turned.min(2.0 - turned) } else { x };
+    (place * size as f32 - 0.5).clamp(0.0, (size - 1) as f32)
 }
 
 /// Returns the height of a mip level at a texture coordinate, bilinearly interpolated.
 pub(crate) fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
     let width = (map.size[0] >> level).max(1);
     let height = (map.size[1] >> level).max(1);
-    let x = pixel_coordinate(map, uv.x, width);
-    let y = pixel_coordinate(map, uv.y, height);
+    let x = pixel_coordinate(map.wrap[0], uv.x, width);
+    let y = pixel_coordinate(map.wrap[1], uv.y, height);
     let left = x as u32 % width;
     let upper = y as u32 % height;
     // Images that don't repeat give weight 0 to a px beyond the last one.

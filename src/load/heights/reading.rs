@@ -3,55 +3,49 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, Limits};
 use png::{BitDepth, DecodingError};
 
 use super::HeightError;
 use crate::environment_file::unpacking_bytes;
 use crate::files::{self, FileError, file_reason, read_file};
-use crate::images::{check_size, decoding_bytes, metadata_limits, png_header};
+use crate::images::{check_size, decode_halved, decoded_bytes, decoder, decoding_bytes, is_image, png_header};
+use crate::ktx2::is_ktx2;
 use crate::memory_budget::Budget;
 use crate::watched_bytes::watched;
 use crate::webp;
 use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, MAX_KEPT};
+use geometry::mesh::mipmap::MipFilter;
 use geometry::progress::{Cancelled, Progress};
 
 /// The bytes of a file at most: more than the largest image takes without compression.
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// What is said of a file of another kind.
-const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TIFF or EXR image";
+const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TGA, BMP, KTX2, TIFF or EXR image";
+
+/// What to do with one of the images that may have floating-point numbers, if it can't be decoded: those of one channel can't.
+const DEEP_ADVICE: &str = "save it with red, green and blue, or as a PNG image of 16 bits";
 
 /// The largest height, positive or negative. Images with floating-point numbers may have heights beyond black and white.
 const MOST_HEIGHT: f32 = 65504.0;
 
-/// Reads a PNG, JPEG, WebP, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than its file
-/// and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
+/// Reads a PNG, JPEG, WebP, TGA, BMP, KTX2, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than
+/// its file and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
 ///
 /// # Errors
 /// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
 pub(super) fn read_map(path: &Path, budget: &Budget, progress: &Progress) -> Result<HeightMap, HeightError> {
     let image = ImageFile { path, reserved: 0, budget, progress };
     let check = |start: &[u8]| {
-        image::guess_format(start).map_err(|_| image.fail(NO_IMAGE.to_owned()))?;
+        is_image(start).then_some(()).ok_or_else(|| image.fail(NO_IMAGE.to_owned()))?;
         image.check(png_header(start).map_or([0; 2], |(size, _)| size)).map(|_| ())
     };
     let bytes = read_file(path, &files::Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
     budget.allow(bytes.len() as u64);
     image.decode(&bytes)
-}
-
-/// The same of an image in memory, which errors call `name`. `reserved` is the memory that the rest of the load takes, in bytes.
-pub(super) fn map_of_bytes(
-    name: &Path,
-    bytes: &[u8],
-    reserved: u64,
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<HeightMap, HeightError> {
-    ImageFile { path: name, reserved, budget, progress }.decode(bytes)
 }
 
 impl From<FileError> for HeightError {
@@ -112,11 +106,13 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 }
 
 /// An image file that is being read, with what reading it needs.
-struct ImageFile<'a> {
-    path: &'a Path,
-    reserved: u64,
-    budget: &'a Budget,
-    progress: &'a Progress,
+pub(super) struct ImageFile<'a> {
+    /// What errors call it.
+    pub path: &'a Path,
+    /// The memory that the rest of the load takes, in bytes.
+    pub reserved: u64,
+    pub budget: &'a Budget,
+    pub progress: &'a Progress,
 }
 
 impl ImageFile<'_> {
@@ -128,11 +124,28 @@ impl ImageFile<'_> {
         check_size("it", size).map(|()| size).map_err(|reason| self.fail(reason))
     }
 
-    fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
-        match png_header(bytes) {
+    /// Reads an image in memory.
+    ///
+    /// # Errors
+    /// As [`read_map`].
+    pub(super) fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        let held = self.budget.held();
+        let read = match png_header(bytes) {
             Some((_, false)) => self.read_rows(bytes),
+            _ if is_ktx2(bytes) => self.read_texture(bytes),
             _ => self.read_whole(bytes),
-        }
+        };
+        // A broken image takes no room from others.
+        read.inspect_err(|_| self.budget.release(self.budget.held() - held))
+    }
+
+    /// Reads a KTX2 image.
+    fn read_texture(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        let texture = decode_halved(bytes, 0, MipFilter::Numbers, self.budget).map_err(|reason| self.fail(reason))?;
+        let px = decoded_bytes(texture.size);
+        self.budget.release(px);
+        self.afford(texture.size, bytes, px, 0)?;
+        Ok(map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, self.progress)?)
     }
 
     /// Reads a PNG image that isn't interlaced.
@@ -158,29 +171,26 @@ impl ImageFile<'_> {
 
     /// Reads any image by decoding all its pixels at once.
     fn read_whole(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        let format = image::guess_format(bytes).ok();
+        let is_deep = matches!(format, Some(ImageFormat::Tiff | ImageFormat::OpenExr | ImageFormat::Hdr));
         // Cancelling stops the decoder with some error.
         let undecoded = |error: ImageError| match (self.progress.check(), error) {
             (Err(cancelled), _) => cancelled.into(),
-            (_, ImageError::Unsupported(_)) if image::guess_format(bytes).is_err() => self.fail(NO_IMAGE.to_owned()),
+            _ if !is_image(bytes) => self.fail(NO_IMAGE.to_owned()),
+            (_, error) if is_deep => self.fail(format!("{error}; {DEEP_ADVICE}")),
             (_, error) => self.fail(error.to_string()),
         };
         webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
-        let watched = ImageReader::new(watched(bytes, self.progress.part(0.0, 0.6)));
-        let mut reader = watched.with_guessed_format().map_err(|error| undecoded(error.into()))?;
         let borrowed = Borrowed::from(self.budget);
-        let format = reader.format();
-        if format == Some(ImageFormat::Png) {
-            reader.limits(metadata_limits(self.budget));
-        }
-        let mut decoder = reader.into_decoder().map_err(undecoded)?;
+        let watched = watched(bytes, self.progress.part(0.0, 0.6));
+        let mut decoder = decoder(watched, bytes, self.budget).map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
-        let has_copy = matches!(format, Some(ImageFormat::Tiff | ImageFormat::OpenExr | ImageFormat::Hdr));
         let blocks = match format {
             Some(ImageFormat::OpenExr) => unpacking_bytes(bytes).map_err(|fault| self.fail(fault.to_string()))?,
             _ => 0,
         };
-        let decoding = (decoding_bytes(&decoder) - count).saturating_add(if has_copy { count } else { 0 });
+        let decoding = (decoding_bytes(&decoder) - count).saturating_add(if is_deep { count } else { 0 });
         // What decoding takes is freed before a map is made from the pixels.
         self.afford(size, bytes, count, decoding.saturating_add(blocks))?;
         let mut limits = Limits::default();

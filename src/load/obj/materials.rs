@@ -192,8 +192,7 @@ impl<'a> Materials<'a> {
         self.found.bumped += usize::from(described.textures.contains_key(&MtlMap::Bump));
         let with_factor = |(map, texture): (_, &MtlTexture)| (map, described.factor(map, texture), texture.clone());
         let textures: Vec<_> = described.maps().map(with_factor).collect();
-        let is_clamped = textures.first().is_some_and(|(.., texture)| texture.is_clamped);
-        let wrap = if is_clamped { Wrap::Clamp } else { Wrap::Repeat };
+        let wrap = textures.first().map_or(Wrap::Repeat, |(.., texture)| texture.wrap);
         // Some programs write 0 for what they show as opaque.
         let is_transparent = alpha > 0.0 && alpha < 1.0;
         let own = Look::default();
@@ -222,6 +221,8 @@ impl<'a> Materials<'a> {
             Ok((Cow::Owned(self.files.read_path(&file.name)?), filter))
         };
         let reserved = faces.bytes_to_finish().saturating_sub(freed);
+        // Textures can be scaled down to the room that heights leave.
+        self.read_heights(faces, reserved)?;
         let images: Vec<_> = textures.iter().collect();
         let images = read_images(&images, bytes, reserved, self.files.budget, self.files.progress)?;
         for (file, ReadImage { texture, said }) in textures.into_iter().zip(images) {
@@ -243,17 +244,17 @@ impl<'a> Materials<'a> {
             given.for_each(|(user, texture)| giving.give(faces, user, texture));
         }
         self.problems.extend(giving.finish(faces, self.files.budget));
-        self.read_heights(faces, reserved)
+        Ok(())
     }
 
     fn read_heights(&mut self, faces: &mut FaceBuilder, reserved: u64) -> Result<(), ReadError> {
         let mut images = ModelImages::new(self.files);
         images.reserved = reserved;
-        for (index, MtlTexture { file, amount, .. }) in self.heights.drain(..) {
+        for (index, MtlTexture { file, amount, wrap, .. }) in self.heights.drain(..) {
             let (material, image) = (faces.builder.material_mut(index), shown(file.as_bytes()));
             let bytes = || self.files.read_path(&file).map(Cow::Owned);
-            material.height =
-                images.read(file.clone(), [&image, &material.name], false, bytes)?.map(|map| map.with_amount(amount));
+            let names = [&*image, &*material.name];
+            material.height = images.read(file.clone(), names, (amount, [wrap; 2]), false, bytes)?;
         }
         self.problems.extend(images.warnings);
         Ok(())

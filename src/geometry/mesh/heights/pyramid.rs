@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{HeightMap, MAX_KEPT};
 use crate::casts::to_u32;
+use crate::mesh::Wrap;
 use crate::progress::{Cancelled, Progress};
 
 impl HeightMap {
@@ -47,7 +48,14 @@ impl HeightMap {
         }
         let range = [least, greatest];
         let (levels, heights) = (to_u32(sizes.len()), Arc::new(heights));
-        Ok(Self { size: fitted, levels, repeats: false, amount: None, range, heights })
+        Ok(Self { size: fitted, levels, wrap: [Wrap::Repeat; 2], amount: None, range, heights })
+    }
+
+    /// Returns the map without its level 0; none if it has no other.
+    pub fn halved(&self) -> Option<Self> {
+        let heights = self.heights[px_of(self.size)..].to_vec();
+        let (size, levels) = (halved(self.size)?, self.levels - 1);
+        Some(Self { size, levels, heights: Arc::new(heights), ..self.clone() })
     }
 
     /// Returns how many bytes it takes to build a map from an image of this size, the map included.
