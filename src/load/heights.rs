@@ -96,7 +96,7 @@ impl HeightSource {
         let mut own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
         let count = own.iter().flatten().count();
         let too_much = |refused| too_much(mesh, count, refused);
-        warnings.extend(fit(mesh, &mut own, MOST_BYTES, budget).map_err(too_much)?);
+        warnings.extend(fit(mesh, &mut own, budget).map_err(too_much)?);
         budget.hold(bytes_beside_maps(mesh)).map_err(too_much)?;
         let heights = Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))?;
         let heights = heights.ok_or_else(|| HeightError::TooMany { name: mesh.name.clone() })?;
@@ -178,11 +178,10 @@ fn of_model(
             let (name, known) = (mesh.name.clone(), known.join(", "));
             return Err(HeightError::NoMaterial { name, material: shown(material), known });
         }
-        let map = match known.get(&**path) {
-            Some(map) => map.with_amount(*amount),
-            None => read_map(path, budget, &progress.part(part(index), part(index + 1)))?.with_amount(*amount),
-        };
-        known.insert(path, map.clone());
+        if !known.contains_key(&**path) {
+            known.insert(path, read_map(path, budget, &progress.part(part(index), part(index + 1)))?);
+        }
+        let map = known[&**path].with_amount(*amount);
         let users = mesh.materials.iter().zip(&mut own).filter(|(known, _)| known.name == *material);
         users.for_each(|(_, own)| *own = Some(map.clone()));
     }
@@ -204,9 +203,8 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         Self { files, known: HashMap::new(), reserved: 0, warnings: Vec::new() }
     }
 
-    /// Returns an image of a material, which moves the surface by an amount and goes on so beyond its border. One that can't be read causes
-    /// a warning, which names the first material that has it, and so does one that is elsewhere than the texture coordinates that corners
-    /// have themselves.
+    /// Returns an image of a material, with its amount and wrap. One that can't be read causes a warning, which names the first material
+    /// that has it, and so does one that is elsewhere than the texture coordinates that corners have themselves.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -249,10 +247,10 @@ fn too_much(mesh: &Mesh, count: usize, refused: MemoryRefused) -> HeightError {
     HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason: refused.to_string() }
 }
 
-/// Halves the largest images until all fit so many bytes. Returns a sentence about each, and about each material that has it.
-fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], most: u64, budget: &Budget) -> Result<Vec<String>, MemoryRefused> {
+/// Halves the largest images until all fit one texture. Returns a sentence about each, and about each material that has it.
+fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], budget: &Budget) -> Result<Vec<String>, MemoryRefused> {
     let mut said = Vec::new();
-    while bytes_of_maps(own.iter().flatten()) > most {
+    while bytes_of_maps(own.iter().flatten()) > MOST_BYTES {
         let largest = own.iter().flatten().max_by_key(|map| map.heights.len());
         let Some((heights, half)) = largest.and_then(|map| Some((map.heights.clone(), map.halved()?))) else { break };
         budget.hold(bytes_of_maps(std::iter::once(&half)))?;
@@ -339,12 +337,75 @@ mod tests {
         let heights = of(&[image("roof")], &mesh).expect("two images");
         assert_eq!(heights.of_material, [Some(0), Some(1), None]);
         assert!(heights.follow_settings() && heights.maps[0].size == [2, 2] && !heights.are_of_colors);
+        let heights = of(&[image("roof"), image("door")], &mesh).expect("two images");
+        assert_eq!(heights.of_material, [Some(0), Some(1), Some(1)], "a file is read once");
         let heights = of(&[image("wall")], &mesh).expect("an image");
         assert_eq!((heights.of_material, heights.maps[0].amount), (vec![Some(0), None, None], None));
         let said = of(&[image("floor")], &mesh).expect_err("no such material");
         assert!(said.ends_with("has no material \"floor\" to displace; it has \"wall\", \"roof\", \"door\""), "{said}");
         mesh.materials[0].height = None;
         assert!(of(&[], &mesh).expect_err("no image").contains("no material has a base colour image"));
+    }
+
+    #[test]
+    fn images_that_exceed_one_texture_are_halved_and_named() {
+        let mut mesh = Shape::Torus.build();
+        let named = |name: &str| Material { name: name.to_owned(), ..mesh.materials[0].clone() };
+        mesh.materials = ["a", "b", "c", "d", "e"].map(named).to_vec();
+        let image = || {
+            let mut map = HeightMap::new([1, 1], vec![0.0]);
+            (map.size, map.levels) = ([4096; 2], 13);
+            map.heights = Arc::new(vec![0.0; (0..13).map(|level| (4096_usize >> level).pow(2)).sum()]);
+            map
+        };
+        let [a, b, c, d] = [image(), image(), image(), image()];
+        let amount = HeightAmount::from_factor(2.0, 0.0);
+        let e = a.with_amount(amount);
+        let mut own = [a, b, c, d, e].map(Some);
+        // Three fit.
+        let said = fit(&mesh, &mut own[..3], &Budget::unlimited()).expect("memory");
+        assert_eq!(said, [""; 0]);
+        let said = fit(&mesh, &mut own, &Budget::unlimited()).expect("memory");
+        let [a, b, c, d, e] = own.map(|map| map.expect("an image"));
+        let halved = [&a, &b, &c, &d, &e].map(|map| map.size == [2048; 2] && map.levels == 12);
+        assert_eq!(halved, [true, false, false, true, true], "the first image, which two materials have, and another");
+        assert!(Arc::ptr_eq(&a.heights, &e.heights) && e.amount == amount);
+        let start = |name: &str| format!("the height image of material \"{name}\" is scaled down to 2048 x 2048 px: ");
+        let are_named = said.iter().zip(["a", "e", "d"]).all(|(said, name)| said.starts_with(&start(name)));
+        assert!(said.len() == 3 && are_named, "{said:?}");
+        assert!(bytes_of_maps([a, b, c, d].iter()) <= MOST_BYTES);
+    }
+
+    #[test]
+    fn more_images_than_are_used_are_refused_before_anything_is_made_of_them() {
+        let mut mesh = Shape::Torus.build();
+        let textured = |_| {
+            let texture = Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
+            Material { texture: Some(texture), ..Material::plain("plain", [1.0; 4]) }
+        };
+        mesh.materials = (0..=MAX_MAPS).map(textured).collect();
+        let budget = Budget::unlimited();
+        let load = |source: HeightSource, mesh: &Mesh| source.load(mesh, &mut Vec::new(), &budget, &Progress::new());
+        assert!(matches!(load(HeightSource::Materials, &mesh), Err(HeightError::TooMany { .. })));
+        assert_eq!(budget.held(), 0);
+        for material in &mut mesh.materials {
+            material.height = Some(HeightMap::new([1, 1], vec![0.5]));
+        }
+        assert!(matches!(load(HeightSource::Model, &mesh), Err(HeightError::TooMany { .. })));
+        mesh.materials.pop();
+        assert_eq!(load(HeightSource::Model, &mesh).map(|heights| heights.maps.len()).ok(), Some(MAX_MAPS));
+    }
+
+    #[test]
+    fn base_colours_go_on_beyond_their_border_as_their_samplers_say() {
+        let mut mesh = Shape::Torus.build();
+        mesh.corners.iter_mut().for_each(|corner| corner.uv *= 2.0);
+        mesh.materials[0].texture = Some(Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] }));
+        for wrap in [[Wrap::Clamp, Wrap::Mirror], [Wrap::Repeat; 2]] {
+            mesh.materials[0].sampling.wrap = wrap;
+            let heights = HeightSource::Materials.load(&mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new());
+            assert_eq!(heights.expect("an image").maps[0].wrap, wrap);
+        }
     }
 
     #[test]

@@ -36,7 +36,7 @@ pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
     }
     let size = match png_header(bytes) {
         Some((size, _)) => size,
-        None => reader(Cursor::new(bytes), bytes).ok()?.into_dimensions().ok()?.into(),
+        None => decoder(Cursor::new(bytes), bytes, &Budget::unlimited()).ok()?.dimensions().into(),
     };
     check_size("", size).is_ok().then_some(size)
 }
@@ -75,24 +75,18 @@ pub(super) fn is_image(start: &[u8]) -> bool {
     image::guess_format(start).is_ok() || ktx2::is_ktx2(start) || may_be_tga(start)
 }
 
-/// Prepares to decode an image of the format that its first bytes show: all but KTX2 images.
-fn reader<R: BufRead + Seek>(source: R, bytes: &[u8]) -> std::io::Result<ImageReader<R>> {
-    let mut reader = ImageReader::new(source).with_guessed_format()?;
-    if reader.format().is_none() && may_be_tga(bytes) {
-        reader.set_format(ImageFormat::Tga);
-    }
-    Ok(reader)
-}
-
-/// Prepares to decode all px of such an image at once, which `source` reads from `bytes`. What is beside the px of a PNG is borrowed.
-pub(super) fn decoder<R: BufRead + Seek>(
+/// Prepares to decode an image of the format that its first bytes show, all but KTX2: `source` reads `bytes`. What a PNG has beside its
+/// px is borrowed.
+pub(super) fn decoder<'a, R: BufRead + Seek + 'a>(
     source: R,
     bytes: &[u8],
     budget: &Budget,
-) -> Result<impl ImageDecoder, ImageError> {
-    let mut reader = reader(source, bytes)?;
-    if reader.format() == Some(ImageFormat::Png) {
-        reader.limits(metadata_limits(budget));
+) -> Result<impl ImageDecoder + use<'a, R>, ImageError> {
+    let mut reader = ImageReader::new(source).with_guessed_format()?;
+    match reader.format() {
+        Some(ImageFormat::Png) => reader.limits(metadata_limits(budget)),
+        None if may_be_tga(bytes) => reader.set_format(ImageFormat::Tga),
+        _ => {}
     }
     reader.into_decoder()
 }

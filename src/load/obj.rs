@@ -54,11 +54,11 @@ fn gather<'a>(
     let (budget, progress) = (files.budget, files.progress);
     let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
-    let mut materials = Materials::new(files);
+    let mut materials = Materials::default();
     let take = |more: VertexPiece| {
         above.push(vertices.counts());
         vertices.add(&more, budget)?;
-        more.libraries.iter().for_each(|names| materials.add_library(names));
+        more.libraries.iter().for_each(|names| materials.add_library(names, files));
         more.error.map_or(Ok(()), Err)
     };
     in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, budget, &progress.part(0.0, 0.25))?;
@@ -90,7 +90,7 @@ fn gather<'a>(
     reader.smoothing = None;
     budget.release(of_smoothing);
     let Reader { mut faces, mut materials, found, .. } = reader;
-    materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
+    materials.read_images(&mut faces, files, bytes.len() as u64 + vertices.bytes())?;
     faces.notes.extend(materials.warnings());
     let lacking = faces.lacking_normals(found.without_normals, "faces without normals, or with some missing");
     faces.notes.extend(counted([lacking]));
@@ -208,7 +208,7 @@ impl Counts {
 struct Reader<'v, 'a> {
     vertices: &'v Vertices,
     faces: FaceBuilder<'a>,
-    materials: Materials<'a>,
+    materials: Materials,
     /// The names of the object and of the group that the next faces belong to.
     part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.

@@ -136,13 +136,10 @@ impl Heights {
         own: &[Option<HeightMap>],
         progress: &Progress,
     ) -> Result<Option<Self>, Cancelled> {
-        let (mut maps, mut of_material, mut known) = (Vec::new(), Vec::new(), HashMap::new());
-        for (material, own) in mesh.materials.iter().zip(own) {
+        let (mut maps, mut of_material, mut known) = (Vec::new(), vec![None; own.len()], HashMap::new());
+        for ((material, own), place) in mesh.materials.iter().zip(own).zip(&mut of_material) {
             progress.check()?;
-            let Some(own) = own else {
-                of_material.push(None);
-                continue;
-            };
+            let Some(own) = own else { continue };
             let amount = own.amount.map(|own| [own.scale, own.midlevel].map(f32::to_bits));
             let index = *known.entry((Arc::as_ptr(&own.heights), amount, own.wrap)).or_insert(maps.len());
             if index == MAX_MAPS {
@@ -151,7 +148,7 @@ impl Heights {
             if index == maps.len() {
                 maps.push(HeightMap { wrap: [Wrap::Clamp; 2], ..own.clone() });
             }
-            of_material.push(Some(to_u32(index)));
+            *place = Some(to_u32(index));
             let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
             let mut uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
             if uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any()) {
@@ -214,7 +211,7 @@ fn angles(mesh: &Mesh) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Shape;
+    use crate::mesh::{Material, Shape};
 
     #[test]
     fn a_point_moves_by_the_height_that_differs_most_from_the_middle() {
@@ -229,8 +226,52 @@ mod tests {
     }
 
     #[test]
-    fn amounts_that_depend_on_no_height_are_none() {
-        let bad = [(0.0, 1.0), (f32::NAN, 0.0), (f32::INFINITY, 0.0), (1.0, f32::NAN), (1e-30, 1e30)];
+    fn more_maps_than_shaders_have_room_for_are_refused() {
+        let mut mesh = Shape::Torus.build();
+        let map = HeightMap::new([1, 1], vec![0.5]);
+        let numbered = |i: usize| Some(map.with_amount(HeightAmount::from_factor(i as f32, 0.0)));
+        let own: Vec<_> = (0..=MAX_MAPS).map(numbered).collect();
+        mesh.materials = vec![Material::plain("plain", [1.0; 4]); own.len()];
+        let count = |own: &[Option<HeightMap>], progress: &Progress| {
+            Heights::of_materials(&mesh, own, progress).map(|made| made.map(|heights| heights.maps.len()))
+        };
+        assert_eq!(count(&own[1..], &Progress::new()), Ok(Some(MAX_MAPS)));
+        assert_eq!(count(&own, &Progress::new()), Ok(None));
+        let cancelled = Progress::new();
+        cancelled.cancel();
+        assert_eq!(count(&own, &cancelled), Err(Cancelled));
+    }
+
+    #[test]
+    fn images_go_on_as_they_are_said_to_only_where_coordinates_leave_them() {
+        let mut mesh = Shape::Saddle.build();
+        let wrap = [Wrap::Mirror, Wrap::Clamp];
+        let map = HeightMap::new([2, 2], vec![0.5; 4]).with_wrap(wrap);
+        assert_eq!(Heights::everywhere(&mesh, map.clone()).maps[0].wrap, [Wrap::Clamp; 2]);
+        mesh.corners.iter_mut().for_each(|corner| corner.uv *= 2.0);
+        assert_eq!(Heights::everywhere(&mesh, map.clone()).maps[0].wrap, wrap);
+        // One image that goes on in two ways is two maps of the same pixels.
+        mesh.materials = vec![mesh.materials[0].clone(); 2];
+        let own = [Some(map.clone()), Some(map.with_wrap([Wrap::Repeat; 2]))];
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps");
+        assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
+    }
+
+    #[test]
+    fn a_height_without_a_factor_leaves_the_offset() {
+        for (factor, offset) in [(0.0, 0.0), (0.0, 1.0), (0.0, -0.7), (0.0, 3e5), (1e-12, 0.3), (0.0, 1e-40)] {
+            let HeightAmount { scale, midlevel } = HeightAmount::from_factor(factor, offset).expect("an amount");
+            for height in [0.0, 0.25, 1.0] {
+                let moved = scale * (height - midlevel);
+                assert!((moved - offset).abs() <= 1e-6 * offset.abs() + 1e-30, "{factor} {offset}: {moved}");
+            }
+        }
+        assert_eq!(HeightAmount::from_factor(0.0, 0.0), Some(HeightAmount { scale: 0.0, midlevel: 0.0 }));
+    }
+
+    #[test]
+    fn amounts_that_are_no_numbers_or_too_large_are_none() {
+        let bad = [(f32::NAN, 0.0), (f32::INFINITY, 0.0), (1.0, f32::NAN), (0.0, f32::INFINITY), (1e-30, 1e30)];
         assert!(bad.into_iter().all(|(factor, offset)| HeightAmount::from_factor(factor, offset).is_none()));
         assert_eq!(HeightAmount::from_factor(1e9, 0.0).map(|amount| amount.scale), Some(1e9));
         assert_eq!(HeightAmount::from_factor(1.1e9, 0.0), None);
@@ -243,7 +284,7 @@ mod tests {
         let map = HeightMap::new([2, 2], vec![0.5; 4]);
         let deep = map.with_amount(HeightAmount::from_factor(3.0, 0.0));
         let own = [Some(map.clone()), None, Some(deep.clone()), Some(map.clone())];
-        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled");
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps");
         assert_eq!(heights.of_material, [Some(0), None, Some(1), Some(0)]);
         assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
         assert!(heights.follow_settings() && !Heights::everywhere(&mesh, deep).follow_settings());

@@ -9,41 +9,34 @@ use super::{HeightMap, Sampling};
 use crate::choice::choices;
 use crate::defaults::with_defaults;
 
-/// The look of some of a mesh's patches.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// The name in the file.
-    pub name: String,
-    /// Linear RGBA, 0 to 1.
-    pub base_color: [f32; 4],
-    /// The image that multiplies the base colour, at the corners' own texture coordinates. Materials that use the same image
-    /// share it.
-    pub texture: Option<Arc<Texture>>,
-    /// How the base colour's image is sampled.
-    pub sampling: Sampling,
-    /// Whether its triangles are also meant to be seen from behind.
-    pub double_sided: bool,
-    /// How it reflects light.
-    pub look: Look,
-    /// The height image that the file gives it, at the corners' own texture coordinates.
-    pub height: Option<HeightMap>,
-    /// The mesh's triangles of this material.
-    pub triangles: Range<u32>,
+with_defaults! {
+    /// The look of some of a mesh's patches; by default white, neither metal nor glossy.
+    #[derive(Clone, Debug)]
+    pub struct Material {
+        /// The name in the file.
+        pub name: String = String::new(),
+        /// Linear RGBA, 0 to 1.
+        pub base_color: [f32; 4] = [1.0; 4],
+        /// The image that multiplies the base colour, at the corners' own texture coordinates. Materials that use the same image
+        /// share it.
+        pub texture: Option<Arc<Texture>> = None,
+        /// How the base colour's image is sampled.
+        pub sampling: Sampling = Sampling::default(),
+        /// Whether its triangles are also meant to be seen from behind.
+        pub double_sided: bool = false,
+        /// How it reflects light.
+        pub look: Look = Look::default(),
+        /// The height image that the file gives it, at the corners' own texture coordinates.
+        pub height: Option<HeightMap> = None,
+        /// The mesh's triangles of this material.
+        pub triangles: Range<u32> = 0..0,
+    }
 }
 
 impl Material {
     /// Returns a material of one colour (linear RGBA), neither metal nor glossy, without triangles.
     pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
-        Self {
-            name: name.to_owned(),
-            base_color,
-            texture: None,
-            sampling: Sampling::default(),
-            double_sided: false,
-            look: Look::default(),
-            height: None,
-            triangles: 0..0,
-        }
+        Self { name: name.to_owned(), base_color, ..Self::default() }
     }
 
     /// Whether one may see what is behind its triangles: it blends, or it transmits light.

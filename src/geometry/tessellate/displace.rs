@@ -202,12 +202,12 @@ mod tests {
     /// Returns a map of 4 x 2 px that rises by 1/8 for each px to the right and by 1/4 for each px down.
     fn slope() -> HeightMap {
         let heights = (0..8).map(|i| (i % 4) as f32 / 8.0 + (i / 4) as f32 / 4.0).collect();
-        HeightMap { repeats: true, ..HeightMap::new([4, 2], heights) }
+        HeightMap::new([4, 2], heights)
     }
 
     #[test]
     fn images_that_do_not_repeat_continue_with_their_border() {
-        let map = HeightMap { repeats: false, ..slope() };
+        let map = slope().with_wrap([Wrap::Clamp; 2]);
         for (u, expected) in [(-1.0, 0.0), (0.0, 0.0), (0.125, 0.0), (0.875, 0.375), (1.0, 0.375), (7.0, 0.375)] {
             assert_eq!(bilinear_height(&map, 0, vec2(u, 0.25)), expected, "{u}");
         }
@@ -217,6 +217,19 @@ mod tests {
             slope().heights[..8].iter().sum::<f32>() / 8.0,
             "repeating makes no difference inside the image"
         );
+    }
+
+    #[test]
+    fn mirrored_images_run_back_beyond_their_border() {
+        let (map, within) = (slope().with_wrap([Wrap::Mirror, Wrap::Repeat]), slope().with_wrap([Wrap::Clamp; 2]));
+        for u in [0.0, 0.1, 0.45, 0.875, 1.0] {
+            let expected = bilinear_height(&within, 0, vec2(u, 0.25));
+            for other in [u, -u, 2.0 - u, 2.0 + u, -2.0 - u] {
+                // Rows repeat.
+                let height = bilinear_height(&map, 0, vec2(other, -2.75));
+                assert!((height - expected).abs() < 1e-5, "{other}: {height}, not {expected}");
+            }
+        }
     }
 
     #[test]

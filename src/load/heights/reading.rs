@@ -26,9 +26,6 @@ const LARGEST_FILE: u64 = 4 << 30;
 /// What is said of a file of another kind.
 const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TGA, BMP, KTX2, TIFF or EXR image";
 
-/// What to do with one of the images that may have floating-point numbers, if it can't be decoded: those of one channel can't.
-const DEEP_ADVICE: &str = "save it with red, green and blue, or as a PNG image of 16 bits";
-
 /// The largest height, positive or negative. Images with floating-point numbers may have heights beyond black and white.
 const MOST_HEIGHT: f32 = 65504.0;
 
@@ -177,7 +174,10 @@ impl ImageFile<'_> {
         let undecoded = |error: ImageError| match (self.progress.check(), error) {
             (Err(cancelled), _) => cancelled.into(),
             _ if !is_image(bytes) => self.fail(NO_IMAGE.to_owned()),
-            (_, error) if is_deep => self.fail(format!("{error}; {DEEP_ADVICE}")),
+            // Floating-point numbers of one channel, say, aren't decoded.
+            (_, error) if is_deep => {
+                self.fail(format!("{error}; save it with red, green and blue, or as a 16-bit PNG"))
+            }
             (_, error) => self.fail(error.to_string()),
         };
         webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
@@ -292,6 +292,59 @@ mod tests {
         assert!(progress.fraction() > 0.8, "{}", progress.fraction());
         progress.cancel();
         assert!(matches!(read_map(&file, &Budget::unlimited(), &progress), Err(HeightError::Cancelled(Cancelled))));
+    }
+
+    #[test]
+    fn tga_bmp_and_ktx2_images_are_read() {
+        let image: DynamicImage = RgbImage::from_fn(9, 5, |x, y| Rgb([(20 * x) as u8, (40 * y) as u8, 7])).into();
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        let budget = Budget::unlimited();
+        for format in [image::ImageFormat::Tga, image::ImageFormat::Bmp] {
+            let mut bytes = Cursor::new(Vec::new());
+            image.write_to(&mut bytes, format).expect("an image in memory");
+            let file = write(&folder, "px", bytes.get_ref());
+            assert_eq!(read_map(&file, &budget, &Progress::new()).expect("an image"), of(&image), "{format:?}");
+        }
+        // 37 is RGBA of 8 bits.
+        let held = budget.held();
+        let rgba = crate::ktx2::tests::plain(37, [9, 5], image.to_rgba8().as_raw());
+        let file = write(&folder, "px", &rgba);
+        assert_eq!(read_map(&file, &budget, &Progress::new()).expect("an image"), of(&image));
+        assert_eq!(budget.held() - held, HeightMap::bytes_to_build([9, 5]), "the map alone");
+        let file = write(&folder, "cut", &rgba[..rgba.len() / 2]);
+        assert!(read_map(&file, &budget, &Progress::new()).is_err());
+    }
+
+    #[test]
+    fn floating_point_images_of_one_channel_are_refused_with_advice() {
+        // TIFF 6.0: eleven numbers about one px, each with its tag, its type (3 for 16 bits), how many there are, and itself.
+        let tags = [256, 257, 258, 259, 262, 273, 277, 278, 279, 284, 339];
+        let values = [1, 1, 32, 1, 1, 146, 1, 1, 4, 1, 3];
+        let mut bytes = b"II\x2a\0\x08\0\0\0\x0b\0".to_vec();
+        for (tag, value) in tags.into_iter().zip(values) {
+            bytes.extend([tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).as_flattened());
+        }
+        bytes.extend([0; 4]);
+        bytes.extend(0.5_f32.to_le_bytes());
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        let file = write(&folder, "gray.tif", &bytes);
+        let said = read_map(&file, &Budget::unlimited(), &Progress::new()).expect_err("one channel").to_string();
+        assert!(said.ends_with("; save it with red, green and blue, or as a 16-bit PNG"), "{said}");
+    }
+
+    #[test]
+    fn a_broken_image_takes_no_room_from_the_next() {
+        let noise = |x: u32, y: u32| Rgb([(x + 64 * y).wrapping_mul(2_654_435_769).to_be_bytes()[0]; 3]);
+        let bytes = png(&RgbImage::from_fn(64, 64, noise).into());
+        // Room for one, with its file.
+        let room = HeightMap::bytes_to_build([64, 64]) + bytes.len() as u64;
+        let (budget, progress) = (Budget::new(0, room), Progress::new());
+        let image = ImageFile { path: Path::new("noise"), reserved: 0, budget: &budget, progress: &progress };
+        let said = image.decode(&bytes[..bytes.len() / 2]).expect_err("half an image").to_string();
+        assert!(!said.contains("memory"), "{said}");
+        assert_eq!(budget.held(), 0);
+        assert!(image.decode(&bytes).is_ok());
+        assert!(image.decode(&bytes).is_err(), "two don't fit");
     }
 
     #[test]

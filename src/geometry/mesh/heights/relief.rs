@@ -130,11 +130,11 @@ impl Triangles<'_> {
         let sides = |[a, b, c]: &[Vec2; 3]| [*b - *a, *c - *b, *a - *c].map(|side| (side * size).length());
         let mut beyond = self.largest(0, &|x, y| heights.beyond_border(x, y))?;
         // Half a px beyond a border is all that slopes which go on are near.
-        let leaves = |axis: usize, uvs: &[Vec2; 3]| {
-            self.map.wrap[axis] != Wrap::Repeat && uvs.iter().any(|uv| !(0.0..=1.0).contains(&uv[axis]))
-        };
-        for (beyond, uvs) in beyond.iter_mut().zip(&self.uvs).filter(|(_, uvs)| leaves(0, uvs) || leaves(1, uvs)) {
-            *beyond = f32::INFINITY;
+        let is_beyond = |uv: &Vec2, k: usize| self.map.wrap[k] != Wrap::Repeat && !(0.0..=1.0).contains(&uv[k]);
+        for (beyond, uvs) in beyond.iter_mut().zip(&self.uvs) {
+            if uvs.iter().any(|uv| is_beyond(uv, 0) || is_beyond(uv, 1)) {
+                *beyond = f32::INFINITY;
+            }
         }
         let relief = |(index, uvs): (usize, &[Vec2; 3])| {
             let range = greatest[index] + least[index];
