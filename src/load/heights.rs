@@ -73,8 +73,8 @@ pub enum HeightSource {
 }
 
 impl HeightSource {
-    /// Loads heights for a mesh, within the memory that a load may take. Sets `progress` from 0 to 1. `warnings` are
-    /// those of loading the mesh: if it has no image because a texture was left out, the error says why. What is scaled down is added.
+    /// Loads heights for a mesh, within the memory that a load may take. Sets `progress` from 0 to 1. `warnings` are those of
+    /// loading the mesh: if it has no image because a texture was left out, the error says why. What is scaled down is added.
     ///
     /// # Errors
     /// [`HeightError`].
@@ -178,12 +178,13 @@ fn of_model(
             let (name, known) = (mesh.name.clone(), known.join(", "));
             return Err(HeightError::NoMaterial { name, material: shown(material), known });
         }
-        if !known.contains_key(&**path) {
-            known.insert(path, read_map(path, budget, &progress.part(part(index), part(index + 1)))?);
-        }
-        let map = known[&**path].with_amount(*amount);
+        let map = match known.get(&**path) {
+            Some(map) => map.clone(),
+            None => read_map(path, budget, &progress.part(part(index), part(index + 1)))?,
+        };
         let users = mesh.materials.iter().zip(&mut own).filter(|(known, _)| known.name == *material);
-        users.for_each(|(_, own)| *own = Some(map.clone()));
+        users.for_each(|(_, own)| *own = Some(map.with_amount(*amount)));
+        known.insert(path, map);
     }
     Ok(own)
 }
@@ -203,8 +204,8 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         Self { files, known: HashMap::new(), reserved: 0, warnings: Vec::new() }
     }
 
-    /// Returns an image of a material, with its amount and wrap. One that can't be read causes a warning, which names the first material
-    /// that has it, and so does one that is elsewhere than the texture coordinates that corners have themselves.
+    /// Returns an image of a material, with its amount and wrap. One that can't be read causes a warning, which names the first
+    /// material that has it, and so does one that is elsewhere than the texture coordinates that corners have themselves.
     ///
     /// # Errors
     /// [`Cancelled`].

@@ -75,8 +75,8 @@ pub(super) fn is_image(start: &[u8]) -> bool {
     image::guess_format(start).is_ok() || ktx2::is_ktx2(start) || may_be_tga(start)
 }
 
-/// Prepares to decode an image of the format that its first bytes show, all but KTX2: `source` reads `bytes`. What a PNG has beside its
-/// px is borrowed.
+/// Prepares to decode an image of the format that its first bytes show, all but KTX2: `source` reads `bytes`. What a PNG has
+/// beside its px is borrowed.
 pub(super) fn decoder<'a, R: BufRead + Seek + 'a>(
     source: R,
     bytes: &[u8],

@@ -6,13 +6,13 @@ use glam::{Vec2, Vec3, Vec4};
 use crate::defaults::with_defaults;
 
 with_defaults! {
-    /// What a corner has beside the attributes of [`Corner`](super::Corner), as passes and draws read it too. Interpolated linearly
-    /// over a patch.
+    /// What a corner has beside the attributes of [`Corner`](super::Corner), as passes and draws read it too. Interpolated
+    /// linearly over a patch.
     #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
     #[repr(C)]
     pub struct CornerDetail {
-        /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file, untransformed. Those that no map of the corner's material
-        /// uses (see [`MapUv::Set`](super::MapUv::Set)) are zero.
+        /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file, untransformed. Those that no map of the corner's
+        /// material uses (see [`MapUv::Set`](super::MapUv::Set)) are zero.
         pub uvs: [Vec2; 2] = [Vec2::ZERO; 2],
         /// Linear RGBA that multiplies the base colour (COLOR_0); white without one.
         pub color: Vec4 = Vec4::ONE,

@@ -18,8 +18,8 @@ use crate::progress::{Cancelled, Progress};
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
 pub const MAX_KEPT: u32 = 4096;
 
-/// Width and height in texels of the texture that holds all maps of a mesh, at most: every adapter has textures of that size (WebGPU,
-/// default limits).
+/// The greatest width and height in texels of the texture that holds all maps of a mesh. Every adapter has textures of that size
+/// (WebGPU, default limits).
 pub const HEIGHTS_ACROSS: u32 = 8192;
 
 /// The greatest size of a mesh's maps together, in bytes: that of this texture.
@@ -65,8 +65,8 @@ pub struct HeightMap {
     pub size: [u32; 2],
     /// The number of levels.
     pub levels: u32,
-    /// What is beyond the image along u and v. It matters only if some texture coordinate lies outside 0 to 1: otherwise the pixels
-    /// at the border of the maps of [`Heights`] continue.
+    /// What is beyond the image along u and v. In [`Heights`] the pixels at the border continue if no texture coordinate lies
+    /// outside 0 to 1.
     pub wrap: [Wrap; 2],
     /// How far it moves the surface; none if the settings say so.
     pub amount: Option<HeightAmount>,
@@ -127,7 +127,7 @@ impl Heights {
         Self::everywhere(mesh, HeightMap::new([side; 2], (0..side * side).map(height).collect()))
     }
 
-    /// Uses a map for each material that has one. Materials whose maps are equal share one. None if there are more than [`MAX_MAPS`].
+    /// Uses a map for each material that has one. Materials with equal maps share one. None if these are more than [`MAX_MAPS`].
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.

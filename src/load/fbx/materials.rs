@@ -160,9 +160,8 @@ impl<'a> Materials<'a> {
         };
         let names = [&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name];
         let is_elsewhere = map.uvs != source.own_uvs();
-        let amount = HeightAmount::from_factor(source.height_factor * self.unit, 0.0);
-        let placed = (amount, sampling(map.texture).wrap);
-        Ok(self.heights.read(file.file_index, names, placed, is_elsewhere, || self.textures.bytes(file))?)
+        let used = (HeightAmount::from_factor(source.height_factor * self.unit, 0.0), sampling(map.texture).wrap);
+        Ok(self.heights.read(file.file_index, names, used, is_elsewhere, || self.textures.bytes(file))?)
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.

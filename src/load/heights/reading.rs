@@ -24,13 +24,13 @@ use geometry::progress::{Cancelled, Progress};
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// What is said of a file of another kind.
-const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TGA, BMP, KTX2, TIFF or EXR image";
+const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image";
 
 /// The largest height, positive or negative. Images with floating-point numbers may have heights beyond black and white.
 const MOST_HEIGHT: f32 = 65504.0;
 
-/// Reads a PNG, JPEG, WebP, TGA, BMP, KTX2, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than
-/// its file and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
+/// Reads a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more
+/// memory than its file and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
 ///
 /// # Errors
 /// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
@@ -121,10 +121,7 @@ impl ImageFile<'_> {
         check_size("it", size).map(|()| size).map_err(|reason| self.fail(reason))
     }
 
-    /// Reads an image in memory.
-    ///
-    /// # Errors
-    /// As [`read_map`].
+    /// Reads an image in memory; errors are those of [`read_map`].
     pub(super) fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
         let held = self.budget.held();
         let read = match png_header(bytes) {

@@ -233,11 +233,11 @@ impl Materials {
     fn read_heights(&mut self, faces: &mut FaceBuilder, files: &Files, reserved: u64) -> Result<(), ReadError> {
         let mut images = ModelImages::new(files);
         images.reserved = reserved;
-        for (index, MtlTexture { file, amount, wrap, .. }) in self.heights.drain(..) {
+        for (index, MtlTexture { file, amount, .. }) in self.heights.drain(..) {
             let (material, image) = (faces.builder.material_mut(index), shown(file.as_bytes()));
             let bytes = || files.read_path(&file).map(Cow::Owned);
-            let names = [&*image, &*material.name];
-            material.height = images.read(file.clone(), names, (amount, [wrap; 2]), false, bytes)?;
+            let (names, used) = ([&*image, &*material.name], (amount, material.sampling.wrap));
+            material.height = images.read(file.clone(), names, used, false, bytes)?;
         }
         self.problems.extend(images.warnings);
         Ok(())

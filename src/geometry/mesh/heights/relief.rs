@@ -268,7 +268,7 @@ impl<'a> LevelPx<'a> {
         [0, 1].map(|axis| !self.repeats[axis] && [0, self.size[axis] - 1].contains(&[x, y][axis]))
     }
 
-    /// The larger of the second differences along both axes, for px of level 0: as they are, or as if slopes went on beyond borders.
+    /// The larger second difference along both axes, for px of level 0, as it is or as if slopes went on beyond borders.
     fn bend(&self, x: usize, y: usize, goes_on: bool) -> f32 {
         let ([left, right], [above, below]) = (self.beside(0, x), self.beside(1, y));
         let twice = 2.0 * self.at(x, y);

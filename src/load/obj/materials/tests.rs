@@ -135,7 +135,9 @@ fn height_images_displace_as_the_file_says() {
         assert_eq!(map.heights[..2], [0.2126, 0.0722], "the brightness of red and of blue");
         assert_eq!((map.wrap, warnings), ([Wrap::Repeat; 2], Vec::new()));
     }
-    assert_eq!(height("disp -clamp on w.png\n").0.map(|map| map.wrap), Some([Wrap::Clamp; 2]));
+    for clamped in ["disp -clamp on w.png\n", "map_Kd -clamp on w.png\ndisp w.png\n"] {
+        assert_eq!(height(clamped).0.map(|map| map.wrap), Some([Wrap::Clamp; 2]), "{clamped}");
+    }
     let (map, _) = height("disp w.png\n");
     assert_eq!(map.map(|map| map.amount), Some(None), "the file doesn't say how far");
     for (file, reason) in [("gone.png", "there is no such file"), ("m.mtl", "choose a "), ("../up.png", "with ..")] {
