@@ -39,7 +39,7 @@ pub struct Args {
     /// point moves, gradients of both texture coordinates, and the length of the point's shortest edge in px of the image
     #[arg(long, value_name = "OUT.bin", requires = "height")]
     pub corners: Option<PathBuf>,
-    /// The height image of --corners: a PNG, JPEG, WebP, TIFF or EXR image over all materials, or `material`, the materials' base colour image
+    /// The height image of --corners: a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image over all materials, or `material`, the materials' base colour image
     #[arg(long, value_name = "IMAGE|material", requires = "corners", value_parser = options::heights())]
     pub height: Option<HeightSource>,
 }

@@ -48,9 +48,9 @@ pub struct SurfaceOptions {
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = whole_from(1_u64))]
     pub max_triangles: Option<u64>,
-    /// Height map that displaces the surface: a PNG, JPEG, WebP, TIFF or EXR image over all materials, its stored brightness from
-    /// 0 (black) to 1 (white); `material`, the brightness of each material's base colour image; or `file`, the images that the file
-    /// gives its materials, of which MATERIAL=IMAGE,scale=S,midlevel=H replaces one (S in object units)
+    /// Height map that displaces the surface: a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image over all materials, its stored
+    /// brightness from 0 (black) to 1 (white); `material`, the brightness of each material's base colour image; or `file`, the images
+    /// that the file gives its materials, of which MATERIAL=IMAGE,scale=S,midlevel=H replaces one (S in object units)
     #[arg(long, value_name = "IMAGE|material|file|MATERIAL=IMAGE", value_parser = heights())]
     pub height: Vec<HeightSource>,
     /// Memory for output on the device, in MiB, 1 to 65536; output that doesn't fit is made in chunks

@@ -10,8 +10,8 @@ use geometry::mesh::Shape;
 use inspect::render::Standpoint;
 use inspect::settings::Choice;
 
-pub(crate) const HEIGHT_IMAGE: &str =
-    "Displaces the mesh by the brightness of a PNG, JPEG, WebP, TIFF or EXR image, which covers all materials.";
+pub(crate) const HEIGHT_IMAGE: &str = "Displaces the mesh by the brightness of a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image, \
+                                       which covers all materials.";
 
 /// All of them, in the order of the menus.
 pub(super) fn commands() -> Vec<Command> {

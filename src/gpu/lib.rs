@@ -26,7 +26,7 @@ mod pass_inputs;
 mod pipelines;
 pub mod readback;
 pub mod recorder;
-pub mod relief_buffers;
+mod relief_buffers;
 mod rig;
 mod search_passes;
 pub mod shader_constants;

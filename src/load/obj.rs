@@ -58,11 +58,11 @@ fn gather<'a>(
     let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
     let mut tags = Tags::default();
-    let mut materials = Materials::new(files);
+    let mut materials = Materials::default();
     let take = |more: VertexPiece| {
         above.push(vertices.counts());
         vertices.add(&more, budget)?;
-        more.libraries.iter().for_each(|names| materials.add_library(names));
+        more.libraries.iter().for_each(|names| materials.add_library(names, files));
         more.tags.iter().try_for_each(|tag| tags.take(tag, budget))?;
         more.error.map_or(Ok(()), Err)
     };
@@ -98,7 +98,7 @@ fn gather<'a>(
     budget.release(of_smoothing);
     let Reader { mut faces, mut materials, found, .. } = reader;
     tags.apply(&mut faces, &vertices.positions, found.faces);
-    materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
+    materials.read_images(&mut faces, files, bytes.len() as u64 + vertices.bytes())?;
     faces.notes.extend(materials.warnings());
     let lacking = faces.lacking_normals(found.without_normals, "faces without normals, or with some missing");
     faces.notes.extend(counted([lacking]));
@@ -218,7 +218,7 @@ struct Reader<'v, 'a> {
     /// The faces that are holes of a subdivision surface.
     holes: &'v [u32],
     faces: FaceBuilder<'a>,
-    materials: Materials<'a>,
+    materials: Materials,
     /// The names of the object and of the group that the next faces belong to.
     part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.

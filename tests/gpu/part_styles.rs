@@ -160,7 +160,8 @@ fn parts_with_details_are_displaced_by_the_images_of_their_materials() {
         HeightMap::new([side; 2], (0..side * side).map(height).collect())
     };
     let own = [Some(image(16).with_amount(HeightAmount::from_factor(0.2, -0.1))), Some(image(32))];
-    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled")));
+    mesh.heights =
+        Some(Arc::new(Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps")));
     let loaded = loaded_mesh(Source::Shape(Shape::Torus), mesh);
     let (size, patches) = (loaded.mesh.bounds().radius(), loaded.topology.patches.len());
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");

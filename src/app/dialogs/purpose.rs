@@ -47,8 +47,8 @@ impl AskedFile {
             Purpose::CompanionFile(CompanionFile::ReferenceShape) => mesh("Reference surface path", "or shape:NAME"),
             Purpose::CompanionFile(CompanionFile::LeftMesh) => mesh("Left mesh path", "or shape:NAME"),
             Purpose::Heights => {
-                let images = [images, &["tif", "tiff", "exr"]].concat();
-                beside("Height image path", "A .png, .jpg, .webp, .tif or .exr image", "Images", &images)
+                let images = [images, &["tga", "bmp", "ktx2", "tif", "tiff", "exr"]].concat();
+                beside("Height image path", "A .png, .jpg, .webp, .tga, .ktx2, .tif or .exr image", "Images", &images)
             }
             Purpose::CompanionFile(CompanionFile::Matcap) => {
                 beside("Matcap path", "A .png, .jpg or .webp image", "Images", images)

@@ -3,25 +3,23 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, Vec4};
 
-/// What a corner has beside the attributes of [`Corner`](super::Corner), as passes and draws read it too. Interpolated linearly
-/// over a patch.
-#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-#[repr(C)]
-pub struct CornerDetail {
-    /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file, untransformed. Those that no map of the corner's material
-    /// uses (see [`MapUv::Set`](super::MapUv::Set)) are zero.
-    pub uvs: [Vec2; 2],
-    /// Linear RGBA that multiplies the base colour (COLOR_0); white without one.
-    pub color: Vec4,
-    /// The direction in which the normal map's u grows, of unit length, in object space; zero if it isn't known.
-    pub tangent: Vec3,
-    /// 1, or -1 where the bitangent is `-cross(normal, tangent)`.
-    pub bitangent_sign: f32,
-}
+use crate::defaults::with_defaults;
 
-impl Default for CornerDetail {
-    fn default() -> Self {
-        Self { uvs: [Vec2::ZERO; 2], color: Vec4::ONE, tangent: Vec3::ZERO, bitangent_sign: 1.0 }
+with_defaults! {
+    /// What a corner has beside the attributes of [`Corner`](super::Corner), as passes and draws read it too. Interpolated
+    /// linearly over a patch.
+    #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+    #[repr(C)]
+    pub struct CornerDetail {
+        /// The texture coordinates TEXCOORD_0 and TEXCOORD_1 of the file, untransformed. Those that no map of the corner's
+        /// material uses (see [`MapUv::Set`](super::MapUv::Set)) are zero.
+        pub uvs: [Vec2; 2] = [Vec2::ZERO; 2],
+        /// Linear RGBA that multiplies the base colour (COLOR_0); white without one.
+        pub color: Vec4 = Vec4::ONE,
+        /// The direction in which the normal map's u grows, of unit length, in object space; zero if it isn't known.
+        pub tangent: Vec3 = Vec3::ZERO,
+        /// 1, or -1 where the bitangent is `-cross(normal, tangent)`.
+        pub bitangent_sign: f32 = 1.0,
     }
 }
 

@@ -6,6 +6,7 @@ use ufbx::{MaterialMap, Mesh, ShaderType, Texture};
 
 use super::convert::{matrix, vec4};
 use geometry::casts::to_f32;
+use geometry::defaults::with_defaults;
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look};
 
@@ -19,18 +20,14 @@ pub(super) struct MapSource<'a> {
     pub uvs: MapUvs,
 }
 
-/// Texture coordinates of a map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MapUvs {
-    /// The index of the mesh's set.
-    pub set: usize,
-    /// The affine map to texture coordinates that count from the top (see [`MapUv::Set`](geometry::mesh::MapUv::Set)).
-    pub transform: [f32; 6],
-}
-
-impl Default for MapUvs {
-    fn default() -> Self {
-        Self { set: 0, transform: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0] }
+with_defaults! {
+    /// Texture coordinates of a map.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub(super) struct MapUvs {
+        /// The index of the mesh's set.
+        pub set: usize = 0,
+        /// The affine map to texture coordinates that count from the top (see [`MapUv::Set`](geometry::mesh::MapUv::Set)).
+        pub transform: [f32; 6] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
     }
 }
 

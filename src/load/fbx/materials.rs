@@ -71,7 +71,12 @@ impl<'a> Materials<'a> {
             let own = mesh.materials.iter().filter(move |_| is_new);
             node.materials.iter().chain(own).map(move |material| LookSource::new(material, mesh))
         });
-        let images: Vec<_> = sources.flat_map(|source| source.images().collect::<Vec<_>>()).collect();
+        let mut images = Vec::new();
+        for source in sources {
+            // Textures can be scaled down to the room that heights leave.
+            self.height(&source)?;
+            images.extend(source.images());
+        }
         Ok(self.textures.read(images.into_iter(), reserved)?)
     }
 
@@ -155,9 +160,8 @@ impl<'a> Materials<'a> {
         };
         let names = [&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name];
         let is_elsewhere = map.uvs != source.own_uvs();
-        let read = self.heights.read(file.file_index, names, is_elsewhere, || self.textures.bytes(file))?;
-        let amount = HeightAmount::from_factor(source.height_factor * self.unit, 0.0);
-        Ok(read.map(|map| map.with_amount(amount)))
+        let used = (HeightAmount::from_factor(source.height_factor * self.unit, 0.0), sampling(map.texture).wrap);
+        Ok(self.heights.read(file.file_index, names, used, is_elsewhere, || self.textures.bytes(file))?)
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.

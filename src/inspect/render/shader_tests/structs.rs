@@ -75,7 +75,7 @@ fn shared_structs_have_the_same_layout() {
     });
     same!(Share { direction, level, dominant });
     same!(PatchRelief { form, longest, range, slope, losses });
-    same!(HeightMap { size, levels, start, repeats, has_amount, scale, midlevel });
+    same!(HeightMap { size, levels, start, wrap, has_amount, scale, midlevel });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
     same!(CornerDetail { uvs, color, tangent });

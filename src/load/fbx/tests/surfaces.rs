@@ -190,6 +190,7 @@ fn a_displacement_map_is_a_height_image_in_units_of_the_file() {
     assert_eq!(loaded.warnings, [] as [String; 0]);
     let map = loaded.materials[0].height.as_ref().expect("a height image");
     assert_eq!((map.size, map.amount), ([1, 2], HeightAmount::from_factor(0.01, 0.0)));
+    assert_eq!(map.wrap, [Wrap::Clamp, Wrap::Repeat]);
     let broken = text(&square_textured_as("DisplacementColor", Ok(b"no image"), 1.0));
     let broken = read(&broken).expect("a mesh");
     let start = "the height image of material \"paint\" is left out: \"wood\" can't be read as a height image: ";

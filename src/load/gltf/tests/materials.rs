@@ -98,11 +98,12 @@ fn height_images_displace_as_either_draft_says() {
     let displaced = |of: Value| json!({ "extensions": { "KHR_materials_displacement": of } });
     for name in ["displacement", "displacementGeometry"] {
         let [texture, factor, offset] = ["Texture", "Factor", "Offset"].map(|end| format!("{name}{end}"));
-        let own = json!({ (&texture): { "index": 0 }, (factor): 0.5, (offset): -0.125 });
+        let own = json!({ (&texture): { "index": 1 }, (factor): 0.5, (offset): -0.125 });
         let map = material(displaced(own)).height.expect("a height image");
         assert_eq!((map.size, map.amount), ([2, 1], Some(HeightAmount { scale: 0.5, midlevel: 0.25 })));
+        assert_eq!(map.wrap, [Wrap::Clamp, Wrap::Mirror], "as the sampler says");
         let usual = material(displaced(json!({ (texture): { "index": 0 } }))).height.expect("a height image");
-        assert_eq!(usual.amount, HeightAmount::from_factor(1.0, 0.0));
+        assert_eq!((usual.amount, usual.wrap), (HeightAmount::from_factor(1.0, 0.0), [Wrap::Repeat; 2]));
     }
     let elsewhere = json!({ "displacementTexture": { "index": 0, "texCoord": 1 } });
     let alone = square(displaced(elsewhere.clone())).read().unwrap();
