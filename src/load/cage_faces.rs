@@ -37,10 +37,12 @@ pub(super) struct OfFace {
     pub is_hole: bool,
 }
 
-/// A cage whose points are the distinct positions of corners; or of corners' vertices, if clips move them apart.
+/// A cage whose points are the distinct positions of corners; or their vertices, where the format has such.
 #[derive(Default)]
 pub(super) struct CageFaces {
     pub subdivision: Subdivision,
+    /// Whether vertices at one position are points of their own, as in modelling programs.
+    by_vertex: bool,
     /// Whether clips may move it.
     moves: bool,
     numbers: HashMap<([u32; 3], u32), u32>,
@@ -60,8 +62,13 @@ pub(super) struct CageFaces {
 }
 
 impl CageFaces {
-    pub(super) fn new(subdivision: Subdivision, import: &Import, moves: bool) -> Self {
-        Self { subdivision, moves, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
+    pub(super) fn new(subdivision: Subdivision, import: &Import) -> Self {
+        Self { subdivision, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
+    }
+
+    /// The same with vertices as points, which clips may move.
+    pub(super) fn of_vertices(self, moves: bool) -> Self {
+        Self { by_vertex: true, moves, ..self }
     }
 
     /// Adds a face of three or more corners. Schemes for triangles get its triangles. Returns how many faces have a point twice:
@@ -117,7 +124,7 @@ impl CageFaces {
 
     fn key(&self, position: Vec3, vertex: u32) -> ([u32; 3], u32) {
         let place = position.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
-        (place, if self.moves { vertex } else { 0 })
+        (place, if self.by_vertex { vertex } else { 0 })
     }
 
     fn point(&mut self, position: Vec3, vertex: u32) -> u32 {

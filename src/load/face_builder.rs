@@ -111,7 +111,7 @@ impl<'a> FaceBuilder<'a> {
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
-            cage: import.subdivision().map(|own| CageFaces::new(own, &import, false)),
+            cage: import.subdivision().map(|own| CageFaces::new(own, &import)),
             is_refined: None,
             is_hole: false,
         }

@@ -143,7 +143,8 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let subdivision = reader.subdivision();
         self.without_normals += usize::from(is_without_normals && subdivision.is_none());
         let moves = reader.binder.is_some();
-        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import, moves));
+        let cage = |own| CageFaces::new(own, &reader.faces.import).of_vertices(moves);
+        reader.faces.cage = subdivision.map(cage);
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {

@@ -324,6 +324,21 @@ fn what_is_marked_as_a_subdivision_surface_is_refined_with_its_creases() {
 }
 
 #[test]
+fn vertices_of_a_cage_at_one_place_stay_apart() {
+    // Two squares that touch along an edge, whose ends are vertices of each.
+    let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1, 0, 0], [1, 0, 1], [1, 1, 1], [1, 1, 0]];
+    let corners: Vec<f64> = corners.into_iter().flatten().map(f64::from).collect();
+    let marks = vec![one("Smoothness", 2), one("PreviewDivisionLevels", 2)];
+    let squares = geometry(10, &corners, &[&[0, 1, 2, 3], &[4, 5, 6, 7]], marks);
+    let objects = vec![squares, model(20, "squares", "Mesh", &[])];
+    let mesh = loaded(&document(true, 1.0, objects, &[Link(20, 0, ""), Link(10, 20, "")]));
+    assert_eq!(mesh.triangles.len(), 2 * 16 * 2);
+    let edge = mesh.corners.iter().map(|corner| corner.position.x).fold(0.0, f32::max);
+    let bent = mesh.corners.iter().filter(|corner| corner.position.y > 1e-6 && corner.position.x < edge - 1e-6);
+    assert_eq!(bent.count(), 0, "each square stays in its plane");
+}
+
+#[test]
 fn a_cage_that_the_file_shows_as_such_stays() {
     for (mode, levels, triangles) in [(1, 2, 20), (2, 2, 36 * 4 * 2), (3, 1, 36 * 2), (3, 0, 20)] {
         let marked = prism(vec![one("Smoothness", mode), one("PreviewDivisionLevels", levels)]);
