@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
 
-use super::import::{Import, Subdivision};
+use super::import::Subdivision;
 use super::recent_corners::NumberedCorner;
 use super::rig_builder::RigBuilder;
 use geometry::casts::to_u32;
@@ -50,14 +50,12 @@ pub(super) struct CageFaces {
     creases: Vec<([u32; 2], f32)>,
     sharp_points: Vec<(u32, f32)>,
     holes: Vec<u32>,
-    /// Whether refined corners get the normals of the limit surface.
-    has_normals: bool,
     held: u64,
 }
 
 impl CageFaces {
-    pub(super) fn new(subdivision: Subdivision, import: &Import, moves: bool) -> Self {
-        Self { subdivision, moves, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
+    pub(super) fn new(subdivision: Subdivision, moves: bool) -> Self {
+        Self { subdivision, moves, starts: vec![0], ..Self::default() }
     }
 
     /// Adds a face of three or more corners. Loop's scheme gets its triangles. Returns how many faces have a point twice: these are left
@@ -228,7 +226,7 @@ impl CageFaces {
                     None => binding,
                 };
                 let position = places[point].as_vec3();
-                let normal = Some(normals[k]).filter(|_| self.has_normals);
+                let normal = Some(normals[k]);
                 let uv = uvs.get(k).map_or(Vec2::ZERO, |uv| uv.xy().as_vec2());
                 corners.push(NumberedCorner { corner: InputCorner { position, normal, uv }, number, vertex: None });
             }

@@ -23,7 +23,7 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, Slot};
+use geometry::mesh::{CornerDetail, Material, PartStyle, Slot};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -111,7 +111,7 @@ impl<'a> FaceBuilder<'a> {
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
-            cage: import.subdivision().map(|own| CageFaces::new(own, &import, false)),
+            cage: import.subdivision().map(|own| CageFaces::new(own, false)),
             is_refined: None,
             is_hole: false,
         }
@@ -137,6 +137,10 @@ impl<'a> FaceBuilder<'a> {
             |corners, OfFace { material, part, .. }| {
                 progress.check()?;
                 self.builder.enter_part(part);
+                let own = self.parts.style(part, self.builder.style_of_material(material));
+                if self.import.makes_normals_of(own) {
+                    corners.iter_mut().for_each(|at| at.corner.normal = None);
+                }
                 self.store(material, corners, false)
             },
         )?;
@@ -170,7 +174,12 @@ impl<'a> FaceBuilder<'a> {
         if self.materials > MAX_MATERIALS {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
-        Ok(self.builder.material(material))
+        Ok(self.builder.material(self.parts.styled(material)))
+    }
+
+    /// What the next faces of a material have in place of what is said for all.
+    pub(super) fn style(&self, material: usize) -> PartStyle {
+        self.parts.style(self.parts.current(), self.builder.style_of_material(material))
     }
 
     /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.
@@ -232,9 +241,9 @@ impl<'a> FaceBuilder<'a> {
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
-        let bad_uvs = self.found.bad_uvs;
+        let (bad_uvs, makes_normals) = (self.found.bad_uvs, self.import.makes_normals_of(self.style(material)));
         for NumberedCorner { corner, .. } in corners.iter_mut() {
-            if self.import.makes_normals() {
+            if makes_normals {
                 corner.normal = None;
             }
             if !corner.uv.is_finite() {
@@ -268,8 +277,9 @@ impl<'a> FaceBuilder<'a> {
         if is_left_out {
             return Ok(());
         }
-        // Repairs are counted again wherever their vertices are used.
-        self.store(material, corners, bad_uvs == self.found.bad_uvs)
+        // Repairs are counted again wherever their vertices are used, and other faces may have their vertices' own normals.
+        let is_usual = makes_normals == self.import.makes_normals();
+        self.store(material, corners, bad_uvs == self.found.bad_uvs && is_usual)
     }
 
     /// Stores a face as triangles, if there is room for them.

@@ -75,6 +75,7 @@ use accessor::Accessors;
 use buffers::Buffers;
 use extensions::InstancingExtension;
 use materials::Materials;
+use node_parts::NodeParts;
 use nodes::Placed;
 use primitive::PrimitiveReader;
 use scene_size::SceneNeeds;
@@ -118,7 +119,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let mut scene = Scene {
         document,
         global: grown.as_deref().unwrap_or(&placed.global),
-        parts: &parsed.parts.of_node,
+        parts: &parsed.parts,
         instances: &extensions.instances,
         accessors: &accessors,
         materials,
@@ -186,8 +187,7 @@ struct Scene<'a> {
     document: &'a Document,
     /// The transform from each node's own space to the scene's, in which the meshes are built.
     global: &'a [DMat4],
-    /// The part of each node that has a mesh.
-    parts: &'a HashMap<usize, u32>,
+    parts: &'a NodeParts,
     /// By node, the instances of its mesh.
     instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
@@ -208,7 +208,7 @@ impl<'a> Scene<'a> {
         let _scope = Borrowed::from(self.accessors.budget);
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(self.global));
-        self.builder.enter_part(self.parts.get(&node.index()).copied());
+        self.builder.enter_part(self.parts.of_node.get(&node.index()).copied());
         let mut own = self.instances.get(&node.index());
         if own.is_some() && skin.is_some() {
             // Vertices of a skin don't move with their node.
@@ -246,12 +246,16 @@ impl<'a> Scene<'a> {
             if self.primitives.skip(&primitive) {
                 continue;
             }
-            let material = self.materials.resolve(&primitive.material(), scale, &mut self.builder);
+            let add = |material| self.builder.material(self.parts.list.styled(material));
+            let material = self.materials.resolve(&primitive.material(), scale, add);
+            let of_material = self.builder.style_of_material(material.index);
+            let style = self.parts.list.style(self.parts.of_node.get(&node.index()).copied(), of_material);
             let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
                 mesh,
                 primitive: &primitive,
                 pose: &pose,
+                style,
                 material,
                 accessors: self.accessors,
                 builder: &mut self.builder,

@@ -3,23 +3,10 @@
 use geometry::casts::to_byte;
 use geometry::choice::choices;
 use geometry::defaults::with_defaults;
-use geometry::mesh::normals::CREASE_ANGLE;
+use geometry::mesh::normals::{CREASE_ANGLE, NormalSource};
 use geometry::mesh::orientation::reorient;
 use geometry::mesh::subdivision::{Boundary, Scheme};
-use geometry::mesh::{Mesh, UpAxis};
-
-choices! {
-    /// Whose normals the corners of a mesh have.
-    #[derive(Default, Hash)]
-    pub enum NormalSource {
-        #[default]
-        File => "file", "Of the file",
-            "Corners have the normals of the file. Where it has none, or one without a direction, they are made.";
-        Made => "made", "Made anew",
-            "All normals are made from the triangles around each point, weighted by angle, as if the file had none. Its \
-             smoothing groups and tangents aren't used then.";
-    }
-}
+use geometry::mesh::{Mesh, PartStyle, UpAxis};
 
 choices! {
     /// Whether polygons are taken as the cage of a subdivision surface.
@@ -151,9 +138,14 @@ impl Import {
         self.levels.map_or(of_file, |levels| to_byte(levels.round())).min(MOST_LEVELS)
     }
 
-    /// Whether all normals are made.
+    /// Whether all normals are made, but for those of parts and materials that say otherwise.
     pub(super) fn makes_normals(&self) -> bool {
-        self.normals == NormalSource::Made
+        self.makes_normals_of(PartStyle::default())
+    }
+
+    /// Whether the normals are made of what has this style.
+    pub(super) fn makes_normals_of(&self, own: PartStyle) -> bool {
+        own.normals.unwrap_or(self.normals) == NormalSource::Made
     }
 
     /// Whether the mesh has another place than the file says.

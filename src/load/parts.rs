@@ -7,12 +7,13 @@ use std::collections::{BTreeMap, HashMap};
 
 use serde::Serialize;
 
+use super::import::Import;
 use super::memory_budget::Budget;
 use super::notes::{Notes, counted};
-use super::selection::{MATERIAL, Names, Selection, ShownParts, choice, hides, is_material};
+use super::selection::{MATERIAL, Names, Selection, ShownParts, choice, hides, is_material, is_part_of};
 use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::MeshBuilder;
-use geometry::mesh::{MemoryRefused, Mesh};
+use geometry::mesh::{Material, MemoryRefused, Mesh, PartStyle};
 
 /// The greatest number of parts. The triangles of others belong to none, and are always shown.
 const MAX_PARTS: usize = 1 << 16;
@@ -32,7 +33,7 @@ const PER_LETTER: u64 = 16;
 const PER_RANGE: u64 = 32;
 
 /// A part of a file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
     /// Its path. That of a material begins with [`MATERIAL`].
     pub name: String,
@@ -43,6 +44,9 @@ pub struct Part {
     /// The length in bytes of that start of the name that is the path of a level of detail other than the first, or 0.
     #[serde(skip)]
     pub level: usize,
+    /// What it has in place of what is said for all.
+    #[serde(skip)]
+    pub style: PartStyle,
 }
 
 /// The parts of a file that is being read.
@@ -95,7 +99,8 @@ impl Parts {
         if number == self.found.len() {
             let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
             let is_hidden = hides(&self.names, &path, level);
-            self.found.push(Part { name: path, triangles: 0, is_hidden, level });
+            let style = self.style_at(&path);
+            self.found.push(Part { name: path, triangles: 0, is_hidden, level, style });
         }
         self.current = Some(number);
         Ok(())
@@ -115,9 +120,40 @@ impl Parts {
         ends(path).find(is_further).unwrap_or(0)
     }
 
-    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones.
+    /// The style of a path. That of what lies in a group wins over that of the group, and the last one among equals.
+    fn style_at(&self, path: &str) -> PartStyle {
+        let mut own: Vec<_> = self.selected.styles.iter().filter(|(name, _)| is_part_of(path, name)).collect();
+        own.sort_by_cached_key(|(name, _)| {
+            let begins = ends(path).position(|end| is_part_of(&path[..end], name));
+            (begins, name.trim_start_matches('/').len())
+        });
+        own.into_iter().fold(PartStyle::default(), |others, (_, style)| style.or(others))
+    }
+
+    /// The style of faces of a part whose material has this one.
+    pub(super) fn style(&self, part: Option<u32>, of_material: PartStyle) -> PartStyle {
+        part.map_or(of_material, |part| self.found[part as usize].style.or(of_material))
+    }
+
+    /// Gives a material its style.
+    pub(super) fn styled(&self, material: Material) -> Material {
+        let mut path = String::new();
+        join(&mut path, &[MATERIAL, &material.name].concat(), DEFAULT_PART);
+        Material { style: self.style_at(&path), ..material }
+    }
+
+    /// Whether all normals are made, whatever a part or a material says.
+    pub(super) fn make_all_normals(&self, import: &Import) -> bool {
+        let keeps = |own: &PartStyle| !import.makes_normals_of(*own);
+        import.makes_normals() && !self.selected.styles.iter().any(|(_, own)| keeps(own))
+    }
+
+    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones. Gives the
+    /// builder the styles of the other parts.
     pub(super) fn enter_materials(&mut self, builder: &mut MeshBuilder, budget: &Budget) -> Result<(), MemoryRefused> {
-        let mut selected = self.selected.hidden.iter().chain(&self.selected.only);
+        builder.style_parts(self.found.iter().map(|part| part.style).collect());
+        let ShownParts { hidden, only, styles, morphs: _ } = &self.selected;
+        let mut selected = hidden.iter().chain(only).chain(styles.iter().map(|(name, _)| name));
         if builder.used_materials() < 2 && !selected.any(|name| is_material(name)) {
             return Ok(());
         }
@@ -156,6 +192,8 @@ impl Parts {
         let places: Vec<u32> = places.collect();
         mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
         self.found.retain(|part| part.triangles > 0);
+        let are_styled = self.found.iter().any(|part| part.style != PartStyle::default());
+        mesh.part_styles = self.found.iter().filter(|_| are_styled).map(|part| part.style).collect();
         let is_level = |part: &&Part| part.level > 0 && part.is_hidden && self.selected.only.is_empty();
         notes.extend(counted([
             (self.beyond, "parts beyond the first 65,536, which can't be hidden"),
@@ -231,8 +269,8 @@ pub(super) fn ends(path: &str) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::selection::is_part_of;
     use geometry::mesh::PartRange;
+    use geometry::mesh::normals::NormalSource;
 
     fn entered(parts: &mut Parts, name: &str, triangles: usize) -> bool {
         parts.enter(name.as_bytes(), 0, &Budget::unlimited()).expect("memory is unlimited");
@@ -265,7 +303,13 @@ mod tests {
         let found = parts.finish(&mut mesh, &mut notes);
         let places: Vec<_> = mesh.part_ranges.iter().map(|range| range.part).collect();
         assert_eq!(places, [0, 1, 1], "that without triangles has no place of its own");
-        let part = |name: &str, triangles, is_hidden| Part { name: name.to_owned(), triangles, is_hidden, level: 0 };
+        let part = |name: &str, triangles, is_hidden| Part {
+            name: name.to_owned(),
+            triangles,
+            is_hidden,
+            level: 0,
+            style: PartStyle::default(),
+        };
         assert_eq!(found, [part("a", u32::MAX, false), part("b", 3, true)]);
         assert_eq!(notes.into_warnings(), ["parts beyond the first 65,536, which can't be hidden: 3."]);
     }
@@ -321,6 +365,66 @@ mod tests {
         assert_eq!(meant("Arm/Hand"), [false, false, true, false, false, false]);
         assert_eq!(meant("material:Arm"), [false, false, false, false, false, true]);
         assert_eq!(meant("arm"), [false; 6]);
+    }
+
+    fn parsed(styles: &[(&str, &str)]) -> ShownParts {
+        let style = |(name, style): &(&str, &str)| ((*name).to_owned(), style.parse().expect("a style"));
+        ShownParts { styles: styles.iter().map(style).collect(), ..ShownParts::default() }
+    }
+
+    /// The styles of three parts, in the order of the file, and of a material.
+    fn styled(styles: &[(&str, &str)]) -> (String, String) {
+        let shown = parsed(styles);
+        let mut parts = Parts::new(&Selection { parts: Some(&shown), ..Selection::default() });
+        for name in ["Car", "empty", "Car/Wheel", "Hat"] {
+            entered(&mut parts, name, usize::from(name != "empty"));
+        }
+        let red = parts.styled(Material::plain("Red", [1.0; 4])).style.to_string();
+        let mut mesh = Mesh::default();
+        parts.finish(&mut mesh, &mut Notes::default());
+        (mesh.part_styles.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "), red)
+    }
+
+    #[test]
+    fn styles_of_what_lies_in_a_group_win_over_those_of_the_group_each_for_what_it_says() {
+        let own = |styles: &[(&str, &str)]| styled(styles).0;
+        let wheel = ("Wheel", "surface=flat,crease=30");
+        for styles in [[wheel, ("Car", "detail=2,surface=pn")], [("Car", "detail=2,surface=pn"), wheel]] {
+            assert_eq!(own(&styles), "surface=pn,detail=2 surface=flat,detail=2,crease=30 ");
+        }
+        assert_eq!(own(&[("Car", "detail=2"), ("/Car", "detail=4")]), "detail=4 detail=4 ", "the last");
+        assert_eq!(
+            own(&[("Car", "detail=2"), ("Car", "normals=made")]),
+            "detail=2,normals=made detail=2,normals=made "
+        );
+        assert_eq!(own(&[("Car/Wheel", "detail=2"), ("Wheel", "detail=4")]), " detail=2 ", "longer");
+        assert_eq!(own(&[("Car/.", "detail=2"), ("Car", "detail=4")]), "detail=2 detail=4 ");
+        assert_eq!(own(&[("Car/Wheel", "detail=1"), ("Car", "detail=4")]), "detail=4 detail=1 ", "1 is said too");
+        assert_eq!(own(&[("material:Red", "detail=2")]), "", "no part has one");
+    }
+
+    #[test]
+    fn materials_have_styles_where_their_parts_say_nothing() {
+        let red = ("material:Red", "surface=flat,normals=made");
+        assert_eq!(styled(&[red, ("Red", "detail=2")]).1, "surface=flat,normals=made");
+        let shown = parsed(&[red, ("Hat", "normals=file"), ("Car", "detail=2")]);
+        let mut parts = Parts::new(&Selection { parts: Some(&shown), ..Selection::default() });
+        let of_material = parts.styled(Material::plain("Red", [1.0; 4])).style;
+        let style = |parts: &Parts| parts.style(parts.current(), of_material).to_string();
+        assert_eq!(style(&parts), "surface=flat,normals=made", "in no part");
+        for (name, expected) in [
+            ("Car", "surface=flat,detail=2,normals=made"),
+            ("Hat", "surface=flat,normals=file"),
+            ("Tie", "surface=flat,normals=made"),
+        ] {
+            entered(&mut parts, name, 1);
+            assert_eq!(style(&parts), expected, "{name}");
+        }
+        let all = |import: &Import| parts.make_all_normals(import);
+        let made = Import { normals: NormalSource::Made, ..Import::default() };
+        assert!(!all(&made), "the hat has those of the file");
+        assert!(!all(&Import::default()));
+        assert!(hiding(&[], &[]).make_all_normals(&made));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::format::Format;
-use super::import::{Import, NormalSource};
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::mesh_file::{LoadError, check_selected, load_selected, read};
 use super::selection::Selection;
@@ -53,17 +53,13 @@ impl Source {
         limits: &Limits,
         progress: &Progress,
     ) -> Result<LoadedMesh, LoadError> {
-        let mut loaded = match self {
+        let loaded = match self {
             Self::Shape(shape) => self.made(shape.build(), selected.import, progress),
             Self::FineShape(shape, level) => self.made(shape.build_at(*level), selected.import, progress),
-            Self::Vase => {
-                let bytes = assets::VASE.to_vec();
-                let selected = Selection { import: selected.import, ..Selection::default() };
-                read(Format::Gltf, bytes, Path::new("vase.glb"), selected, limits, progress)
-            }
+            Self::Vase => read(Format::Gltf, assets::VASE.to_vec(), Path::new("vase.glb"), selected, limits, progress),
             Self::File(path) => return load_selected(path, selected, limits, progress),
         }?;
-        check_selected(self.to_string().as_ref(), selected, &mut loaded)?;
+        check_selected(self.to_string().as_ref(), selected, &loaded.contents)?;
         Ok(loaded)
     }
 
@@ -75,8 +71,7 @@ impl Source {
         if import.moves() {
             return Err(LoadError::Shape { shape: self.to_string() });
         }
-        let mesh =
-            if import.normals == NormalSource::Made { with_made_normals(mesh, &import, progress)? } else { mesh };
+        let mesh = if import.makes_normals() { with_made_normals(mesh, &import, progress)? } else { mesh };
         Ok(LoadedMesh { mesh, ..LoadedMesh::default() })
     }
 

@@ -14,9 +14,10 @@ use geometry::mesh::PartStyle;
 use geometry::names::{shortened, shown};
 use geometry::tessellate::Surface;
 use inspect::render::framed_size;
-use load::ShownParts;
+use inspect::settings::options;
 use load::part_tree::{Branch, end, leaves};
-use load::selection::{MATERIAL, is_material, is_part_of};
+use load::selection::{MATERIAL, is_part_of};
+use load::{NormalSource, ShownParts};
 
 /// The greatest length of a name in a list, in characters.
 pub(super) const LONGEST: usize = 40;
@@ -37,10 +38,13 @@ enum PartAction {
     Solo(usize),
     Frame(usize),
     CopyName(usize),
-    /// Gives it a surface and a detail of its own.
+    /// Gives it a style of its own.
     Style(usize, PartStyle),
     ShowAll,
 }
+
+/// The crease angles on offer, in degrees.
+const CREASE_ANGLES: [f32; 5] = [0.0, 30.0, 60.0, 90.0, 180.0];
 
 /// The details on offer.
 const DETAILS: [(f32, &str); 7] =
@@ -247,17 +251,15 @@ fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize, selected: &ShownP
         ui.add_enabled(is_possible, egui::Button::new(label)).clicked().then_some(action)
     };
     let mut chosen = entries.into_iter().filter_map(chosen).last();
-    if !is_material(&branch.path) {
-        let style = style_entries(ui, selected.style(&branch.name));
-        chosen = style.map(|style| PartAction::Style(at, style)).or(chosen);
-    }
+    let style = style_entries(ui, selected.style(&branch.name));
+    chosen = style.map(|style| PartAction::Style(at, style)).or(chosen);
     if chosen.is_some() {
         ui.close();
     }
     chosen
 }
 
-/// The surfaces and details that a part may have of its own. Returns its style, if another is chosen.
+/// What a part may have of its own. Returns its style, if another is chosen.
 fn style_entries(ui: &mut egui::Ui, style: PartStyle) -> Option<PartStyle> {
     let mut chosen = None;
     let mut entry = |ui: &mut egui::Ui, own: PartStyle, label: &str, hover: &str| {
@@ -276,6 +278,19 @@ fn style_entries(ui: &mut egui::Ui, style: PartStyle) -> Option<PartStyle> {
         for (detail, label) in DETAILS.map(|(detail, label)| (Some(detail), label)) {
             let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
             entry(ui, PartStyle { detail, ..style }, label, hover);
+        }
+    });
+    ui.menu_button("Its normals", |ui| {
+        entry(ui, PartStyle { normals: None, ..style }, "As set for all", "The normals that the settings choose.");
+        for normals in NormalSource::ALL {
+            entry(ui, PartStyle { normals: Some(normals), ..style }, normals.label(), normals.text());
+        }
+    });
+    ui.menu_button("Its crease angle", |ui| {
+        entry(ui, PartStyle { crease_angle: None, ..style }, "As set for all", options::CREASE_ANGLE.text);
+        for angle in CREASE_ANGLES {
+            let own = PartStyle { crease_angle: Some(angle), ..style };
+            entry(ui, own, &format!("{angle}\u{b0}"), options::CREASE_ANGLE.text);
         }
     });
     chosen

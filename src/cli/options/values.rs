@@ -59,7 +59,9 @@ pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
 
 /// Parses the name of a part, and what it has in place of what is set for all.
 pub(crate) fn part_style(text: &str) -> Result<(String, PartStyle), String> {
-    let (name, style) = text.rsplit_once(':').ok_or("expected NAME:surface=SURFACE,detail=NUMBER")?;
+    let (name, style) = text
+        .rsplit_once(':')
+        .ok_or("expected NAME:KEY=VALUE,.., such as door:surface=flat,detail=2,normals=made,crease=30")?;
     Ok((name.to_owned(), style.parse()?))
 }
 

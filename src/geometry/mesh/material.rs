@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::HeightMap;
+use super::{HeightMap, PartStyle};
 use crate::choice::choices;
 use crate::defaults::with_defaults;
 
@@ -29,6 +29,8 @@ pub struct Material {
     pub height: Option<HeightMap>,
     /// The mesh's triangles of this material.
     pub triangles: Range<u32>,
+    /// What these have in place of what is said for all, where their part says nothing.
+    pub style: PartStyle,
 }
 
 impl Material {
@@ -43,6 +45,7 @@ impl Material {
             look: Look::default(),
             height: None,
             triangles: 0..0,
+            style: PartStyle::default(),
         }
     }
 

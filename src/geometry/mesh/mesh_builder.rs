@@ -10,11 +10,11 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
-use super::generate_normals::generate_normals;
+use super::generate_normals::{CreaseAngles, generate_normals};
 use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::unfinished_mesh::UnfinishedMesh;
 use super::weld::{plus_zero2, plus_zero3};
-use super::{Corner, Material, Mesh, PartRange, Repairs};
+use super::{Corner, Material, Mesh, PartRange, PartStyle, Repairs};
 use crate::casts::to_u32;
 use crate::cores::{in_ranges, ranges};
 use crate::progress::{Cancelled, Progress};
@@ -57,6 +57,8 @@ pub struct MeshBuilder {
     part: Option<u32>,
     /// The angle up to which faces are smooth where normals are made, in degrees.
     crease_angle: f32,
+    /// What parts have in place of what is said for all, by their numbers.
+    part_styles: Vec<PartStyle>,
 }
 
 impl Default for MeshBuilder {
@@ -132,6 +134,7 @@ impl MeshBuilder {
             repairs: Repairs::default(),
             part: None,
             crease_angle,
+            part_styles: Vec::new(),
         }
     }
 
@@ -206,6 +209,12 @@ impl MeshBuilder {
         self.part = part;
     }
 
+    /// Gives parts styles, by the numbers that they are [entered](Self::enter_part) with: whatever lacks normals gets them as the style
+    /// of its part or material says.
+    pub fn style_parts(&mut self, styles: Vec<PartStyle>) {
+        self.part_styles = styles;
+    }
+
     /// Returns how many materials have triangles.
     pub fn used_materials(&self) -> usize {
         self.groups.iter().filter(|group| group.triangles > 0).count()
@@ -223,6 +232,14 @@ impl MeshBuilder {
             }
         }
         Ok(())
+    }
+
+    /// The style of a material that was added.
+    ///
+    /// # Panics
+    /// As [`triangle`](Self::triangle).
+    pub fn style_of_material(&self, material: usize) -> PartStyle {
+        self.groups[material].material.style
     }
 
     /// A material that was added.
@@ -365,8 +382,10 @@ impl MeshBuilder {
         progress.check()?;
         let DistinctCorners { corners, bindings, .. } = self.distinct;
         let mut mesh = UnfinishedMesh { corners, bindings, triangles };
+        let (repairs, part_styles) = (self.repairs, self.part_styles);
+        let made = Mesh { name, materials, part_ranges, part_styles, repairs, ..Mesh::default() };
         if mesh.corners.iter().any(|corner| corner.normal.x.is_nan()) {
-            generate_normals(&mut mesh, self.crease_angle, budget, progress)?;
+            generate_normals(&mut mesh, &CreaseAngles::new(self.crease_angle, &made), budget, progress)?;
         }
         let _scope = Borrowed::from(budget);
         budget.borrow(mesh.corners.len() as u64 * 4)?;
@@ -378,9 +397,7 @@ impl MeshBuilder {
             budget.borrow(corners.len() as u64 * 32)?;
             corners.shrink_to_fit();
         }
-        let repairs = self.repairs;
-        let triangles = triangles.into();
-        Ok((Mesh { name, corners, triangles, materials, part_ranges, repairs, ..Mesh::default() }, bindings))
+        Ok((Mesh { corners, triangles: triangles.into(), ..made }, bindings))
     }
 
     /// Joins all triangles into one list, and returns it with the materials that have triangles, and with the parts.

@@ -29,6 +29,8 @@ pub struct Stats {
     pub view: Option<String>,
     adapter: String,
     settings: SettingsStats,
+    /// What parts and materials have in place of settings, as `--part` has it.
+    parts: Vec<String>,
     triangles_in: u64,
     points: u64,
     corners: u64,
@@ -323,6 +325,7 @@ impl Shot {
             factors_file: None,
             adapter: engine.gpu.info.name.clone(),
             settings: SettingsStats::new(settings, scene.tessellator.surface_shader().is_some(), &self.judged),
+            parts: self.posed.preparation.parts.style_texts().collect(),
             triangles_in: mesh.triangles.len() as u64,
             points: topology.points.len() as u64,
             corners: mesh.corners.len() as u64,

@@ -109,12 +109,6 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
         let skin = Skin::new(node, mesh, global);
-        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
-        let is_without_normals = vertices.is_without_normals();
-        let binder = self.binder.as_mut().map(|binder| {
-            let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
-            Binder::new(binder, &vertices)
-        });
         let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
         let levels = &self.placed.levels;
         let own = |node: usize| (&*self.scene.nodes[node].element.name, false);
@@ -122,6 +116,15 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         // The scene's root isn't one of the file's nodes.
         let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;
+        let own = self.faces.parts.style(self.faces.parts.current(), PartStyle::default());
+        let makes_all = self.faces.parts.make_all_normals(&self.faces.import);
+        let vertices = Vertices::new(node, mesh, (global[index], skin.as_ref()), selected, makes_all, self.budget)?;
+        let is_without_normals =
+            vertices.is_without_normals() && !self.faces.import.makes_normals_of(own) && own.crease_angle.is_none();
+        let binder = self.binder.as_mut().map(|binder| {
+            let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
+            Binder::new(binder, &vertices)
+        });
         let mut reader = MeshReader {
             node,
             mesh,
@@ -139,7 +142,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let subdivision = reader.subdivision();
         self.without_normals += usize::from(is_without_normals && subdivision.is_none());
         let moves = reader.binder.is_some();
-        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import, moves));
+        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, moves));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {
@@ -252,6 +255,7 @@ impl MeshReader<'_, '_, '_> {
             return Err(FilePosition::Everywhere.error(reason));
         }
         let material = self.material(i)?;
+        self.vertices.makes_normals = self.faces.import.makes_normals_of(self.faces.style(material.index));
         corners.clear();
         let mut is_mirrored = false;
         for corner in (face.index_begin as usize..).take(face.num_indices as usize) {

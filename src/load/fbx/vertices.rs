@@ -27,8 +27,8 @@ pub(super) struct Vertices<'a> {
     pub to_node: DMat4,
     /// The normals of corners that the file doesn't have, but says how smooth they are.
     made: Option<Vec<Vec3>>,
-    /// Whether all normals are made, whatever the file has.
-    makes_normals: bool,
+    /// Whether normals are made of the corners that are read next, whatever the file has.
+    pub makes_normals: bool,
 }
 
 /// A corner in its rest pose, and as it was before.
@@ -42,20 +42,19 @@ pub(super) struct PosedCorner {
 }
 
 impl<'a> Vertices<'a> {
-    /// Prepares to read; `at` is the node's place.
+    /// Prepares to read; `at` is the node's place. `makes_normals` says whether all normals are made.
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
     pub(super) fn new(
         node: &Node,
         mesh: &'a Mesh,
-        at: DMat4,
-        skin: Option<&'a Skin<'a>>,
+        (at, skin): (DMat4, Option<&'a Skin<'a>>),
         selected: &Selection,
+        makes_normals: bool,
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let makes_normals = selected.import.makes_normals();
         let is_told = mesh.vertex_normal.exists || makes_normals;
         let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
