@@ -13,7 +13,7 @@ use inspect::settings::{Colors, Lighting, Settings, options};
 use inspect::shot::{CopiedCommand, Turn, given};
 use load::files::Limits;
 use load::import::Subdivide;
-use load::{HeightSource, ShownParts, Source};
+use load::{HeightSource, NormalSource, ShownParts, Source};
 use proptest::prelude::*;
 
 use crate::cli::options::Declared;

@@ -316,9 +316,9 @@ pub struct PartOptions {
     /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
-    /// Give the part, group or material of this name a surface of its own, LOD 1/64 to 16 times as fine, normals, or a crease angle,
-    /// such as `NAME:surface=flat,detail=0.5,normals=made,crease=30`; may be given several times. What a part has counts before what
-    /// its material has. Edges between parts take the surface that comes first in the list of `--surface`, and the finest detail
+    /// Give the part, group or material of this name a surface of its own, LOD 1/64 to 16 times as fine, normals, or a crease
+    /// angle, such as `NAME:surface=flat,detail=0.5,normals=made,crease=30`; may be given several times. A part's count before its
+    /// material's. Edges between parts take the surface that comes first in the list of `--surface`, and the finest detail
     #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
     part: Vec<(String, PartStyle)>,
     /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.

@@ -137,8 +137,7 @@ impl<'a> FaceBuilder<'a> {
             |corners, OfFace { material, part, .. }| {
                 progress.check()?;
                 self.builder.enter_part(part);
-                let own = self.parts.style(part, self.builder.style_of_material(material));
-                if self.import.makes_normals_of(own) {
+                if self.import.makes_normals_of(self.parts.style(part, self.builder.material_mut(material).style)) {
                     corners.iter_mut().for_each(|at| at.corner.normal = None);
                 }
                 self.store(material, corners, false)
@@ -169,17 +168,18 @@ impl<'a> FaceBuilder<'a> {
     ///
     /// # Errors
     /// [`ReadError::TooMany`].
-    pub(super) fn material(&mut self, material: Material) -> Result<usize, ReadError> {
+    pub(super) fn material(&mut self, mut material: Material) -> Result<usize, ReadError> {
         self.materials += 1;
         if self.materials > MAX_MATERIALS {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
-        Ok(self.builder.material(self.parts.styled(material)))
+        self.parts.give_style(&mut material);
+        Ok(self.builder.material(material))
     }
 
     /// What the next faces of a material have in place of what is said for all.
-    pub(super) fn style(&self, material: usize) -> PartStyle {
-        self.parts.style(self.parts.current(), self.builder.style_of_material(material))
+    pub(super) fn style(&mut self, material: usize) -> PartStyle {
+        self.parts.style(self.parts.current(), self.builder.material_mut(material).style)
     }
 
     /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.
@@ -241,9 +241,9 @@ impl<'a> FaceBuilder<'a> {
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
-        let (bad_uvs, makes_normals) = (self.found.bad_uvs, self.import.makes_normals_of(self.style(material)));
+        let (bad_uvs, own) = (self.found.bad_uvs, self.style(material));
         for NumberedCorner { corner, .. } in corners.iter_mut() {
-            if makes_normals {
+            if self.import.makes_normals_of(own) {
                 corner.normal = None;
             }
             if !corner.uv.is_finite() {
@@ -278,8 +278,7 @@ impl<'a> FaceBuilder<'a> {
             return Ok(());
         }
         // Repairs are counted again wherever their vertices are used, and other faces may have their vertices' own normals.
-        let is_usual = makes_normals == self.import.makes_normals();
-        self.store(material, corners, bad_uvs == self.found.bad_uvs && is_usual)
+        self.store(material, corners, bad_uvs == self.found.bad_uvs && own.normals.is_none())
     }
 
     /// Stores a face as triangles, if there is room for them.

@@ -246,10 +246,10 @@ impl<'a> Scene<'a> {
             if self.primitives.skip(&primitive) {
                 continue;
             }
-            let add = |material| self.builder.material(self.parts.list.styled(material));
-            let material = self.materials.resolve(&primitive.material(), scale, add);
-            let of_material = self.builder.style_of_material(material.index);
-            let style = self.parts.list.style(self.parts.of_node.get(&node.index()).copied(), of_material);
+            let material = self.materials.resolve(&primitive.material(), scale, &mut self.builder);
+            let own = self.builder.material_mut(material.index);
+            self.parts.list.give_style(own);
+            let style = self.parts.list.style(self.parts.of_node.get(&node.index()).copied(), own.style);
             let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
                 mesh,

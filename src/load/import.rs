@@ -110,10 +110,8 @@ const WHICH_ARE: &str = ", which are ";
 
 /// Whether a warning is that about normals that a file lacks.
 pub fn is_of_lacking_normals(warning: &str) -> bool {
-    let lacking = warning.split_once(WHICH_ARE);
-    lacking.is_some_and(|(what, shown)| {
-        what.contains("without normals") && (shown.starts_with("flat") || shown.starts_with("smoothed below"))
-    })
+    let are = |how: &str| warning.contains(&[WHICH_ARE, how].concat());
+    warning.contains("without normals") && (are("flat") || are("smoothed below"))
 }
 
 impl Import {
@@ -138,24 +136,9 @@ impl Import {
         self.levels.map_or(of_file, |levels| to_byte(levels.round())).min(MOST_LEVELS)
     }
 
-    /// Whether all normals are made, but for those of parts and materials that say otherwise.
-    pub(super) fn makes_normals(&self) -> bool {
-        self.makes_normals_of(PartStyle::default())
-    }
-
     /// Whether the normals are made of what has this style.
     pub(super) fn makes_normals_of(&self, own: PartStyle) -> bool {
         own.normals.unwrap_or(self.normals) == NormalSource::Made
-    }
-
-    /// Whether the mesh has another place than the file says.
-    pub fn moves(&self) -> bool {
-        self.up.is_some() || self.unit.is_some()
-    }
-
-    /// The same without axis and unit, which are those of one file.
-    pub fn without_placement(self) -> Self {
-        Self { up: None, unit: None, ..self }
     }
 
     /// Axis and unit alone, as another file of the same scene takes them.
@@ -163,15 +146,10 @@ impl Import {
         Self { up: self.up, unit: self.unit, ..Self::default() }
     }
 
-    /// Says how normals are made, as the end of a sentence.
-    pub(super) fn smoothness(&self) -> String {
-        format!("smooth within {} degrees", self.crease_angle)
-    }
-
     /// The warning about `count` parts of a file that lack normals, with what these are and what becomes of them. Where all normals are
     /// made, none is missed.
     pub(super) fn lacking_normals(&self, count: usize, what: &str) -> (usize, String) {
-        let count = if self.makes_normals() { 0 } else { count };
+        let count = if self.normals == NormalSource::Made { 0 } else { count };
         let shown = match self.crease_angle {
             0.0 => "flat".to_owned(),
             angle => format!("smoothed below {angle} degrees"),

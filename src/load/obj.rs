@@ -66,8 +66,7 @@ fn gather<'a>(
     let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
     let held = budget.held();
     let mut smoothing = Smoothing::new(&vertices, budget);
-    let is_smoothed = vertices.is_smoothed && !faces.parts.make_all_normals(&faces.import);
-    if is_smoothed {
+    if vertices.is_smoothed {
         in_pieces(&pieces, parse, |made| smoothing.take(&made), budget, &progress.part(0.25, 0.3))?;
     }
     let of_smoothing = budget.held() - held;
@@ -76,7 +75,7 @@ fn gather<'a>(
         faces,
         materials,
         part: Default::default(),
-        smoothing: is_smoothed.then_some(smoothing),
+        smoothing: vertices.is_smoothed.then_some(smoothing),
         corners: Vec::new(),
         found: Counts::default(),
     };

@@ -141,7 +141,6 @@ fn whole(tree: &[Branch], fits: impl Fn(&Branch, usize) -> bool) -> Vec<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::mesh::PartStyle;
 
     /// Parts with these names, of 1, 2, 3 and so on triangles, of which `shown` says what is left out.
     fn parts(names: &[&str], shown: &ShownParts) -> Vec<Part> {
@@ -150,7 +149,6 @@ mod tests {
             triangles: i,
             is_hidden: hides(&shown.names(), name, 0),
             level: 0,
-            style: PartStyle::default(),
         };
         (1..).zip(names).map(part).collect()
     }
@@ -240,7 +238,6 @@ mod tests {
                 triangles: 1,
                 is_hidden: hides(&shown.names(), name, level(name)),
                 level: level(name),
-                style: PartStyle::default(),
             };
             let tree = tree(&names.iter().map(part).collect::<Vec<_>>());
             let at = tree.iter().position(|branch| branch.path == path).expect("a branch");
@@ -273,13 +270,8 @@ mod tests {
         let start = std::time::Instant::now();
         let mut shown = ShownParts { hidden: names.iter().step_by(2).cloned().collect(), ..ShownParts::default() };
         let before = shown.names();
-        let part = |name: &String| Part {
-            name: name.clone(),
-            triangles: 1,
-            is_hidden: hides(&before, name, 0),
-            level: 0,
-            style: PartStyle::default(),
-        };
+        let part =
+            |name: &String| Part { name: name.clone(), triangles: 1, is_hidden: hides(&before, name, 0), level: 0 };
         let found: Vec<Part> = names.iter().map(part).collect();
         let tree = tree(&found);
         assert_eq!((leaves(&tree).count(), tree.len()), (20_000, 20_000 + MOST_GROUPS));

@@ -7,7 +7,6 @@ use std::collections::{BTreeMap, HashMap};
 
 use serde::Serialize;
 
-use super::import::Import;
 use super::memory_budget::Budget;
 use super::notes::{Notes, counted};
 use super::selection::{MATERIAL, Names, Selection, ShownParts, choice, hides, is_material, is_part_of};
@@ -33,7 +32,7 @@ const PER_LETTER: u64 = 16;
 const PER_RANGE: u64 = 32;
 
 /// A part of a file.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Part {
     /// Its path. That of a material begins with [`MATERIAL`].
     pub name: String,
@@ -44,9 +43,6 @@ pub struct Part {
     /// The length in bytes of that start of the name that is the path of a level of detail other than the first, or 0.
     #[serde(skip)]
     pub level: usize,
-    /// What it has in place of what is said for all.
-    #[serde(skip)]
-    pub style: PartStyle,
 }
 
 /// The parts of a file that is being read.
@@ -55,6 +51,8 @@ pub(super) struct Parts {
     selected: ShownParts,
     names: [Names; 2],
     found: Vec<Part>,
+    /// What each has in place of what is said for all; empty if styles weren't selected.
+    styles: Vec<PartStyle>,
     /// The numbers of parts by their paths: of materials, of others, and of what is known to be a further level of detail.
     numbers: [HashMap<Vec<u8>, usize>; 3],
     /// Whether the parts that are entered are materials.
@@ -99,8 +97,8 @@ impl Parts {
         if number == self.found.len() {
             let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
             let is_hidden = hides(&self.names, &path, level);
-            let style = self.style_at(&path);
-            self.found.push(Part { name: path, triangles: 0, is_hidden, level, style });
+            self.styles.extend((!self.selected.styles.is_empty()).then(|| self.style_at(&path)));
+            self.found.push(Part { name: path, triangles: 0, is_hidden, level });
         }
         self.current = Some(number);
         Ok(())
@@ -132,26 +130,20 @@ impl Parts {
 
     /// The style of faces of a part whose material has this one.
     pub(super) fn style(&self, part: Option<u32>, of_material: PartStyle) -> PartStyle {
-        part.map_or(of_material, |part| self.found[part as usize].style.or(of_material))
+        part.and_then(|part| self.styles.get(part as usize)).map_or(of_material, |own| own.or(of_material))
     }
 
     /// Gives a material its style.
-    pub(super) fn styled(&self, material: Material) -> Material {
+    pub(super) fn give_style(&self, material: &mut Material) {
         let mut path = String::new();
         join(&mut path, &[MATERIAL, &material.name].concat(), DEFAULT_PART);
-        Material { style: self.style_at(&path), ..material }
+        material.style = self.style_at(&path);
     }
 
-    /// Whether all normals are made, whatever a part or a material says.
-    pub(super) fn make_all_normals(&self, import: &Import) -> bool {
-        let keeps = |own: &PartStyle| !import.makes_normals_of(*own);
-        import.makes_normals() && !self.selected.styles.iter().any(|(_, own)| keeps(own))
-    }
-
-    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones. Gives the
-    /// builder the styles of the other parts.
+    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones. Gives
+    /// the builder the styles of the other parts.
     pub(super) fn enter_materials(&mut self, builder: &mut MeshBuilder, budget: &Budget) -> Result<(), MemoryRefused> {
-        builder.style_parts(self.found.iter().map(|part| part.style).collect());
+        builder.part_styles.clone_from(&self.styles);
         let ShownParts { hidden, only, styles, morphs: _ } = &self.selected;
         let mut selected = hidden.iter().chain(only).chain(styles.iter().map(|(name, _)| name));
         if builder.used_materials() < 2 && !selected.any(|name| is_material(name)) {
@@ -191,9 +183,9 @@ impl Parts {
         });
         let places: Vec<u32> = places.collect();
         mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
+        let styles = self.styles.into_iter().zip(&self.found).filter(|(_, part)| part.triangles > 0);
+        mesh.part_styles = styles.map(|(own, _)| own).collect();
         self.found.retain(|part| part.triangles > 0);
-        let are_styled = self.found.iter().any(|part| part.style != PartStyle::default());
-        mesh.part_styles = self.found.iter().filter(|_| are_styled).map(|part| part.style).collect();
         let is_level = |part: &&Part| part.level > 0 && part.is_hidden && self.selected.only.is_empty();
         notes.extend(counted([
             (self.beyond, "parts beyond the first 65,536, which can't be hidden"),
@@ -270,7 +262,6 @@ pub(super) fn ends(path: &str) -> impl Iterator<Item = usize> {
 mod tests {
     use super::*;
     use geometry::mesh::PartRange;
-    use geometry::mesh::normals::NormalSource;
 
     fn entered(parts: &mut Parts, name: &str, triangles: usize) -> bool {
         parts.enter(name.as_bytes(), 0, &Budget::unlimited()).expect("memory is unlimited");
@@ -303,13 +294,7 @@ mod tests {
         let found = parts.finish(&mut mesh, &mut notes);
         let places: Vec<_> = mesh.part_ranges.iter().map(|range| range.part).collect();
         assert_eq!(places, [0, 1, 1], "that without triangles has no place of its own");
-        let part = |name: &str, triangles, is_hidden| Part {
-            name: name.to_owned(),
-            triangles,
-            is_hidden,
-            level: 0,
-            style: PartStyle::default(),
-        };
+        let part = |name: &str, triangles, is_hidden| Part { name: name.to_owned(), triangles, is_hidden, level: 0 };
         assert_eq!(found, [part("a", u32::MAX, false), part("b", 3, true)]);
         assert_eq!(notes.into_warnings(), ["parts beyond the first 65,536, which can't be hidden: 3."]);
     }
@@ -379,10 +364,11 @@ mod tests {
         for name in ["Car", "empty", "Car/Wheel", "Hat"] {
             entered(&mut parts, name, usize::from(name != "empty"));
         }
-        let red = parts.styled(Material::plain("Red", [1.0; 4])).style.to_string();
+        let mut red = Material::plain("Red", [1.0; 4]);
+        parts.give_style(&mut red);
         let mut mesh = Mesh::default();
         parts.finish(&mut mesh, &mut Notes::default());
-        (mesh.part_styles.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "), red)
+        (mesh.part_styles.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "), red.style.to_string())
     }
 
     #[test]
@@ -400,7 +386,8 @@ mod tests {
         assert_eq!(own(&[("Car/Wheel", "detail=2"), ("Wheel", "detail=4")]), " detail=2 ", "longer");
         assert_eq!(own(&[("Car/.", "detail=2"), ("Car", "detail=4")]), "detail=2 detail=4 ");
         assert_eq!(own(&[("Car/Wheel", "detail=1"), ("Car", "detail=4")]), "detail=4 detail=1 ", "1 is said too");
-        assert_eq!(own(&[("material:Red", "detail=2")]), "", "no part has one");
+        assert_eq!(own(&[("material:Red", "detail=2")]), "  ", "no part has one");
+        assert_eq!(own(&[]), "");
     }
 
     #[test]
@@ -409,8 +396,9 @@ mod tests {
         assert_eq!(styled(&[red, ("Red", "detail=2")]).1, "surface=flat,normals=made");
         let shown = parsed(&[red, ("Hat", "normals=file"), ("Car", "detail=2")]);
         let mut parts = Parts::new(&Selection { parts: Some(&shown), ..Selection::default() });
-        let of_material = parts.styled(Material::plain("Red", [1.0; 4])).style;
-        let style = |parts: &Parts| parts.style(parts.current(), of_material).to_string();
+        let mut material = Material::plain("Red", [1.0; 4]);
+        parts.give_style(&mut material);
+        let style = |parts: &Parts| parts.style(parts.current(), material.style).to_string();
         assert_eq!(style(&parts), "surface=flat,normals=made", "in no part");
         for (name, expected) in [
             ("Car", "surface=flat,detail=2,normals=made"),
@@ -420,11 +408,6 @@ mod tests {
             entered(&mut parts, name, 1);
             assert_eq!(style(&parts), expected, "{name}");
         }
-        let all = |import: &Import| parts.make_all_normals(import);
-        let made = Import { normals: NormalSource::Made, ..Import::default() };
-        assert!(!all(&made), "the hat has those of the file");
-        assert!(!all(&Import::default()));
-        assert!(hiding(&[], &[]).make_all_normals(&made));
     }
 
     #[test]

@@ -13,6 +13,7 @@ use super::selection::Selection;
 use crate::files::Limits;
 use geometry::mesh::Mesh;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::normals::NormalSource;
 use geometry::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
 use geometry::progress::{Cancelled, Progress};
 
@@ -68,10 +69,11 @@ impl Source {
     /// # Errors
     /// [`LoadError::Shape`] if another place was asked for, since its exact surface doesn't move, and [`LoadError::Cancelled`].
     fn made(&self, mesh: Mesh, import: Import, progress: &Progress) -> Result<LoadedMesh, LoadError> {
-        if import.moves() {
+        if import.up.is_some() || import.unit.is_some() {
             return Err(LoadError::Shape { shape: self.to_string() });
         }
-        let mesh = if import.makes_normals() { with_made_normals(mesh, &import, progress)? } else { mesh };
+        let mesh =
+            if import.normals == NormalSource::Made { with_made_normals(mesh, &import, progress)? } else { mesh };
         Ok(LoadedMesh { mesh, ..LoadedMesh::default() })
     }
 

@@ -43,9 +43,6 @@ enum PartAction {
     ShowAll,
 }
 
-/// The crease angles on offer, in degrees.
-const CREASE_ANGLES: [f32; 5] = [0.0, 30.0, 60.0, 90.0, 180.0];
-
 /// The details on offer.
 const DETAILS: [(f32, &str); 7] =
     [(0.125, "1/8"), (0.25, "1/4"), (0.5, "1/2"), (1.0, "1"), (2.0, "2"), (4.0, "4"), (8.0, "8")];
@@ -262,36 +259,29 @@ fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize, selected: &ShownP
 /// What a part may have of its own. Returns its style, if another is chosen.
 fn style_entries(ui: &mut egui::Ui, style: PartStyle) -> Option<PartStyle> {
     let mut chosen = None;
-    let mut entry = |ui: &mut egui::Ui, own: PartStyle, label: &str, hover: &str| {
-        if ui.radio(own == style, label).on_hover_text(hover).clicked() {
-            chosen = Some(own);
-        }
+    let mut menu = |title: &str, unset: (PartStyle, &'static str), own: Vec<(PartStyle, String, &'static str)>| {
+        ui.menu_button(title, |ui| {
+            let unset = (unset.0, "As set for all".to_owned(), unset.1);
+            for (own, label, hover) in std::iter::once(unset).chain(own) {
+                if ui.radio(own == style, label).on_hover_text(hover).clicked() {
+                    chosen = Some(own);
+                }
+            }
+        });
     };
-    ui.menu_button("Its surface", |ui| {
-        entry(ui, PartStyle { surface: None, ..style }, "As set for all", "The surface that the settings choose.");
-        for surface in Surface::ALL {
-            entry(ui, PartStyle { surface: Some(surface), ..style }, surface.label(), surface.text());
-        }
-    });
-    ui.menu_button("Its detail", |ui| {
-        entry(ui, PartStyle { detail: None, ..style }, "As set for all", "As fine as LOD makes the rest.");
-        for (detail, label) in DETAILS.map(|(detail, label)| (Some(detail), label)) {
-            let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
-            entry(ui, PartStyle { detail, ..style }, label, hover);
-        }
-    });
-    ui.menu_button("Its normals", |ui| {
-        entry(ui, PartStyle { normals: None, ..style }, "As set for all", "The normals that the settings choose.");
-        for normals in NormalSource::ALL {
-            entry(ui, PartStyle { normals: Some(normals), ..style }, normals.label(), normals.text());
-        }
-    });
-    ui.menu_button("Its crease angle", |ui| {
-        entry(ui, PartStyle { crease_angle: None, ..style }, "As set for all", options::CREASE_ANGLE.text);
-        for angle in CREASE_ANGLES {
-            let own = PartStyle { crease_angle: Some(angle), ..style };
-            entry(ui, own, &format!("{angle}\u{b0}"), options::CREASE_ANGLE.text);
-        }
-    });
+    let own = |own: Surface| (PartStyle { surface: Some(own), ..style }, own.label().to_owned(), own.text());
+    let unset = (PartStyle { surface: None, ..style }, "The surface that the settings choose.");
+    menu("Its surface", unset, Surface::ALL.map(own).to_vec());
+    let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
+    let own = |(own, label): (f32, &str)| (PartStyle { detail: Some(own), ..style }, label.to_owned(), hover);
+    let unset = (PartStyle { detail: None, ..style }, "As fine as LOD makes the rest.");
+    menu("Its detail", unset, DETAILS.map(own).to_vec());
+    let own = |own: NormalSource| (PartStyle { normals: Some(own), ..style }, own.label().to_owned(), own.text());
+    let unset = (PartStyle { normals: None, ..style }, "The normals that the settings choose.");
+    menu("Its normals", unset, NormalSource::ALL.map(own).to_vec());
+    let hover = options::CREASE_ANGLE.text;
+    let own = |own: f32| (PartStyle { crease_angle: Some(own), ..style }, format!("{own}\u{b0}"), hover);
+    let unset = (PartStyle { crease_angle: None, ..style }, hover);
+    menu("Its crease angle", unset, [0.0, 30.0, 60.0, 90.0, 180.0].map(own).to_vec());
     chosen
 }

@@ -42,20 +42,16 @@ pub(crate) struct CreaseAngles<'a> {
 }
 
 impl<'a> CreaseAngles<'a> {
-    /// That of all, and those of a mesh's parts and materials, whose triangles it needn't have yet.
+    /// That of all, and those of a mesh's parts and materials. It needn't have its triangles yet.
     pub(crate) fn new(all: f32, mesh: &'a Mesh) -> Self {
-        let own = || mesh.styles().filter_map(|own| own.rounded().crease_angle);
+        let own = || mesh.styles().filter_map(|own| own.crease_angle);
         Self { all, least: own().fold(all, f32::min), styled: own().next().map(|_| mesh) }
-    }
-
-    fn of(&self, triangle: u32) -> f32 {
-        self.styled.and_then(|mesh| mesh.style_of(triangle).crease_angle).unwrap_or(self.all)
     }
 }
 
-/// Gives every corner without a normal one, computed from the faces around its point, whatever their parts, that are within the crease
-/// angle of its own triangle. Corners with exactly equal positions lie on one point. Some corners may be left without a use. Takes time linear in the number of triangles,
-/// times the logarithm of the largest fan's faces where those give different normals.
+/// Gives every corner without a normal one, computed from the faces around its point, whatever their parts, that are within the
+/// crease angle of its own triangle. Corners with exactly equal positions lie on one point. Some corners may be left without a use.
+/// Takes time linear in the number of triangles, times the logarithm of the largest fan's faces where those give different normals.
 ///
 /// # Errors
 /// [`BuildError`].
@@ -253,21 +249,17 @@ fn normals_of(
     })
 }
 
-/// Computes the normals of a fan's faces, each with the crease angle of its own triangle. `corners` are those of triangles on the point.
+/// Computes the normals of a fan's faces, each with the crease angle of its own triangle. `corners` are theirs on the point.
 fn creased(faces: &[Face], corners: &[u32], angles: &CreaseAngles, normals: &mut Vec<Vec3>) {
-    let mut own = corners.iter().map(|corner| angles.of(corner / 3));
-    let first = own.next().unwrap_or(angles.all);
-    fan_normals(faces, first, normals);
-    let mut others: Vec<(usize, f32)> = (1..).zip(own).filter(|(_, angle)| *angle != first).collect();
+    fan_normals(faces, angles.all, normals);
+    let Some(mesh) = angles.styled else { return };
+    let own = |corner: &u32| mesh.style_of(corner / 3).crease_angle.unwrap_or(angles.all);
+    let own: Vec<f32> = corners.iter().map(own).collect();
     let mut made = Vec::new();
-    while let Some(&(_, angle)) = others.first() {
+    for angle in (0..own.len()).filter(|first| !own[..*first].contains(&own[*first])).map(|first| own[first]) {
         fan_normals(faces, angle, &mut made);
-        others.retain(|&(face, other)| {
-            if other == angle {
-                normals[face] = made[face];
-            }
-            other != angle
-        });
+        let of_faces = normals.iter_mut().zip(&made).zip(&own).filter(|(_, other)| **other == angle);
+        of_faces.for_each(|((normal, made), _)| *normal = *made);
     }
 }
 

@@ -43,6 +43,7 @@ impl From<Corner> for InputCorner {
 
 /// Collects triangles and builds a mesh. Equal corners are stored once: the memory that a builder takes grows with the
 /// number of distinct corners, plus 12 bytes a triangle (the formula is in `load::memory_budget`).
+#[derive(Default)]
 pub struct MeshBuilder {
     groups: Vec<Group>,
     distinct: DistinctCorners,
@@ -55,16 +56,10 @@ pub struct MeshBuilder {
     repairs: Repairs,
     /// The part of the file that the next triangles belong to.
     part: Option<u32>,
-    /// The angle up to which faces are smooth where normals are made, in degrees.
-    crease_angle: f32,
-    /// What parts have in place of what is said for all, by their numbers.
-    part_styles: Vec<PartStyle>,
-}
-
-impl Default for MeshBuilder {
-    fn default() -> Self {
-        Self::with_crease_angle(CREASE_ANGLE)
-    }
+    /// The angle up to which faces are smooth where normals are made, in degrees; none for [`CREASE_ANGLE`].
+    crease_angle: Option<f32>,
+    /// What parts have in place of what is said for all, by the numbers that they are [entered](Self::enter_part) with.
+    pub part_styles: Vec<PartStyle>,
 }
 
 /// Triangles, the materials that have some, and their parts.
@@ -125,17 +120,7 @@ impl MeshBuilder {
 
     /// Starts a mesh whose missing normals are smooth where faces meet at up to this angle, in degrees from 0 to 180.
     pub fn with_crease_angle(crease_angle: f32) -> Self {
-        Self {
-            groups: Vec::new(),
-            distinct: DistinctCorners::default(),
-            triangles: 0,
-            offered: 0,
-            expected: [0; 2],
-            repairs: Repairs::default(),
-            part: None,
-            crease_angle,
-            part_styles: Vec::new(),
-        }
+        Self { crease_angle: Some(crease_angle), ..Self::default() }
     }
 
     /// Announces that about `offered` more corners will be added, and that about `distinct` of them will be distinct.
@@ -209,12 +194,6 @@ impl MeshBuilder {
         self.part = part;
     }
 
-    /// Gives parts styles, by the numbers that they are [entered](Self::enter_part) with: whatever lacks normals gets them as the style
-    /// of its part or material says.
-    pub fn style_parts(&mut self, styles: Vec<PartStyle>) {
-        self.part_styles = styles;
-    }
-
     /// Returns how many materials have triangles.
     pub fn used_materials(&self) -> usize {
         self.groups.iter().filter(|group| group.triangles > 0).count()
@@ -232,14 +211,6 @@ impl MeshBuilder {
             }
         }
         Ok(())
-    }
-
-    /// The style of a material that was added.
-    ///
-    /// # Panics
-    /// As [`triangle`](Self::triangle).
-    pub fn style_of_material(&self, material: usize) -> PartStyle {
-        self.groups[material].material.style
     }
 
     /// A material that was added.
@@ -385,7 +356,8 @@ impl MeshBuilder {
         let (repairs, part_styles) = (self.repairs, self.part_styles);
         let made = Mesh { name, materials, part_ranges, part_styles, repairs, ..Mesh::default() };
         if mesh.corners.iter().any(|corner| corner.normal.x.is_nan()) {
-            generate_normals(&mut mesh, &CreaseAngles::new(self.crease_angle, &made), budget, progress)?;
+            let angles = CreaseAngles::new(self.crease_angle.unwrap_or(CREASE_ANGLE), &made);
+            generate_normals(&mut mesh, &angles, budget, progress)?;
         }
         let _scope = Borrowed::from(budget);
         budget.borrow(mesh.corners.len() as u64 * 4)?;

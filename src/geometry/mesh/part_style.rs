@@ -48,16 +48,12 @@ impl PartStyle {
         self.surface.is_some() || self.detail.is_some()
     }
 
-    /// This style with the nearest detail and crease angle that there are.
+    /// This style with the nearest detail that there is.
     #[must_use]
     pub fn rounded(self) -> Self {
         // A NaN becomes the least.
         let steps = |detail: f32| (detail / Self::LEAST).round().max(1.0);
-        Self {
-            detail: self.detail.map(|detail| (steps(detail) * Self::LEAST).min(Self::MOST)),
-            crease_angle: self.crease_angle.map(|angle| if angle > 0.0 { angle.min(180.0) } else { 0.0 }),
-            ..self
-        }
+        Self { detail: self.detail.map(|detail| (steps(detail) * Self::LEAST).min(Self::MOST)), ..self }
     }
 }
 
@@ -99,10 +95,7 @@ impl FromStr for PartStyle {
                 "detail" => own.detail = number(value, Self::LEAST..=Self::MOST, of_detail)?,
                 "normals" => own.normals = named("source of normals", value)?,
                 "crease" => own.crease_angle = number(value, 0.0..=180.0, of_crease)?,
-                _ => {
-                    let said = "a part has surface=NAME, detail=NUMBER, normals=NAME or crease=DEGREES, or several joined by commas";
-                    return Err(said.to_owned());
-                }
+                _ => return Err("a part has surface=, detail=, normals= or crease=, joined by commas".to_owned()),
             }
         }
         Ok(own.rounded())
@@ -242,10 +235,6 @@ mod tests {
         assert!(mesh.has_styles(), "the material has one");
         mesh.materials.pop();
         assert!(!mesh.has_styles(), "normals are those of the file when it is read");
-        for angle in [f32::NAN, -1.0] {
-            mesh.part_styles = vec![PartStyle { crease_angle: Some(angle), ..PartStyle::default() }];
-            assert_eq!(mesh.style_of(0).crease_angle, Some(0.0));
-        }
     }
 
     #[test]

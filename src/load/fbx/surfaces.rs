@@ -23,7 +23,7 @@ use geometry::casts::{to_f32, to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
 use geometry::mesh::subdivision::Boundary;
-use geometry::mesh::{Borrowed, CornerDetail};
+use geometry::mesh::{Borrowed, CornerDetail, PartStyle};
 use geometry::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.
@@ -116,11 +116,10 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         // The scene's root isn't one of the file's nodes.
         let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;
+        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
         let own = self.faces.parts.style(self.faces.parts.current(), PartStyle::default());
-        let makes_all = self.faces.parts.make_all_normals(&self.faces.import);
-        let vertices = Vertices::new(node, mesh, (global[index], skin.as_ref()), selected, makes_all, self.budget)?;
-        let is_without_normals =
-            vertices.is_without_normals() && !self.faces.import.makes_normals_of(own) && own.crease_angle.is_none();
+        let is_told = self.faces.import.makes_normals_of(own) || own.crease_angle.is_some();
+        let misses_normals = vertices.is_without_normals() && !is_told;
         let binder = self.binder.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
@@ -140,7 +139,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             deltas: Vec::new(),
         };
         let subdivision = reader.subdivision();
-        self.without_normals += usize::from(is_without_normals && subdivision.is_none());
+        self.without_normals += usize::from(misses_normals && subdivision.is_none());
         let moves = reader.binder.is_some();
         reader.faces.cage = subdivision.map(|own| CageFaces::new(own, moves));
         let mut corners = Vec::new();

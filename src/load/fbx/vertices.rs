@@ -42,21 +42,20 @@ pub(super) struct PosedCorner {
 }
 
 impl<'a> Vertices<'a> {
-    /// Prepares to read; `at` is the node's place. `makes_normals` says whether all normals are made.
+    /// Prepares to read; `at` is the node's place.
     ///
     /// # Errors
     /// [`ReadError::TooLarge`].
     pub(super) fn new(
         node: &Node,
         mesh: &'a Mesh,
-        (at, skin): (DMat4, Option<&'a Skin<'a>>),
+        at: DMat4,
+        skin: Option<&'a Skin<'a>>,
         selected: &Selection,
-        makes_normals: bool,
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let is_told = mesh.vertex_normal.exists || makes_normals;
-        let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
+        let made = if mesh.vertex_normal.exists { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
             mesh,
             skin,
@@ -65,13 +64,13 @@ impl<'a> Vertices<'a> {
             rigid: at * to_node,
             to_node,
             made,
-            makes_normals,
+            makes_normals: false,
         })
     }
 
-    /// Returns whether its corners get normals that are computed from angles although nobody asked for them.
+    /// Returns whether neither the file has its normals, nor says how smooth it is.
     pub(super) fn is_without_normals(&self) -> bool {
-        !self.mesh.vertex_normal.exists && self.made.is_none() && !self.makes_normals
+        !self.mesh.vertex_normal.exists && self.made.is_none()
     }
 
     /// Returns the vertex of a corner.

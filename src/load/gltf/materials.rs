@@ -22,6 +22,7 @@ use crate::packing::roughness;
 use crate::texture_room::{LEFT_OUT, ReadImage, read_images};
 use crate::uri::Files;
 use geometry::choice::Choice;
+use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{HeightMap, Look, Map, MapUv, Material, Sampling, Slot, Texture, borrowing};
 use geometry::progress::Cancelled;
@@ -169,14 +170,9 @@ impl<'a> Materials<'a> {
         texture_source::image(&self.lists.images, image, self.accessors, self.files)
     }
 
-    /// Finds a material of what is shown, or has it added to the builder. `scale` is that of the node which shows it. A texture that
+    /// Finds a material of what is shown, or adds it to the builder. `scale` is that of the node which shows it. A texture that
     /// is missing or broken causes a warning.
-    pub(super) fn resolve(
-        &mut self,
-        material: &::gltf::Material,
-        scale: f32,
-        add: impl FnOnce(Material) -> usize,
-    ) -> Resolved {
+    pub(super) fn resolve(&mut self, material: &::gltf::Material, scale: f32, builder: &mut MeshBuilder) -> Resolved {
         let key = material.index();
         if let Some(resolved) = self.resolved.get_mut(&key) {
             if (scale / resolved.scale - 1.0).abs() > 0.01 && self.sources[&key].look.refracts() {
@@ -209,7 +205,7 @@ impl<'a> Materials<'a> {
         let MaterialSource { base_color, double_sided, .. } = source;
         let plain = Material::plain(&name, base_color);
         let made = Material { texture, sampling, double_sided, look, height, ..plain };
-        let resolved = Resolved { index: add(made), scale, uvs, needs };
+        let resolved = Resolved { index: builder.material(made), scale, uvs, needs };
         self.resolved.insert(key, resolved);
         resolved
     }

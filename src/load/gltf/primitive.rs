@@ -153,14 +153,7 @@ impl PrimitiveReader {
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
         let makes_normals = self.import.makes_normals_of(style);
-        let source = PrimitiveData {
-            primitive,
-            name: &name,
-            accessors,
-            unpacked,
-            makes_normals,
-            misses_normals: !makes_normals && style.crease_angle.is_none(),
-        };
+        let source = PrimitiveData { primitive, name: &name, accessors, unpacked, makes_normals };
         let is_morphing = animated_vertices::may_morph(binder.as_deref_mut(), primitive);
         let (is_detailed, repairs, budget) = (details.is_some(), self.repairs, accessors.budget);
         let mut vertices = Vertices::new(source, pose, material, is_detailed, is_morphing, repairs, &mut self.notes)?;
@@ -173,6 +166,9 @@ impl PrimitiveReader {
         drop(used);
         let (mode, count) = (primitive.mode(), indices.count);
         self.repairs = vertices.repairs;
+        // Where it was chosen how they are made, none are missed.
+        let are_missed = !makes_normals && style.crease_angle.is_none() && !source.has_normals(vertices.count);
+        self.repairs.without_normals += usize::from(are_missed && vertices.count > 0);
         self.read += 1;
         if mode == Mode::Triangles {
             self.left_out.left_over += count % 3;

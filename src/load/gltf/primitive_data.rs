@@ -19,8 +19,6 @@ pub(super) struct PrimitiveData<'a> {
     pub unpacked: Option<&'a DecompressedPrimitive>,
     /// Whether all normals are made, as if the primitive had none.
     pub makes_normals: bool,
-    /// Whether its normals are missed if it has none: nobody chose how they are made.
-    pub misses_normals: bool,
 }
 
 impl<'a> PrimitiveData<'a> {

@@ -3,7 +3,6 @@
 use super::*;
 use crate::parts::Part;
 use crate::selection::ShownParts;
-use geometry::mesh::PartStyle;
 
 /// Reads what is selected of a document.
 fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfError> {
@@ -12,7 +11,7 @@ fn read_selected(draft: &Draft, selected: Selection) -> Result<LoadedMesh, GltfE
 }
 
 fn part(name: &str, triangles: u32, is_hidden: bool) -> Part {
-    Part { name: name.to_owned(), triangles, is_hidden, level: 0, style: PartStyle::default() }
+    Part { name: name.to_owned(), triangles, is_hidden, level: 0 }
 }
 
 /// Two nodes of one name, one with the name of its mesh, one that shows nothing, and one without a name.
