@@ -183,11 +183,11 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
 }
 
 /// The scene that is being read, and the mesh that is being built from it.
-struct Scene<'a> {
+struct Scene<'a, 'p> {
     document: &'a Document,
     /// The transform from each node's own space to the scene's, in which the meshes are built.
     global: &'a [DMat4],
-    parts: &'a NodeParts,
+    parts: &'p NodeParts,
     /// By node, the instances of its mesh.
     instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
@@ -200,7 +200,7 @@ struct Scene<'a> {
     details: Option<DetailTable>,
 }
 
-impl<'a> Scene<'a> {
+impl Scene<'_, '_> {
     /// Adds the triangles of a node's mesh, if it has one: once, or once for each of its instances.
     fn add(&mut self, node: usize, progress: &Progress) -> Result<(), GltfError> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };

@@ -137,7 +137,7 @@ impl Import {
     }
 
     /// Whether the normals are made of what has this style.
-    pub(super) fn makes_normals_of(&self, own: PartStyle) -> bool {
+    pub(super) fn makes_normals_of(self, own: PartStyle) -> bool {
         own.normals.unwrap_or(self.normals) == NormalSource::Made
     }
 
