@@ -58,7 +58,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let given = args.against.as_deref().map(read_bytes).transpose()?;
     let preparation = Preparation { heights: args.height.clone(), ..args.weld.preparation() };
     let loaded = load_apart(&args.file, &preparation, &written)?;
-    args.weld.parts.say_idle(|_| true, "--part has no effect on indices, which are the same for all surfaces");
+    args.weld.parts.say_idle(|own| own.is_of_tessellation(), "a surface or detail of --part has no effect on indices");
     if let Some(path) = &args.corners {
         write_corners(&loaded, path)?;
     }

@@ -13,7 +13,7 @@ use inspect::settings::{Colors, Lighting, Settings, options};
 use inspect::shot::{CopiedCommand, ShotView, Turn, given};
 use load::files::Limits;
 use load::import::Subdivide;
-use load::{HeightSource, ShownParts, Source};
+use load::{HeightSource, NormalSource, ShownParts, Source};
 use proptest::prelude::*;
 
 use crate::cli::options::Declared;
@@ -97,8 +97,15 @@ fn options_with_other_values_are_written() {
             hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
             only: vec!["d".to_owned()],
             styles: vec![
-                ("-a:b".to_owned(), PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.25) }),
-                ("d".to_owned(), PartStyle { surface: None, detail: Some(2.0) }),
+                (
+                    "-a:b".to_owned(),
+                    PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.25), ..PartStyle::default() },
+                ),
+                ("d".to_owned(), PartStyle { detail: Some(2.0), ..PartStyle::default() }),
+                (
+                    "material:a b".to_owned(),
+                    PartStyle { normals: Some(NormalSource::Made), crease_angle: Some(22.5), ..PartStyle::default() },
+                ),
             ],
             morphs: [("-a = b".to_owned(), -0.1), ("Smile".to_owned(), 0.7)].into(),
         },

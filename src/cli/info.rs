@@ -33,7 +33,7 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let progress = Progress::default();
     let loaded = engine::load(&args.file, &args.weld.preparation(), &progress)?;
-    args.weld.parts.say_idle(|_| true, "--part has no effect here, where nothing is tessellated");
+    args.weld.parts.say_idle(|own| own.is_of_tessellation(), "a surface or detail of --part has no effect here");
     let info = Info::new(&loaded, &progress)?;
     let text = if args.json { to_json(&info)? } else { info.to_string() };
     Ok(write_text("-".as_ref(), &text)?)

@@ -117,7 +117,8 @@ impl SurfaceOptions {
         let takes_heights = !self.height.is_empty() || own.displacement.is_on();
         let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);
         refuse(is_lost, "--height-scale and --midlevel need --height, or --displacement")?;
-        let is_lost = own == Tessellation::untessellated() && !self.weld.parts.shown().styles.is_empty();
+        let has_styles = self.weld.parts.part.iter().any(|(_, own)| own.is_of_tessellation());
+        let is_lost = own == Tessellation::untessellated() && has_styles;
         refuse(is_lost, "--part has no effect on the mesh as it is: choose another surface, factor or partitioning")?;
         let has_strength =
             own.surface.is_phong() || other.is_some_and(Surface::is_phong) || self.weld.parts.shown().has_phong();
@@ -315,9 +316,9 @@ pub struct PartOptions {
     /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
-    /// Give the part or group of this name a surface of its own, LOD 1/64 to 16 times as fine, or both, such as
-    /// `NAME:surface=flat,detail=0.5`; may be given several times. Materials can't have them. Edges between parts take the surface
-    /// that comes first in the list of `--surface`, and the finest detail
+    /// Give the part, group or material of this name a surface of its own, LOD 1/64 to 16 times as fine, normals, or a crease
+    /// angle, such as `NAME:surface=flat,detail=0.5,normals=made,crease=30`; may be given several times. A part's count before its
+    /// material's. Edges between parts take the surface that comes first in the list of `--surface`, and the finest detail
     #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
     part: Vec<(String, PartStyle)>,
     /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.

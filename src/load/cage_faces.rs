@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
 
-use super::import::{Import, Subdivision};
+use super::import::Subdivision;
 use super::recent_corners::NumberedCorner;
 use super::rig_builder::RigBuilder;
 use geometry::casts::to_u32;
@@ -56,14 +56,12 @@ pub(super) struct CageFaces {
     holes: Vec<u32>,
     /// How many creases and sharp points are where no face is.
     lone_creases: usize,
-    /// Whether refined corners get the normals of the limit surface.
-    has_normals: bool,
     held: u64,
 }
 
 impl CageFaces {
-    pub(super) fn new(subdivision: Subdivision, import: &Import) -> Self {
-        Self { subdivision, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
+    pub(super) fn new(subdivision: Subdivision) -> Self {
+        Self { subdivision, starts: vec![0], ..Self::default() }
     }
 
     /// The same with vertices as points, which clips may move.
@@ -248,7 +246,7 @@ impl CageFaces {
                     None => binding,
                 };
                 let position = places[point].as_vec3();
-                let normal = Some(normals[k]).filter(|_| self.has_normals);
+                let normal = Some(normals[k]);
                 let uv = uvs.get(k).map_or(Vec2::ZERO, |uv| uv.xy().as_vec2());
                 corners.push(NumberedCorner { corner: InputCorner { position, normal, uv }, number, vertex: None });
             }

@@ -23,7 +23,7 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, Slot};
+use geometry::mesh::{CornerDetail, Material, PartStyle, Slot};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -111,7 +111,7 @@ impl<'a> FaceBuilder<'a> {
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
-            cage: import.subdivision().map(|own| CageFaces::new(own, &import)),
+            cage: import.subdivision().map(CageFaces::new),
             is_refined: None,
             is_hole: false,
         }
@@ -137,6 +137,9 @@ impl<'a> FaceBuilder<'a> {
             |corners, OfFace { material, part, .. }| {
                 progress.check()?;
                 self.builder.enter_part(part);
+                if self.import.makes_normals_of(self.parts.style(part, self.builder.material_mut(material).style)) {
+                    corners.iter_mut().for_each(|at| at.corner.normal = None);
+                }
                 self.store(material, corners, false)
             },
         )?;
@@ -168,12 +171,18 @@ impl<'a> FaceBuilder<'a> {
     ///
     /// # Errors
     /// [`ReadError::TooMany`].
-    pub(super) fn material(&mut self, material: Material) -> Result<usize, ReadError> {
+    pub(super) fn material(&mut self, mut material: Material) -> Result<usize, ReadError> {
         self.materials += 1;
         if self.materials > MAX_MATERIALS {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
+        self.parts.give_style(&mut material);
         Ok(self.builder.material(material))
+    }
+
+    /// What the next faces of a material have in place of what is said for all.
+    pub(super) fn style(&mut self, material: usize) -> PartStyle {
+        self.parts.style(self.parts.current(), self.builder.material_mut(material).style)
     }
 
     /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.
@@ -235,9 +244,9 @@ impl<'a> FaceBuilder<'a> {
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
-        let bad_uvs = self.found.bad_uvs;
+        let (bad_uvs, own) = (self.found.bad_uvs, self.style(material));
         for NumberedCorner { corner, .. } in corners.iter_mut() {
-            if self.import.makes_normals() {
+            if self.import.makes_normals_of(own) {
                 corner.normal = None;
             }
             if !corner.uv.is_finite() {
@@ -271,8 +280,8 @@ impl<'a> FaceBuilder<'a> {
         if is_left_out {
             return Ok(());
         }
-        // Repairs are counted again wherever their vertices are used.
-        self.store(material, corners, bad_uvs == self.found.bad_uvs)
+        // Repairs are counted again wherever their vertices are used, and other faces may have their vertices' own normals.
+        self.store(material, corners, bad_uvs == self.found.bad_uvs && own.normals.is_none())
     }
 
     /// Stores a face as triangles, if there is room for them.

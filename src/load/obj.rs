@@ -72,8 +72,7 @@ fn gather<'a>(
     let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
     let held = budget.held();
     let mut smoothing = Smoothing::new(&vertices, budget);
-    let is_smoothed = vertices.is_smoothed && !faces.import.makes_normals();
-    if is_smoothed {
+    if vertices.is_smoothed {
         in_pieces(&pieces, parse, |made| smoothing.take(&made), budget, &progress.part(0.25, 0.3))?;
     }
     let of_smoothing = budget.held() - held;
@@ -83,7 +82,7 @@ fn gather<'a>(
         faces,
         materials,
         part: Default::default(),
-        smoothing: is_smoothed.then_some(smoothing),
+        smoothing: vertices.is_smoothed.then_some(smoothing),
         corners: Vec::new(),
         found: Counts::default(),
     };
@@ -278,11 +277,14 @@ impl Reader<'_, '_> {
             let (corner, color) = corner_of(self.vertices, vertex);
             corners.push(NumberedCorner { corner, number: self.faces.number(color)?, vertex: Some(vertex) });
         }
-        if corners.iter().any(|at| at.corner.normal.is_none()) {
-            let smoothed = self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(numbers, &mut corners));
-            *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += 1;
-        }
         let material = self.materials.current(&mut self.faces)?;
+        let own = self.faces.style(material);
+        if !self.faces.import.makes_normals_of(own) && corners.iter().any(|at| at.corner.normal.is_none()) {
+            let smoothed = self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(numbers, &mut corners));
+            // Where a crease angle was chosen, none is missed.
+            let counts = usize::from(smoothed || own.crease_angle.is_none());
+            *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += counts;
+        }
         for at in &mut corners {
             let placed = self.materials.placed(material, at.corner.uv);
             // Another material may place them elsewhere.

@@ -8,7 +8,8 @@ use geometry::mesh::{Heights, Mesh, Repairs};
 /// Returns warnings about corners that were repaired. Normals that were missing don't cause one here, since files may
 /// leave them out on purpose.
 pub(super) fn repair_warnings(repairs: &Repairs, import: &Import) -> Vec<String> {
-    let replaced = format!("normals without a direction, replaced by ones that are {}", import.smoothness());
+    let within = import.crease_angle;
+    let replaced = format!("normals without a direction, replaced by ones that are smooth within {within} degrees");
     let sentences = [
         (repairs.normals_replaced, replaced.as_str()),
         (repairs.normals_rescaled, "normals whose length wasn't 1, scaled to it"),

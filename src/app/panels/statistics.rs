@@ -163,6 +163,11 @@ impl App {
         fact(ui, "Corners", &grouped(mesh.corners.len() as u64), hover);
         self.normal_facts(ui);
         fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
+        let styles: Vec<String> = document.loaded.preparation.parts.style_texts().collect();
+        if !styles.is_empty() {
+            let hover = format!("What parts have in place of what is set for all (--part): {}.", styles.join("; "));
+            fact(ui, "Styles of parts", &grouped(styles.len() as u64), &hover);
+        }
         let hover = "Extent of the mesh in object units; over the whole clip, if one is chosen.";
         for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
             fact(ui, axis, &format!("{} units", short(f64::from(length))), hover);

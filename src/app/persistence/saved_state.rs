@@ -15,7 +15,7 @@ use geometry::defaults::with_defaults;
 use geometry::mesh::UpAxis;
 use inspect::render::Camera;
 use inspect::settings::{Choice, Settings};
-use load::{FileUnit, LengthUnit};
+use load::{FileUnit, Import, LengthUnit};
 
 /// The greatest number of files that are saved with their cameras.
 pub(super) const MAX_FILES: usize = 50;
@@ -134,7 +134,7 @@ impl SavedState {
     /// Takes settings, without displacement, axis and unit, which depend on the mesh.
     pub(super) fn take_settings(&mut self, settings: &Settings) {
         let own = settings.with(settings.tessellation.undisplaced());
-        self.settings = Settings { import: own.import.without_placement(), ..own };
+        self.settings = Settings { import: Import { up: None, unit: None, ..own.import }, ..own };
     }
 }
 

@@ -223,7 +223,7 @@ fn shape_of(
     }
     // It stands for the mesh alone, not for another one or another pose beside it, and has no parts with surfaces of their own.
     if patches > most
-        && document.loaded.mesh.part_styles.is_empty()
+        && !document.loaded.mesh.has_styles()
         && document.moment.is_none()
         && (wanted.settings.split.is_none()
             || document.scene.shares_pose(SplitSide::Left)

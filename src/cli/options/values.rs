@@ -49,7 +49,8 @@ pub(crate) fn ending_in(
 
 /// Parses the name of a part, and what it has in place of what is set for all.
 pub(crate) fn part_style(text: &str) -> Result<(String, PartStyle), String> {
-    let (name, style) = text.rsplit_once(':').ok_or("expected NAME:surface=SURFACE,detail=NUMBER")?;
+    let expected = "expected NAME:KEY=VALUE,.., such as door:surface=flat,detail=2,normals=made,crease=30";
+    let (name, style) = text.rsplit_once(':').ok_or(expected)?;
     Ok((name.to_owned(), style.parse()?))
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::{HeightMap, Sampling};
+use super::{HeightMap, PartStyle, Sampling};
 use crate::choice::choices;
 use crate::defaults::with_defaults;
 
@@ -30,6 +30,8 @@ with_defaults! {
         pub height: Option<HeightMap> = None,
         /// The mesh's triangles of this material.
         pub triangles: Range<u32> = 0..0,
+        /// What these have in place of what is said for all, where their part says nothing.
+        pub style: PartStyle = PartStyle::default(),
     }
 }
 

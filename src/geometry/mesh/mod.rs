@@ -99,7 +99,7 @@ pub struct Mesh {
     pub materials: Vec<Material>,
     /// Which triangles are whose part of the file, in their order. Triangles that belong to no part are in none of these.
     pub part_ranges: Vec<PartRange>,
-    /// What each of the file's parts has in place of what the tessellation says for all; empty if none differs.
+    /// What each of the file's parts has in place of what is said for all; empty if none has anything.
     pub part_styles: Vec<PartStyle>,
     /// The height images that displacement can move the surface by.
     pub heights: Option<Arc<Heights>>,

@@ -100,7 +100,7 @@ impl CopiedCommand<'_> {
         scene.iter().for_each(|name| line.option("--scene", name));
         parts.hidden.iter().for_each(|name| line.option("--hide-part", name));
         parts.only.iter().for_each(|name| line.option("--show-part", name));
-        parts.styles.iter().for_each(|(name, style)| line.option("--part", format!("{name}:{style}")));
+        parts.style_texts().for_each(|text| line.option("--part", text));
         parts.morphs.iter().for_each(|(name, weight)| line.option("--morph", format!("{name}={weight}")));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);

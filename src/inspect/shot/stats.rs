@@ -30,6 +30,8 @@ pub struct Stats {
     adapter: String,
     #[serde(flatten)]
     right: HalfStats,
+    /// What parts and materials have in place of settings, as `--part` has it.
+    parts: Vec<String>,
     points: u64,
     corners: u64,
     edges: EdgeCounts,
@@ -308,6 +310,7 @@ impl Shot {
             factors_file: None,
             adapter: engine.gpu.info.name.clone(),
             right,
+            parts: self.posed.preparation.parts.style_texts().collect(),
             points: topology.points.len() as u64,
             corners: mesh.corners.len() as u64,
             edges: topology.edge_counts(),

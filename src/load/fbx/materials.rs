@@ -150,8 +150,7 @@ impl<'a> Materials<'a> {
             look.emissive = [0.0; 3];
         }
         let LookSource { name, base_color, double_sided, .. } = source;
-        let (name, base_color, double_sided) = (name.clone(), *base_color, *double_sided);
-        Material { name, base_color, texture, sampling, double_sided, look, height: None, triangles: 0..0 }
+        Material { texture, sampling, double_sided: *double_sided, look, ..Material::plain(name, *base_color) }
     }
 
     fn height(&mut self, source: &LookSource) -> Result<Option<HeightMap>, ReadError> {

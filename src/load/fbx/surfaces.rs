@@ -24,7 +24,7 @@ use geometry::casts::{to_f32, to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
 use geometry::mesh::subdivision::Boundary;
-use geometry::mesh::{Borrowed, CornerDetail};
+use geometry::mesh::{Borrowed, CornerDetail, PartStyle};
 use geometry::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.
@@ -112,13 +112,6 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let _scope = Borrowed::from(self.budget);
         let global = &self.placed.global;
         let skin = Skin::new(node, mesh, global);
-        let mut vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
-        vertices.surface = self.meshes.surface(node);
-        let is_without_normals = vertices.is_without_normals();
-        let binder = self.binder.as_mut().map(|binder| {
-            let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
-            Binder::new(binder, &vertices)
-        });
         let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
         let levels = &self.placed.levels;
         let own = |node: usize| (&*nodes[node].element.name, false);
@@ -126,6 +119,15 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         // The scene's root isn't one of the file's nodes.
         let (path, level) = node_path(above.filter(|&node| !nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;
+        let mut vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
+        vertices.surface = self.meshes.surface(node);
+        let own = self.faces.parts.style(self.faces.parts.current(), PartStyle::default());
+        let is_told = self.faces.import.makes_normals_of(own) || own.crease_angle.is_some();
+        let misses_normals = vertices.is_without_normals() && !is_told;
+        let binder = self.binder.as_mut().map(|binder| {
+            let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
+            Binder::new(binder, &vertices)
+        });
         let mut reader = MeshReader {
             node,
             mesh,
@@ -141,10 +143,9 @@ impl<'s, 'a> Surfaces<'s, 'a> {
             deltas: Vec::new(),
         };
         let subdivision = reader.subdivision();
-        self.without_normals += usize::from(is_without_normals && subdivision.is_none());
+        self.without_normals += usize::from(misses_normals && subdivision.is_none());
         let moves = reader.binder.is_some();
-        let cage = |own| CageFaces::new(own, &reader.faces.import).of_vertices(moves);
-        reader.faces.cage = subdivision.map(cage);
+        reader.faces.cage = subdivision.map(|own| CageFaces::new(own).of_vertices(moves));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {
@@ -255,6 +256,7 @@ impl MeshReader<'_, '_, '_> {
             return Err(FilePosition::Everywhere.error(reason));
         }
         let material = self.material(i)?;
+        self.vertices.makes_normals = self.faces.import.makes_normals_of(self.faces.style(material.index));
         corners.clear();
         let mut is_mirrored = false;
         for corner in (face.index_begin as usize..).take(face.num_indices as usize) {

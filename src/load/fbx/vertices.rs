@@ -30,8 +30,8 @@ pub(super) struct Vertices<'a> {
     pub to_node: DMat4,
     /// The normals of corners that the file doesn't have, but says how smooth they are.
     made: Option<Vec<Vec3>>,
-    /// Whether all normals are made, whatever the file has.
-    makes_normals: bool,
+    /// Whether normals are made of the corners that are read next, whatever the file has.
+    pub makes_normals: bool,
 }
 
 /// A corner in its rest pose, and as it was before.
@@ -58,9 +58,7 @@ impl<'a> Vertices<'a> {
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let makes_normals = selected.import.makes_normals();
-        let is_told = mesh.vertex_normal.exists || makes_normals;
-        let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
+        let made = if mesh.vertex_normal.exists { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
             mesh,
             surface: None,
@@ -70,13 +68,13 @@ impl<'a> Vertices<'a> {
             rigid: at * to_node,
             to_node,
             made,
-            makes_normals,
+            makes_normals: false,
         })
     }
 
-    /// Returns whether its corners get normals that are computed from angles although nobody asked for them.
+    /// Returns whether neither the file has its normals, nor says how smooth it is.
     pub(super) fn is_without_normals(&self) -> bool {
-        !self.mesh.vertex_normal.exists && self.made.is_none() && !self.makes_normals
+        !self.mesh.vertex_normal.exists && self.made.is_none()
     }
 
     /// Returns the vertex of a corner.

@@ -199,8 +199,8 @@ impl<'a> Materials<'a> {
         let (uvs, tangents) = (source.own_uvs(), look.tangent_uv().is_some());
         let needs = DetailNeeds { sets: look.uv_sets(), tangents };
         let MaterialSource { base_color, double_sided, .. } = source;
-        let triangles = 0..0;
-        let made = Material { name, base_color, texture, sampling, double_sided, look, height, triangles };
+        let plain = Material::plain(&name, base_color);
+        let made = Material { texture, sampling, double_sided, look, height, ..plain };
         let resolved = Resolved { index: builder.material(made), scale, uvs, needs };
         self.resolved.insert(key, resolved);
         resolved
