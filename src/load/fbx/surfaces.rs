@@ -106,44 +106,33 @@ impl<'s, 'a> Surfaces<'s, 'a> {
 
     /// Adds the polygons of a node's mesh.
     pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<(), ReadError> {
-        let nodes = &self.meshes.scene.nodes;
+        let (meshes, placed) = (self.meshes, self.placed);
+        let nodes = &meshes.scene.nodes;
         let node = &nodes[index];
-        let Some(mesh) = self.meshes.of(node) else { return Ok(()) };
+        let Some(mesh) = meshes.of(node) else { return Ok(()) };
         let _scope = Borrowed::from(self.budget);
-        let global = &self.placed.global;
+        let global = &placed.global;
         let skin = Skin::new(node, mesh, global);
         let mut vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
-        vertices.surface = self.meshes.surface(node);
+        vertices.surface = meshes.surface(node);
         let is_without_normals = vertices.is_without_normals();
-        let binder = self.binder.as_mut().map(|binder| {
+        let mut rig = self.binder.take();
+        let binder = rig.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
         });
-        let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
-        let levels = &self.placed.levels;
+        let above = std::iter::successors(Some(index), |&node| placed.scene.parents[node]);
         let own = |node: usize| (&*nodes[node].element.name, false);
-        let named = |node: usize| levels.get(&node).map_or_else(|| own(node), |level| (level.as_str(), true));
+        let named = |node: usize| placed.levels.get(&node).map_or_else(|| own(node), |level| (level.as_str(), true));
         // The scene's root isn't one of the file's nodes.
         let (path, level) = node_path(above.filter(|&node| !nodes[node].is_root).map(named));
         self.faces.enter_part(path.as_bytes(), level)?;
-        let mut reader = MeshReader {
-            node,
-            mesh,
-            vertices,
-            binder,
-            budget: self.budget,
-            materials: &mut self.materials,
-            faces: &mut self.faces,
-            details: self.details.as_mut(),
-            found: &mut self.found,
-            resolved: Vec::new(),
-            influences: Vec::new(),
-            deltas: Vec::new(),
-        };
+        let moves = binder.is_some();
+        let (resolved, influences, deltas) = (Vec::new(), Vec::new(), Vec::new());
+        let mut reader = MeshReader { all: self, node, mesh, vertices, binder, resolved, influences, deltas };
         let subdivision = reader.subdivision();
-        self.without_normals += usize::from(is_without_normals && subdivision.is_none());
-        let moves = reader.binder.is_some();
-        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import, moves));
+        reader.all.without_normals += usize::from(is_without_normals && subdivision.is_none());
+        reader.all.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.all.faces.import, moves));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {
@@ -154,9 +143,10 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         if subdivision.is_some() {
             reader.creases()?;
         }
-        reader.faces.is_hole = false;
-        let rig = reader.binder.as_mut().map(|binder| &mut *binder.node.binder);
-        reader.faces.end_cage(reader.details, rig, progress)
+        self.faces.is_hole = false;
+        self.faces.end_cage(self.details.as_mut(), rig.as_mut(), progress)?;
+        self.binder = rig;
+        Ok(())
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
@@ -169,16 +159,13 @@ impl<'s, 'a> Surfaces<'s, 'a> {
 }
 
 /// Reads the polygons of one mesh.
-struct MeshReader<'a, 'b, 'f> {
+struct MeshReader<'a, 'b, 's, 'f> {
+    /// All meshes; the binder is lent to this one.
+    all: &'b mut Surfaces<'s, 'f>,
     node: &'a Node,
     mesh: &'a Mesh,
     vertices: Vertices<'a>,
     binder: Option<Binder<'b>>,
-    budget: &'a Budget,
-    materials: &'b mut Materials<'f>,
-    faces: &'b mut FaceBuilder<'f>,
-    details: Option<&'b mut DetailTable>,
-    found: &'b mut Counts,
     /// The mesh's materials, once they are used.
     resolved: Vec<Option<Resolved>>,
     /// The joints of the corner that is being read, and its displacements.
@@ -186,10 +173,10 @@ struct MeshReader<'a, 'b, 'f> {
     deltas: Vec<Delta>,
 }
 
-impl MeshReader<'_, '_, '_> {
+impl MeshReader<'_, '_, '_, '_> {
     /// How the mesh is refined. One that joints move in part isn't: the rest of it isn't in the same space.
     fn subdivision(&mut self) -> Option<Subdivision> {
-        let (import, mesh) = (self.faces.import, self.mesh);
+        let (import, mesh) = (self.all.faces.import, self.mesh);
         let mode = mesh.subdivision_display_mode;
         let is_smooth = matches!(mode, SubdivisionDisplayMode::HullAndSmooth | SubdivisionDisplayMode::Smooth);
         let is_marked = is_smooth && mesh.subdivision_preview_levels > 0;
@@ -200,8 +187,8 @@ impl MeshReader<'_, '_, '_> {
         };
         if !is_wanted || self.moves_in_part() {
             if is_wanted || is_marked {
-                self.found.cages += 1;
-                self.faces.is_refined = Some(false);
+                self.all.found.cages += 1;
+                self.all.faces.is_refined = Some(false);
             }
             return None;
         }
@@ -236,7 +223,7 @@ impl MeshReader<'_, '_, '_> {
         for ([a, b], sharpness) in sharp {
             let places = [self.posed(a as usize)?, self.posed(b as usize)?];
             let places = places.map(|(vertex, posed, _)| (posed.corner.position, vertex));
-            match &mut self.faces.cage {
+            match &mut self.all.faces.cage {
                 Some(cage) if a == b => cage.sharpen(places[0], sharpness),
                 Some(cage) => cage.crease(places, sharpness),
                 None => {}
@@ -246,9 +233,9 @@ impl MeshReader<'_, '_, '_> {
     }
 
     fn face(&mut self, i: usize, face: Face, corners: &mut Vec<NumberedCorner>) -> Result<(), ReadError> {
-        self.faces.is_hole = self.mesh.face_hole.get(i) == Some(&true);
-        self.found.holes += usize::from(self.faces.is_hole);
-        if self.faces.is_hole && self.faces.cage.is_none() {
+        self.all.faces.is_hole = self.mesh.face_hole.get(i) == Some(&true);
+        self.all.found.holes += usize::from(self.all.faces.is_hole);
+        if self.all.faces.is_hole && self.all.faces.cage.is_none() {
             return Ok(());
         }
         if face.num_indices as usize > MAX_CORNERS {
@@ -266,7 +253,7 @@ impl MeshReader<'_, '_, '_> {
         if is_mirrored != self.vertices.surface.is_some_and(Polygons::is_turned) {
             corners.reverse();
         }
-        self.faces.add(material.index, corners, FilePosition::Everywhere)
+        self.all.faces.add(material.index, corners, FilePosition::Everywhere)
     }
 
     fn material(&mut self, face: usize) -> Result<Resolved, ReadError> {
@@ -279,7 +266,7 @@ impl MeshReader<'_, '_, '_> {
         if let Some(resolved) = self.resolved[slot] {
             return Ok(resolved);
         }
-        let resolved = self.materials.resolve(to_u32(slot), self.node, self.mesh, self.faces)?;
+        let resolved = self.all.materials.resolve(to_u32(slot), self.node, self.mesh, &mut self.all.faces)?;
         self.resolved[slot] = Some(resolved);
         Ok(resolved)
     }
@@ -296,22 +283,21 @@ impl MeshReader<'_, '_, '_> {
     /// Reads a corner. Also returns whether its transform mirrors.
     fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
         let (vertex, mut posed, has_more) = self.posed(corner)?;
-        self.found.many_joints += usize::from(has_more);
+        self.all.found.many_joints += usize::from(has_more);
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
             // Blend shapes are at rest, unless a clip weighs them.
             let start = if binder.first_weight.is_some() { posed.undeformed } else { posed.morphed };
             let at = (start, &posed.corner);
-            number = binder.bind(at, &self.influences, &mut self.deltas, self.budget)?;
+            number = binder.bind(at, &self.influences, &mut self.deltas, self.all.budget)?;
         }
-        if let Some(table) = self.details.take() {
-            let detail = self.detail(corner, material);
-            number = table.number(detail, number, self.budget)?;
-            self.details = Some(table);
+        let detail = self.all.details.is_some().then(|| self.detail(corner, material));
+        if let Some((table, detail)) = self.all.details.as_mut().zip(detail) {
+            number = table.number(detail, number, self.all.budget)?;
         }
         // Where it isn't refined, a vertex may have several corners.
-        let vertex = self.faces.cage.is_some().then_some([vertex, 0, 0]);
+        let vertex = self.all.faces.cage.is_some().then_some([vertex, 0, 0]);
         Ok((NumberedCorner { corner: posed.corner, number, vertex }, mirrors(&posed.linear)))
     }
 
@@ -330,7 +316,7 @@ impl MeshReader<'_, '_, '_> {
         let uv = at_corner(&list.values, &list.indices, corner).map(vec2);
         let uv = uv.map(|uv| self.vertices.surface.map_or(uv, |surface| surface.uv(uv)).as_vec2());
         let uv = uv.filter(|uv| uv.is_finite());
-        self.found.bad_uvs += usize::from(uv.is_none());
+        self.all.found.bad_uvs += usize::from(uv.is_none());
         uv.map_or(Vec2::ZERO, |uv| Vec2::new(uv.x, 1.0 - uv.y))
     }
 
@@ -346,7 +332,7 @@ impl MeshReader<'_, '_, '_> {
         }
         let color = at_corner(&list.values, &list.indices, corner);
         let color = color.map(|color| vec4(color).as_vec4()).filter(|color| color.is_finite());
-        self.found.bad_colors += usize::from(color.is_none());
+        self.all.found.bad_colors += usize::from(color.is_none());
         color.map_or(Vec4::ONE, |color| color.clamp(Vec4::ZERO, Vec4::ONE))
     }
 }
