@@ -3,7 +3,7 @@
 mod diagram;
 
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::tessellate::Device;
 use super::{AdapterOption, CliError, options, read_text, refuse, write_text};
@@ -104,16 +104,11 @@ impl Args {
         self.adapter.check(self.device == Some(Device::Cpu))
     }
 
-    /// Returns the set of `--factors`, or those of the file.
+    /// Returns the set of `--factors`, or those of the file, one per line. Empty lines are skipped.
     fn sets<const N: usize>(&self) -> Result<Vec<[f32; N]>, CliError> {
-        match (&self.input, &self.factors) {
-            (Some(path), _) => self.read_sets(path),
-            (None, list) => list.iter().map(|list| self.set(list).map_err(CliError::Usage)).collect(),
-        }
-    }
-
-    /// Reads sets of factors from a file, one per line. Empty lines are skipped.
-    fn read_sets<const N: usize>(&self, path: &Path) -> Result<Vec<[f32; N]>, CliError> {
+        let Some(path) = &self.input else {
+            return self.factors.iter().map(|list| self.set(list).map_err(CliError::Usage)).collect();
+        };
         let text = read_text(path)?;
         let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let set = |(index, line): (usize, &str)| {

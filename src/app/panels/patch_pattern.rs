@@ -60,8 +60,7 @@ fn draw_triangles(ui: &Ui, triangles: &[[u32; 3]], points: &[Pos2], hit: Option<
     let painter = ui.painter();
     let at = |i: u32| points[i as usize];
     if let Some(hit) = hit.and_then(|hit| triangles.get(hit as usize)) {
-        let corners = hit.map(at).to_vec();
-        painter.add(Shape::convex_polygon(corners, ui.visuals().selection.bg_fill, Stroke::NONE));
+        painter.add(Shape::convex_polygon(hit.map(at).to_vec(), ui.visuals().selection.bg_fill, Stroke::NONE));
     }
     let stroke = Stroke::new(if points.len() > 600 { 0.5 } else { 1.0 }, ui.visuals().weak_text_color());
     let edges = triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);

@@ -44,8 +44,8 @@ pub(super) fn svg<const N: usize>(
     )
 }
 
-/// Returns for each factor of a kind of patch what it cuts, where that is written in the square of [`DomainKind::place`], and which
-/// part of the text lies there.
+/// Returns for each factor of a kind of patch what it cuts, where that is written in the square of [`DomainKind::place`], and
+/// which part of the text lies there.
 fn labels(kind: DomainKind) -> &'static [(&'static str, [f64; 2], &'static str)] {
     match kind {
         DomainKind::Tri => &[

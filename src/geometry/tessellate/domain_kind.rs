@@ -19,9 +19,8 @@ choices! {
 }
 
 impl DomainKind {
-    /// Returns where a domain point, in 16.16 fixed point, is drawn in a unit square whose second axis points down. The triangle has
-    /// U = 1 at the middle of the top, V = 1 at the lower left and W = 1 at the lower right; of the others U points right and V
-    /// down.
+    /// Returns where a domain point, in 16.16 fixed point, is drawn in a unit square whose second axis points down. A triangle
+    /// has U = 1 at the middle of the top, V = 1 at the lower left and W = 1 at the lower right.
     pub fn place(self, point: [u32; 2]) -> [f64; 2] {
         let [u, v] = point.map(|x| f64::from(x) / f64::from(FIXED_ONE));
         match self {

@@ -196,9 +196,8 @@ impl<'a> Materials<'a> {
             _ if map.uvs == source.own_uvs() => MapUv::Own,
             0 | 1 => MapUv::Set(set, transform),
             _ => {
-                let (name, said) = (&source.name, "only the first two sets are read for it; the first is used");
-                let has = format!("the {what} of material \"{name}\" has a third set of texture coordinates");
-                self.notes.push(format!("{has}, but {said}."));
+                let has = format!("the {what} of material \"{}\" has a third set of texture coordinates", source.name);
+                self.notes.push(format!("{has}, but only the first two sets are read for it; the first is used."));
                 MapUv::Set(0, transform)
             }
         };

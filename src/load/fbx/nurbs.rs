@@ -1,5 +1,5 @@
-//! Makes polygons of NURBS surfaces, which are then read as meshes are. ufbx cuts each span of a surface into as many pieces as it
-//! is told; how many are needed is measured here.
+//! Makes polygons of NURBS surfaces, which are then read as meshes are. ufbx cuts each span of a surface into as many pieces
+//! as it is told; how many are needed is measured here.
 
 use std::collections::HashMap;
 
@@ -129,8 +129,8 @@ impl<'s> Polygons<'s> {
         if !knots_fit(u, surface.num_control_points_u) || !knots_fit(v, surface.num_control_points_v) {
             return Ok(Err("its knots don't ascend, or don't fit its degree and control points"));
         }
-        // As many pieces as the degree, so that no bend lies between the places that are measured. Of a single polygon, if it is a
-        // triangle, ufbx would have too few texture coordinates.
+        // As many pieces as the degree, so that no bend lies between the places that are measured. Of a single polygon, if it
+        // is a triangle, ufbx would have too few texture coordinates.
         let mut pieces = [u.order as usize - 1, v.order.max(3) as usize - 1];
         while points(surface, pieces) > share && pieces != [1, 1] {
             pieces = pieces.map(|pieces| pieces.div_ceil(2));

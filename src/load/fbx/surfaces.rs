@@ -1,6 +1,6 @@
 //! Reads the polygons of all meshes that a scene shows.
 
-use glam::{DMat3, Vec2, Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 use ufbx::{Face, Mesh, Node, SubdivisionBoundary, SubdivisionDisplayMode, VertexVec2};
 
 use super::convert::{at_corner, vec2, vec4};
@@ -115,7 +115,6 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let skin = Skin::new(node, mesh, global);
         let mut vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
         vertices.surface = meshes.surface(node);
-        let is_without_normals = vertices.is_without_normals();
         let mut rig = self.binder.take();
         let binder = rig.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
@@ -131,7 +130,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         let (resolved, influences, deltas) = (Vec::new(), Vec::new(), Vec::new());
         let mut reader = MeshReader { all: self, node, mesh, vertices, binder, resolved, influences, deltas };
         let subdivision = reader.subdivision();
-        reader.all.without_normals += usize::from(is_without_normals && subdivision.is_none());
+        reader.all.without_normals += usize::from(reader.vertices.is_without_normals() && subdivision.is_none());
         reader.all.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.all.faces.import, moves));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
@@ -298,7 +297,7 @@ impl MeshReader<'_, '_, '_, '_> {
         }
         // Where it isn't refined, a vertex may have several corners.
         let vertex = self.all.faces.cage.is_some().then_some([vertex, 0, 0]);
-        Ok((NumberedCorner { corner: posed.corner, number, vertex }, mirrors(&posed.linear)))
+        Ok((NumberedCorner { corner: posed.corner, number, vertex }, posed.linear.determinant() < 0.0))
     }
 
     fn own_uv(&mut self, corner: usize, material: &Resolved) -> Vec2 {
@@ -335,10 +334,6 @@ impl MeshReader<'_, '_, '_, '_> {
         self.all.found.bad_colors += usize::from(color.is_none());
         color.map_or(Vec4::ONE, |color| color.clamp(Vec4::ZERO, Vec4::ONE))
     }
-}
-
-fn mirrors(linear: &DMat3) -> bool {
-    linear.determinant() < 0.0
 }
 
 /// Binds the corners of one mesh to joints and morph targets.

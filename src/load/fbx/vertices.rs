@@ -59,8 +59,7 @@ impl<'a> Vertices<'a> {
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
         let makes_normals = selected.import.makes_normals();
-        let is_told = mesh.vertex_normal.exists || makes_normals;
-        let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
+        let made = if mesh.vertex_normal.exists || makes_normals { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
             mesh,
             surface: None,
