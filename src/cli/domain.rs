@@ -122,9 +122,7 @@ impl Args {
     /// Returns a set of as many factors as the kind of patch has, or says why these are none.
     fn set<const N: usize>(&self, list: &[f32]) -> Result<[f32; N], &'static str> {
         let set = list.try_into().map_err(|_| match self.kind {
-            DomainKind::Tri => {
-                "expected four numbers, of three edges and inside: 3,2.5,inf,4, or in a file 3 2.5 inf 4"
-            }
+            DomainKind::Tri => "expected four numbers, of edges and inside: 3,2.5,inf,4, or in a file 3 2.5 inf 4",
             DomainKind::Quad => "expected six numbers, of edges and inside: 3,2,inf,4,2,2, or in a file 3 2 inf 4 2 2",
             DomainKind::Isoline => "expected two numbers, of isolines and their segments: 3,2.5, or in a file 3 2.5",
         })?;
