@@ -14,8 +14,7 @@ use geometry::names;
 use geometry::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
 use geometry::tessellate::{
     Convention, ExplainedPatch, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh,
-    Vertex, domain_plan, domain_side, domain_triangle, factor_side, inside_cut, point_count, segments, triangle_count,
-    weight_corner,
+    Vertex, domain_side, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
 };
 use inspect::measure::EdgeSide;
 use inspect::render::layout::FACTOR_COLORS;
@@ -325,8 +324,7 @@ impl SelectedPatch<'_> {
         title(ui, &format!("Emitted triangle {}", hit.number), hover);
         ui.label(dense(format!("{:<5}{:>9}{:>9}{:>9}", "point", "u", "v", "w")).weak());
         // The points' numbers are known once the tessellation is measured.
-        let points = self.factors.filter(|&factors| hit.number < triangle_count(factors));
-        let points = points.map(|factors| domain_triangle(&domain_plan(factors), hit.number));
+        let points = self.factors.and_then(|factors| factors.triangles().get(hit.number as usize).copied());
         for (k, vertex) in hit.vertices.iter().enumerate() {
             let point = points.map_or_else(|| "…".into(), |points| points[k].to_string());
             let [fixed, decimals] = weights_text(self.convention.domain_weights(Vertex::domain(vertex)));

@@ -7,7 +7,6 @@ use crate::notes::{Notes, counted};
 
 /// Adds a warning for each kind of thing that is left out.
 pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
-    let caches = scene.cache_deformers.len() + scene.cache_files.len();
     let meshes = |has: fn(&Mesh) -> bool| scene.meshes.into_iter().filter(|mesh| has(mesh)).count();
     let dual = |method| matches!(method, SkinningMethod::DualQuaternion | SkinningMethod::BlendedDqLinear);
     let dual = scene.skin_deformers.into_iter().filter(|skin| dual(skin.skinning_method)).count();
@@ -16,7 +15,7 @@ pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
         (scene.lights.len(), "lights, which aren't read"),
         (curves(scene), "lines and curves, left out"),
         (scene.procedural_geometries.len(), "procedural surfaces, which aren't read"),
-        (caches, "geometry caches, which aren't read"),
+        (scene.cache_deformers.len() + scene.cache_files.len(), "geometry caches, which aren't read"),
         (scene.constraints.len(), "constraints, left out; the animation shows what the exporter has baked"),
         (dual, "skins for dual quaternions, whose joints are blended linearly"),
         (meshes(|mesh| mesh.skin_deformers.len() > 1), "meshes with several skins, of which the first is used"),

@@ -14,7 +14,7 @@ use crate::model_file::ModelFile;
 use crate::notes::Notes;
 use crate::parts::level_names;
 use crate::read_error::ReadError;
-use geometry::mesh::rig::{Clip, Placement};
+use geometry::mesh::rig::Clip;
 
 /// How many corners, vertices, joints and shapes all nodes may have, and how many more for each byte of the file.
 const MOST_ITEMS: u64 = 1 << 24;
@@ -54,7 +54,6 @@ impl Placed {
         let mut order: Vec<usize> = (0..nodes.len()).collect();
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
-        let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
         let is_hidden = hidden(scene, file.selected.import.show_hidden, &order, &parents);
         let with_mesh = || (0..nodes.len()).filter(|&node| meshes.of(&nodes[node]).is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
@@ -64,12 +63,12 @@ impl Placed {
         }
         let carries = carries_shown(scene, &shown, &order, &parents);
         let carries_mesh = SceneNodes::carrying(with_mesh(), &order, &parents);
-        let morphed = shown.iter().filter_map(|&node| {
+        let with_weights = |&node: &usize| {
             let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?, &file.selected);
             (!rest.is_empty()).then_some((node, rest))
-        });
-        let morphed = morphed.collect();
-        let local = rest.into_iter().map(LocalTransform::Placement).collect();
+        };
+        let morphed = shown.iter().filter_map(with_weights).collect();
+        let local = nodes.into_iter().map(|node| LocalTransform::Placement(placement(&node.local_transform))).collect();
         let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
         let levels = groups.flat_map(|group| group.children.into_iter().enumerate().skip(1));
         let levels = levels.map(|(number, level)| (index(level), number)).collect();
@@ -100,12 +99,9 @@ fn check_instances(meshes: &Meshes, budget: &Budget) -> Result<(), ReadError> {
     let shown = meshes.scene.nodes.into_iter().filter_map(|node| meshes.of(node));
     // Polygons of surfaces aren't in the scene's list.
     let cost = |mesh: &Mesh| costs.get(mesh.element.typed_id as usize).copied().unwrap_or_else(|| of_mesh(mesh));
-    match shown.fold(0_u64, |sum, mesh| sum.saturating_add(cost(mesh))) {
-        all if all > limit => {
-            Err(ReadError::TooMany { limit, what: "corners, vertices, joints and shapes in all copies of meshes" })
-        }
-        _ => Ok(()),
-    }
+    let all = shown.fold(0_u64, |sum, mesh| sum.saturating_add(cost(mesh)));
+    let what = "corners, vertices, joints and shapes in all copies of meshes";
+    if all > limit { Err(ReadError::TooMany { limit, what }) } else { Ok(()) }
 }
 
 /// Returns a node's index in the scene.

@@ -1,15 +1,15 @@
-//! Makes polygons of NURBS surfaces, which are then read as meshes are. ufbx evaluates a surface, and cuts each of its spans into
-//! as many pieces as it is told; how many are needed is measured here.
+//! Makes polygons of NURBS surfaces, which are then read as meshes are. ufbx cuts each span of a surface into as many pieces
+//! as it is told; how many are needed is measured here.
 
 use std::collections::HashMap;
 
 use glam::{DVec2, DVec3, Vec3};
 use ufbx::{
-    AllocatorOpts, Connection, ElementType, Mesh, MeshRoot, MirrorAxis, Node, NurbsBasis, NurbsSurface, NurbsTopology,
-    Scene,
+    AllocatorOpts, Connection, ElementType, Mesh, MeshRoot, MirrorAxis, Node, NurbsBasis, NurbsSurface, Scene,
+    TessellateSurfaceOpts,
 };
 
-use super::convert::{at_corner, vec3, vec4};
+use super::convert::{at_corner, vec3};
 use super::{looks, parse};
 use crate::memory_budget::Budget;
 use crate::notes::{Notes, counted};
@@ -44,13 +44,6 @@ pub(super) struct Meshes<'s> {
     pub memory: u64,
 }
 
-/// A NURBS surface and its polygons.
-pub(super) struct Polygons<'s> {
-    surface: &'s NurbsSurface,
-    mesh: MeshRoot,
-    is_mirrored: bool,
-}
-
 impl<'s> Meshes<'s> {
     /// Cuts the surfaces that nodes have; trimmed ones are cut whole.
     ///
@@ -69,16 +62,16 @@ impl<'s> Meshes<'s> {
         });
         let used: Vec<_> = whole.chain(trimmed).filter(|(owner, _)| !owner.instances.is_empty()).collect();
         let uses: u64 = used.iter().map(|(owner, _)| owner.instances.len() as u64).sum();
-        let share = MOST_POINTS.saturating_add(budget.files()) / uses.max(1);
-        let mut meshes = Self { scene, surfaces: HashMap::new(), memory: 0 };
+        // The mesh that is made of the polygons takes memory, too.
+        let share = MOST_POINTS.saturating_add(budget.files()).min(budget.left() / (4 * PER_POINT)) / uses.max(1);
+        let mut meshes = Self { scene, surfaces: HashMap::new(), memory: budget.left() };
         let (mut trimmed, mut still, mut worst) = (0, 0, TOLERANCE);
         let moves =
             |link: &Connection| matches!(link.src.type_, ElementType::SkinDeformer | ElementType::BlendDeformer);
         for (owner, surface) in used {
-            match Cut::refined(surface, share, budget, progress)? {
-                Ok((cut, off)) => {
-                    meshes.surfaces.insert(owner.element_id, cut.tessellated(scene, budget)?);
-                    meshes.memory += cut.memory();
+            match Polygons::cut(surface, share, budget, progress)? {
+                Ok((polygons, off)) => {
+                    meshes.surfaces.insert(owner.element_id, polygons);
                     still += usize::from(surface.element.connections_dst.iter().any(moves));
                     trimmed += usize::from(owner.element_id != surface.element.element_id);
                     worst = worst.max(off);
@@ -89,6 +82,7 @@ impl<'s> Meshes<'s> {
                 }
             }
         }
+        meshes.memory -= budget.left();
         let made = format!("NURBS surfaces, made polygons that differ from them by up to {worst:.3} of their size");
         notes.extend(counted([
             (meshes.surfaces.len(), &*made),
@@ -110,10 +104,64 @@ impl<'s> Meshes<'s> {
     }
 }
 
-impl Polygons<'_> {
+/// A NURBS surface and its polygons.
+pub(super) struct Polygons<'s> {
+    surface: &'s NurbsSurface,
+    mesh: MeshRoot,
+}
+
+impl<'s> Polygons<'s> {
+    /// Cuts a surface so that the polygons are within the tolerance, or have its share of points. Also returns by which share of
+    /// its size they then differ from it; the inner error says why the surface is left out.
+    ///
+    /// # Errors
+    /// [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
+    fn cut(
+        surface: &'s NurbsSurface,
+        share: u64,
+        budget: &Budget,
+        progress: &Progress,
+    ) -> Result<Result<(Self, f64), &'static str>, ReadError> {
+        let [u, v] = [&surface.basis_u, &surface.basis_v];
+        if u.order.min(v.order) < 2 || u.order.max(v.order) > MAX_ORDER {
+            return Ok(Err("its degree isn't between 1 and 15"));
+        }
+        if !knots_fit(u, surface.num_control_points_u) || !knots_fit(v, surface.num_control_points_v) {
+            return Ok(Err("its knots don't ascend, or don't fit its degree and control points"));
+        }
+        // As many pieces as the degree, so that no bend lies between the places that are measured. Of a single polygon, if it
+        // is a triangle, ufbx would have too few texture coordinates.
+        let mut pieces = [u.order as usize - 1, v.order.max(3) as usize - 1];
+        while points(surface, pieces) > share && pieces != [1, 1] {
+            pieces = pieces.map(|pieces| pieces.div_ceil(2));
+        }
+        budget.check(points(surface, pieces).saturating_mul(PER_POINT))?;
+        loop {
+            let Some((off, size)) = measured(surface, pieces, progress)? else {
+                return Ok(Err(
+                    "a control point, or its weight, isn't a finite number, its weights add up to 0, or all of it is one point",
+                ));
+            };
+            let [off_u, off_v, inside] = off.map(|off| off > TOLERANCE);
+            let is_twisted = inside && !off_u && !off_v;
+            let doubled = |pieces, is_off| if is_off || is_twisted { 2 * pieces } else { pieces };
+            let finer = [doubled(pieces[0], off_u), doubled(pieces[1], off_v)];
+            if finer == pieces || points(surface, finer) > share {
+                let mesh = tessellated(surface, pieces, budget)?;
+                return Ok(Ok((Self { surface, mesh }, off.into_iter().fold(0.0, f64::max) + JOINED / size)));
+            }
+            pieces = finer;
+        }
+    }
+
+    /// Whether the file's axes were mirrored, so that polygons show their backs.
+    fn is_mirrored(&self) -> bool {
+        self.surface.element.scene.metadata.mirror_axis != MirrorAxis::None
+    }
+
     /// Whether the front of the surface is the polygons' back.
     pub(super) fn is_turned(&self) -> bool {
-        self.surface.flip_normals != self.is_mirrored
+        self.surface.flip_normals != self.is_mirrored()
     }
 
     /// Returns a corner's normal: the surface's, or the polygons' where a derivative is 0 but for rounding, as at a pole.
@@ -121,9 +169,10 @@ impl Polygons<'_> {
         let lists = [&self.mesh.vertex_tangent, &self.mesh.vertex_bitangent, &self.mesh.vertex_normal];
         let [along_u, along_v, polygons] =
             lists.map(|list| at_corner(&list.values, &list.indices, corner).map_or(DVec3::ZERO, vec3));
-        let turned = |normal: DVec3, is_turned: bool| if is_turned { -normal } else { normal };
-        let exact = turned(along_u.cross(along_v).normalize_or_zero(), self.surface.flip_normals);
-        turned(if exact.dot(polygons) > 0.95 { exact } else { polygons }, self.is_mirrored).as_vec3()
+        let exact = along_u.cross(along_v).normalize_or_zero();
+        let cos = exact.dot(polygons);
+        let normal = if cos.abs() > 0.95 { exact * cos.signum() } else { polygons };
+        (if self.is_mirrored() { -normal } else { normal }).as_vec3()
     }
 
     /// Returns the texture coordinates at u and v, which run from 0 to 1 over the whole surface.
@@ -134,159 +183,76 @@ impl Polygons<'_> {
     }
 }
 
-/// A surface, and how many pieces each of its spans along u and v is cut into.
-#[derive(Clone, Copy)]
-struct Cut<'s> {
-    surface: &'s NurbsSurface,
-    pieces: [usize; 2],
+/// How many points there are if each span along u and v is cut into so many pieces.
+fn points(surface: &NurbsSurface, pieces: [usize; 2]) -> u64 {
+    let along = |basis: &NurbsBasis, pieces: usize| (basis.spans.len() as u64 - 1) * pieces as u64 + 1;
+    along(&surface.basis_u, pieces[0]).saturating_mul(along(&surface.basis_v, pieces[1]))
 }
 
-impl<'s> Cut<'s> {
-    /// Cuts each span into as many pieces as its degree, so that no bend lies between the places that are measured.
-    ///
-    /// # Errors
-    /// A clause that says why the surface can't be evaluated.
-    fn new(surface: &'s NurbsSurface) -> Result<Self, &'static str> {
-        let [u, v] = [&surface.basis_u, &surface.basis_v];
-        let fit = knots_fit(u, surface.num_control_points_u) && knots_fit(v, surface.num_control_points_v);
-        let are_finite = surface.control_points.iter().all(|point| vec4(point).is_finite());
-        let checks = [
-            (!surface.control_points.is_empty(), "it has no control points"),
-            (u.order.min(v.order) >= 2 && u.order.max(v.order) <= MAX_ORDER, "its degree isn't between 1 and 15"),
-            (fit, "its knots don't ascend, or don't fit its degree and control points"),
-            (are_finite, "a control point, or its weight, isn't a finite number"),
-        ];
-        match checks.into_iter().find(|(is_right, _)| !is_right) {
-            Some((_, reason)) => Err(reason),
-            // Of a single polygon, if it is a triangle, ufbx would have too few texture coordinates.
-            None => Ok(Self { surface, pieces: [u.order as usize - 1, v.order.max(3) as usize - 1] }),
-        }
-    }
-
-    /// How many polygons there are along u and v.
-    fn polygons(&self) -> [usize; 2] {
-        let spans = [&self.surface.basis_u, &self.surface.basis_v].map(|basis| basis.spans.len() - 1);
-        [0, 1].map(|i| spans[i].saturating_mul(self.pieces[i]))
-    }
-
-    fn points(&self) -> u64 {
-        let [columns, rows] = self.polygons().map(|polygons| polygons as u64 + 1);
-        columns.saturating_mul(rows)
-    }
-
-    fn memory(&self) -> u64 {
-        self.points().saturating_mul(PER_POINT).saturating_add(BLOCKS * BLOCK as u64)
-    }
-
-    /// Cuts a surface so that the polygons are within the tolerance, or have its share of points. Also returns by which share of
-    /// its size they then differ from it; the inner error says why the surface is left out.
-    ///
-    /// # Errors
-    /// [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
-    fn refined(
-        surface: &'s NurbsSurface,
-        share: u64,
-        budget: &Budget,
-        progress: &Progress,
-    ) -> Result<Result<(Self, f64), &'static str>, ReadError> {
-        let mut cut = match Self::new(surface) {
-            Ok(cut) => cut,
-            Err(reason) => return Ok(Err(reason)),
-        };
-        while cut.points() > share && cut.pieces != [1, 1] {
-            cut.pieces = cut.pieces.map(|pieces| pieces.div_ceil(2));
-        }
-        budget.check(cut.memory())?;
-        loop {
-            let Some((off, size)) = cut.measured(progress)? else {
-                return Ok(Err("its weights add up to 0, or all of it is one point"));
-            };
-            let [u, v, inside] = off.map(|off| off > TOLERANCE);
-            let is_twisted = inside && !u && !v;
-            let [along_u, along_v] = cut.pieces;
-            let doubled = |pieces, is_off| if is_off || is_twisted { 2 * pieces } else { pieces };
-            let finer = Self { surface, pieces: [doubled(along_u, u), doubled(along_v, v)] };
-            // The mesh that is made of the polygons takes memory, too.
-            let is_too_much = finer.points() > share || finer.memory() > budget.left() / 4;
-            if finer.pieces == cut.pieces || is_too_much {
-                return Ok(Ok((cut, off.into_iter().fold(0.0, f64::max) + JOINED / size)));
-            }
-            cut = finer;
-        }
-    }
-
-    /// Measures how far the surface is from its polygons at the middles of their sides along u, of those along v, and of the
-    /// polygons: the largest distances, as shares of its size, and its size. Returns none if a point of it isn't finite, or all
-    /// are one.
-    fn measured(&self, progress: &Progress) -> Result<Option<([f64; 3], f64)>, Cancelled> {
-        let mut off = [0.0_f64; 3];
-        let mut extent = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        let [columns, rows] = self.polygons();
-        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-            progress.check()?;
-            let points = [0, 1, 2].map(|y| [0, 1, 2].map(|x| self.point([2 * column + x, 2 * row + y])));
-            if !points.as_flattened().iter().all(|point| point.as_vec3().is_finite()) {
+/// Measures how far a surface is from its polygons at the middles of their sides along u, of those along v, and of the polygons:
+/// the largest distances, as shares of its size, and its size. Returns none if a point of it isn't finite, or all are one.
+fn measured(
+    surface: &NurbsSurface,
+    pieces: [usize; 2],
+    progress: &Progress,
+) -> Result<Option<([f64; 3], f64)>, Cancelled> {
+    let (all_u, all_v) = (places(&surface.basis_u, pieces[0]), places(&surface.basis_v, pieces[1]));
+    let point = |u: f64, v: f64| vec3(&ufbx::evaluate_nurbs_surface(surface, u, v).position);
+    let (mut off, mut least, mut most) = ([0.0_f64; 3], DVec3::INFINITY, DVec3::NEG_INFINITY);
+    let polygons = all_v.array_windows().step_by(2).flat_map(|v| all_u.array_windows().step_by(2).map(move |u| (u, v)));
+    for (u, v) in polygons {
+        progress.check()?;
+        let points = v.map(|v| u.map(|u| point(u, v)));
+        for point in points.as_flattened() {
+            if !point.as_vec3().is_finite() {
                 return Ok(None);
             }
-            let [[a, below, b], [left, middle, right], [d, above, c]] = points;
-            extent = [a, b, c, d].into_iter().fold(extent, |[least, most], point| [least.min(point), most.max(point)]);
-            // A side is a triangle without area, and either diagonal may cut the polygon.
-            for (kind, point, triangles) in [
-                (0, below, [[a, b, b]; 2]),
-                (0, above, [[d, c, c]; 2]),
-                (1, left, [[a, d, d]; 2]),
-                (1, right, [[b, c, c]; 2]),
-                (2, middle, [[a, b, c], [c, d, a]]),
-                (2, middle, [[b, c, d], [d, a, b]]),
-            ] {
-                let [one, other] = triangles.map(|triangle| closest_on_triangle(triangle, point).1.distance(point));
-                off[kind] = off[kind].max(one.min(other));
-            }
+            (least, most) = (least.min(*point), most.max(*point));
         }
-        let size = extent[0].distance(extent[1]);
-        Ok((size > 0.0).then(|| (off.map(|off| off / size), size)))
+        let [[a, below, b], [left, middle, right], [d, above, c]] = points;
+        // A side is a triangle without area, and either diagonal may cut the polygon.
+        for (kind, point, triangles) in [
+            (0, below, [[a, b, b]; 2]),
+            (0, above, [[d, c, c]; 2]),
+            (1, left, [[a, d, d]; 2]),
+            (1, right, [[b, c, c]; 2]),
+            (2, middle, [[a, b, c], [c, d, a]]),
+            (2, middle, [[b, c, d], [d, a, b]]),
+        ] {
+            let [one, other] = triangles.map(|triangle| closest_on_triangle(triangle, point).1.distance(point));
+            off[kind] = off[kind].max(one.min(other));
+        }
     }
+    let size = least.distance(most);
+    Ok((size > 0.0).then(|| (off.map(|off| off / size), size)))
+}
 
-    /// Returns the point at so many halves of pieces along u and v. Where a surface closes, ufbx takes its first points as the last.
-    fn point(&self, halves: [usize; 2]) -> DVec3 {
-        let bases = [&self.surface.basis_u, &self.surface.basis_v];
-        let [u, v] = [0, 1].map(|i| {
-            let (spans, steps) = (&bases[i].spans, 2 * self.pieces[i]);
-            let (span, part) = (halves[i] / steps, (halves[i] % steps) as f64 / steps as f64);
-            match spans.get(span + 1) {
-                Some(next) => spans[span] * (1.0 - part) + next * part,
-                None if bases[i].topology == NurbsTopology::Open => spans[span],
-                None => spans[0],
-            }
-        });
-        let point = ufbx::evaluate_nurbs_surface(self.surface, u, v);
-        if point.valid { vec3(&point.position) } else { DVec3::NAN }
-    }
+/// Returns where a direction is evaluated: at the ends of so many pieces of each span, and halfway between them.
+fn places(basis: &NurbsBasis, pieces: usize) -> Vec<f64> {
+    let parts = (0..2 * pieces).map(|i| i as f64 / (2 * pieces) as f64);
+    let within = |[from, to]: &[f64; 2]| parts.clone().map(|part| from + (to - from) * part).collect::<Vec<_>>();
+    basis.spans.array_windows().flat_map(within).chain(basis.spans.last().copied()).collect()
+}
 
-    /// Lets ufbx make the polygons, in memory that is held before.
-    fn tessellated(&self, scene: &Scene, budget: &Budget) -> Result<Polygons<'s>, ReadError> {
-        budget.hold(self.memory())?;
-        let memory_limit = to_usize(self.memory());
-        let allocator = || AllocatorOpts { memory_limit, max_chunk_size: BLOCK, ..AllocatorOpts::default() };
-        let options = ufbx::TessellateSurfaceOpts {
-            temp_allocator: allocator(),
-            result_allocator: allocator(),
-            span_subdivision_u: self.pieces[0],
-            span_subdivision_v: self.pieces[1],
-            skip_mesh_parts: true,
-        };
-        let mesh = ufbx::tessellate_nurbs_surface(self.surface, options);
-        let mesh = mesh.map_err(|error| parse::refused(&error, budget))?;
-        Ok(Polygons { surface: self.surface, mesh, is_mirrored: scene.metadata.mirror_axis != MirrorAxis::None })
-    }
+/// Lets ufbx make the polygons, in memory that is held before.
+fn tessellated(surface: &NurbsSurface, pieces: [usize; 2], budget: &Budget) -> Result<MeshRoot, ReadError> {
+    let memory = points(surface, pieces).saturating_mul(PER_POINT).saturating_add(BLOCKS * BLOCK as u64);
+    budget.hold(memory)?;
+    let memory_limit = to_usize(memory);
+    let allocator = || AllocatorOpts { memory_limit, max_chunk_size: BLOCK, ..AllocatorOpts::default() };
+    let options = TessellateSurfaceOpts {
+        temp_allocator: allocator(),
+        result_allocator: allocator(),
+        span_subdivision_u: pieces[0],
+        span_subdivision_v: pieces[1],
+        skip_mesh_parts: true,
+    };
+    ufbx::tessellate_nurbs_surface(surface, options).map_err(|error| parse::refused(&error, budget))
 }
 
 /// Whether a surface can be evaluated with these knots: ufbx lets pass those that aren't finite, and those that are all the same.
 fn knots_fit(basis: &NurbsBasis, points: usize) -> bool {
-    let used = basis.knot_vector.len().saturating_sub(basis.order as usize);
-    let is_all = match basis.topology {
-        NurbsTopology::Open => used == points,
-        NurbsTopology::Closed | NurbsTopology::Periodic => used <= points + basis.num_wrap_control_points,
-    };
+    let (used, wrap) = (basis.knot_vector.len().saturating_sub(basis.order as usize), basis.num_wrap_control_points);
+    let is_all = used == points || wrap > 0 && used <= points + wrap;
     is_all && basis.valid && basis.spans.len() > 1 && basis.knot_vector.iter().all(|knot| knot.is_finite())
 }

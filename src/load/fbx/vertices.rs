@@ -120,16 +120,12 @@ impl<'a> Vertices<'a> {
     }
 
     fn normal(&self, corner: usize) -> Option<Vec3> {
-        if self.makes_normals {
-            return None;
+        let normals = &self.mesh.vertex_normal;
+        match (self.surface, &self.made) {
+            _ if self.makes_normals => None,
+            (Some(surface), _) => Some(surface.normal(corner)),
+            (None, Some(made)) => made.get(corner).copied(),
+            (None, None) => at_corner(&normals.values, &normals.indices, corner).map(|normal| vec3(normal).as_vec3()),
         }
-        if let Some(made) = &self.made {
-            return made.get(corner).copied();
-        }
-        let Some(surface) = self.surface else {
-            let normals = &self.mesh.vertex_normal;
-            return at_corner(&normals.values, &normals.indices, corner).map(|normal| vec3(normal).as_vec3());
-        };
-        Some(surface.normal(corner))
     }
 }
