@@ -98,9 +98,7 @@ impl Persistence {
 
     /// Lists a file again that was loaded, in case it was gone before.
     pub(in crate::app) fn is_back(&mut self, source: &Source) {
-        if let Some(file) = self.known(source) {
-            file.is_gone = false;
-        }
+        self.known(source).into_iter().for_each(|file| file.is_gone = false);
     }
 
     fn known(&mut self, source: &Source) -> Option<&mut SavedFile> {
@@ -148,11 +146,10 @@ fn path_of(source: &Source) -> Option<String> {
 /// The geometry of the window. While it is maximised, its size is the one that it goes back to.
 fn frame_now(context: &egui::Context, before: &WindowGeometry) -> WindowGeometry {
     let (zoom, size) = (context.zoom_factor(), context.viewport_rect().size());
-    let window = context.input(|input| {
+    let [is_maximized, is_fullscreen, is_minimized] = context.input(|input| {
         let window = input.viewport();
-        (window.maximized.unwrap_or(false), window.fullscreen.unwrap_or(false), window.minimized.unwrap_or(false))
+        [window.maximized, window.fullscreen, window.minimized].map(|is_so| is_so == Some(true))
     });
-    let (is_maximized, is_fullscreen, is_minimized) = window;
     // Rounded to whole points, so that a window that opens with this size has it exactly.
     let sized = [(size.x * zoom).round(), (size.y * zoom).round()];
     let is_large = sized.iter().zip(LEAST_SIZE).all(|(side, least)| *side >= least);
@@ -225,12 +222,12 @@ impl App {
             file.bookmarks = self.viewport.bookmarks.iter().map(saved).collect();
         }
         self.persistence.write_on(context, &mut self.jobs);
-    ///
-    /// # Errors
-    /// Why the file can't be written, as a sentence.
     }
 
     /// Writes the last changes when the window is closed.
+    ///
+    /// # Errors
+    /// Why the file can't be written, as a sentence.
     pub(in crate::app) fn keep_for_good(&mut self) -> Result<(), String> {
         self.jobs.wait_for(Work::State);
         let Persistence { place, kept, written, .. } = &mut self.persistence;
