@@ -21,7 +21,6 @@ impl App {
             }
             let pushed = self.pushed_down(ui, top);
             ui.push_id("given", |ui| self.given_section(ui));
-            ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
             self.section(ui, Section::Cracks, |app, ui| app.crack_facts(ui));
             if self.panels.open.has(Section::Cracks) {
