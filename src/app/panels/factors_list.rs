@@ -67,8 +67,7 @@ impl App {
         columns(ui, &format!("{:<9}{:>9}{:>9}", "edge", "least", "greatest"), true)
             .on_hover_text("The least and the greatest factor of a side of the edge.");
         let first = edges.first().map_or(0, |edge| edge.edge);
-        let clicked = found_list(ui, "different factors", edges.len(), first, |row| {
-            let own = &edges[row];
+        let clicked = found_list(ui, "different factors", edges, first, |own| {
             let [least, greatest] = own.extremes().map(|(_, factor)| short(factor.into()));
             FoundRow {
                 columns: format!("{:<9}{least:>9}{greatest:>9}", own.edge),
@@ -76,7 +75,7 @@ impl App {
                 hover: sides_text(own),
             }
         });
-        if let Some(edge) = clicked.map(|row| edges[row].edge) {
+        if let Some(edge) = clicked.map(|own| own.edge) {
             self.select_edge(edge);
         }
     }
