@@ -55,6 +55,14 @@ pub(super) fn file_row(ui: &mut egui::Ui, name: &str, hover: &str, path: &Path) 
     ui.end_row();
 }
 
+/// A row with a name and a control.
+pub(super) fn control_row(ui: &mut egui::Ui, name: &str, hover: &str, control: impl egui::Widget) -> egui::Response {
+    let label = ui.label(name).on_hover_text(hover);
+    let response = ui.add(control).labelled_by(label.id).on_hover_text(hover);
+    ui.end_row();
+    response
+}
+
 /// A row with a button. Returns whether it was clicked.
 pub(super) fn button_row(ui: &mut egui::Ui, name: &str, hover: &str) -> bool {
     ui.label("");
