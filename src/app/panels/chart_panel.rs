@@ -181,10 +181,7 @@ fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let (spot, is_clicked) = diagram.show(ui)?;
     let text = match spot {
         Spot::Row(row) => format!("{}\n{}", named(&row.setting), facts(diagram.charted, &row.probe)),
-        Spot::Current => {
-            let measured = diagram.charted.current.and_then(|(_, probe)| probe)?;
-            format!("The window's settings\n{}", facts(diagram.charted, &measured))
-        }
+        Spot::Current(_, probe) => format!("The window's settings\n{}", facts(diagram.charted, probe)),
     };
     let (layer, id) = (ui.layer_id(), ui.scope_id().with("point"));
     egui::Tooltip::always_open(ui.ctx().clone(), layer, id, egui::PopupAnchor::Pointer).show(|ui| ui.label(text));
