@@ -276,11 +276,8 @@ impl App {
         let preview = &mut self.viewport.preview;
         preview.land();
         preview.fit(&self.painting, &self.engine, full.view.viewport)?;
-        let light = self
-            .environment
-            .as_ref()
-            .filter(|_| full.from_files.light > 0)
-            .map(|open| open.content.environment.clone());
+        let open = self.environment.as_ref().filter(|_| full.from_files.light > 0);
+        let light = open.map(|open| open.content.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {
                 stand_in.matcap.clone_from(&document.scene.matcap);
