@@ -214,11 +214,8 @@ impl SelectedPatch<'_> {
             None => "… points, … triangles".to_owned(),
             Some(factors) => format!("{} points, {} triangles", point_count(factors), triangle_count(factors)),
         };
-        title(
-            ui,
-            &format!("Pattern: {pattern}"),
-            "The domain points and triangles that the tessellator makes from these factors.",
-        );
+        let hover = "The domain points and triangles that the tessellator makes from these factors.";
+        title(ui, &format!("Pattern: {pattern}"), hover);
         let letters = [0, 1, 2].map(|i| format!("{} {}", weight_corner(self.convention, i), LETTERS[i as usize]));
         let empty = match self.factors {
             None if self.app.is_playing() => "measured when paused",
@@ -265,11 +262,9 @@ impl SelectedPatch<'_> {
 
     /// Position, normal and uv of every corner.
     fn corner_rows(&self, ui: &mut Ui) {
-        title(
-            ui,
-            "Corners",
-            "Position in object units, unit normal and texture coordinates, as loaded. Hover texts have the exact numbers.",
-        );
+        let hover = "Position in object units, unit normal and texture coordinates, as loaded. Hover texts have the exact \
+                     numbers.";
+        title(ui, "Corners", hover);
         for (k, corner) in (0..).zip(self.topology.patch_corners(self.patch)) {
             let point = self.topology.corner_points[corner as usize];
             let (at, letter) = (&self.mesh.corners[corner as usize], letter(self.convention, k));
