@@ -55,6 +55,14 @@ pub(super) fn file_row(ui: &mut egui::Ui, name: &str, hover: &str, path: &Path) 
     ui.end_row();
 }
 
+/// A row with a name and a control.
+pub(super) fn control_row(ui: &mut egui::Ui, name: &str, hover: &str, control: impl egui::Widget) -> egui::Response {
+    let label = ui.label(name).on_hover_text(hover);
+    let response = ui.add(control).labelled_by(label.id).on_hover_text(hover);
+    ui.end_row();
+    response
+}
+
 /// A row with a button. Returns whether it was clicked.
 pub(super) fn button_row(ui: &mut egui::Ui, name: &str, hover: &str) -> bool {
     ui.label("");
@@ -175,20 +183,20 @@ pub(super) struct FoundRow {
     pub hover: String,
 }
 
-/// A [`list`] of what was found. Returns the row that was clicked.
-pub(super) fn found_list(
+/// A [`list`] of what was found. Returns what was clicked.
+pub(super) fn found_list<'a, T>(
     ui: &mut egui::Ui,
     name: &str,
-    count: usize,
+    found: &'a [T],
     first: u32,
-    row: impl Fn(usize) -> FoundRow,
-) -> Option<usize> {
+    row: impl Fn(&T) -> FoundRow,
+) -> Option<&'a T> {
     let mut clicked = None;
-    list(ui, name, count, (count, first), |ui, index| {
-        let FoundRow { columns, is_selected, hover } = row(index);
+    list(ui, name, found.len(), (found.len(), first), |ui, index| {
+        let FoundRow { columns, is_selected, hover } = row(&found[index]);
         let response = ui.selectable_label(is_selected, RichText::new(columns).monospace()).on_hover_text(hover);
         if response.clicked() {
-            clicked = Some(index);
+            clicked = found.get(index);
         }
         response
     });

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::scenes::arena_bytes;
 use crate::app::App;
+use geometry::defaults::with_defaults;
 use geometry::progress::Progress;
 use geometry::tessellate::Tessellated;
 use gpu::{Gpu, GpuError, Timing};
@@ -21,20 +22,16 @@ use inspect::shot::{Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
 /// How much of the progress is for reading the mesh back from the device; the rest is for writing the file.
 const READING: f32 = 0.8;
 
-/// How a picture is saved.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct PictureChoices {
-    /// Width and height in px; none for those of the viewport.
-    pub size: Option<[u32; 2]>,
-    pub transparent: bool,
-    /// Whether overlays and the selection are drawn.
-    pub overlays: bool,
-    pub legend: bool,
-}
-
-impl Default for PictureChoices {
-    fn default() -> Self {
-        Self { size: None, transparent: false, overlays: true, legend: false }
+with_defaults! {
+    /// How a picture is saved.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub(crate) struct PictureChoices {
+        /// Width and height in px; none for those of the viewport.
+        pub size: Option<[u32; 2]> = None,
+        pub transparent: bool = false,
+        /// Whether overlays and the selection are drawn.
+        pub overlays: bool = true,
+        pub legend: bool = false,
     }
 }
 

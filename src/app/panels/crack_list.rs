@@ -37,8 +37,7 @@ impl App {
         list_title(ui, None, "Worst edges", hover);
         columns(ui, &format!("{:<7}{:<13}{:>9}", "edge", "kind", "gap, units"), true);
         let which = document.generation as u32 ^ results.seen.inputs.tessellation.surface as u32;
-        let clicked = found_list(ui, "worst edges", cracked.len(), which, |row| {
-            let crack = &cracked[row];
+        let clicked = found_list(ui, "worst edges", cracked, which, |crack| {
             let kind = topology.edges[crack.edge as usize].kind.label();
             FoundRow {
                 columns: format!("{:<7}{kind:<13}{:>9}", crack.edge, short(crack.gap)),
@@ -54,7 +53,7 @@ impl App {
                 ),
             }
         });
-        if let Some(edge) = clicked.map(|row| cracked[row].edge) {
+        if let Some(edge) = clicked.map(|crack| crack.edge) {
             self.select_edge(edge);
         }
     }
@@ -69,10 +68,8 @@ impl App {
         ui.horizontal(|ui| {
             ui.label(RichText::new(format!("Edge {edge}")).strong());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                closed = ui
-                    .small_button("Deselect")
-                    .on_hover_text(with_key("Closes this section.", &Action::Cancel))
-                    .clicked();
+                let hover = with_key("Closes this section.", &Action::Cancel);
+                closed = ui.small_button("Deselect").on_hover_text(hover).clicked();
             });
         });
         ui.separator();
@@ -118,15 +115,13 @@ impl App {
             number(ui, &grouped(junctions.len() as u64));
         });
         columns(ui, &format!("{:<9}{:<9}{:>11}", "point", "edge", "at, 0 to 1"), true);
-        let clicked = found_list(ui, "t-junctions", junctions.len(), junctions[0].point, |row| {
-            let TJunction { edge, point, t, .. } = junctions[row];
-            FoundRow {
+        let clicked =
+            found_list(ui, "t-junctions", junctions, junctions[0].point, |TJunction { edge, point, t, .. }| FoundRow {
                 columns: format!("{point:<9}{edge:<9}{t:>11.3}"),
-                is_selected: self.selected_edge() == Some(edge),
+                is_selected: self.selected_edge() == Some(*edge),
                 hover: "Where the point lies along the edge, from 0 to 1. A click frames the edge.".to_owned(),
-            }
-        });
-        if let Some(junction) = clicked.map(|row| junctions[row]) {
+            });
+        if let Some(junction) = clicked.copied() {
             self.show_junction(&junction);
         }
     }

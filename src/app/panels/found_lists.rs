@@ -21,8 +21,7 @@ impl App {
         list_title(ui, None, "Leaks", hover);
         columns(ui, &format!("{:>6}{:>8}{:>15}", "x, px", "y, px", "px that leak"), true)
             .on_hover_text("The pixel in the middle of the leak, from the picture's top left, and the leak's size.");
-        let clicked = found_list(ui, "leaks", leaks.len(), leaks[0].px.x as u32, |row| {
-            let leak = &leaks[row];
+        let clicked = found_list(ui, "leaks", leaks, leaks[0].px.x as u32, |leak| {
             let [x, y] = leak.px.floor().to_array();
             FoundRow {
                 columns: format!("{x:>6.0}{y:>8.0}{:>15}", grouped(leak.pixels.into())),
@@ -30,7 +29,7 @@ impl App {
                 hover: "A click selects the cracked edge that comes closest, and frames it.".to_owned(),
             }
         });
-        if let Some(leak) = clicked.map(|row| leaks[row]) {
+        if let Some(leak) = clicked.copied() {
             self.show_leak(&leak);
         }
     }
@@ -57,8 +56,7 @@ impl App {
             .on_hover_text("The triangle of the mesh, its folds, and their area in square object units.");
         let (patches, first) = (&document.loaded.topology.patches, &found.folded[0]);
         let which = first.patch ^ (first.area as f32).to_bits();
-        let clicked = found_list(ui, "folded patches", found.folded.len(), which, |row| {
-            let folded = &found.folded[row];
+        let clicked = found_list(ui, "folded patches", &found.folded, which, |folded| {
             let triangle = patches.get(folded.patch as usize).map_or(0, |patch| patch.triangle);
             FoundRow {
                 columns: format!("{triangle:<10}{:>7}{:>12}", grouped(folded.folds.into()), short(folded.area)),
@@ -66,7 +64,7 @@ impl App {
                 hover: "A click selects the triangle and frames its largest fold.".to_owned(),
             }
         });
-        if let Some(folded) = clicked.map(|row| found.folded[row]) {
+        if let Some(folded) = clicked.copied() {
             self.show_fold(&folded);
         }
     }

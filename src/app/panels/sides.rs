@@ -1,9 +1,8 @@
 //! The panels beside the picture, which keeps at least half of the window's width. A wide window has the settings on the left and the
 //! measurements on the right. In a narrower one they share the left side, and tabs say which of them is shown.
 
-use egui::{Color32, RichText};
+use egui::RichText;
 
-use super::Panels;
 use crate::app::App;
 use crate::app::painting::panel_frame;
 use crate::app::widgets::legible;
@@ -73,7 +72,15 @@ impl App {
             let gap = ui.spacing().item_spacing.x;
             let size = egui::vec2(0.5 * (ui.available_width() - gap), ui.spacing().interact_size.y + 4.0);
             for (side, name, hover) in Side::ALL {
-                tab(ui, &mut self.panels, side, name, hover, size, worst);
+                let is_shown = self.panels.side == side;
+                // The tab of measurements has the colour of the worst that is wrong.
+                let color = worst.filter(|_| side == Side::Measurements && !is_shown).map(|color| legible(ui, color));
+                let text = color.map_or_else(|| RichText::new(name), |color| RichText::new(name).color(color));
+                let response = ui.add_sized(size, egui::Button::selectable(is_shown, text).frame_when_inactive(true));
+                response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Tab, true, is_shown, name));
+                if response.on_hover_text(hover).clicked() {
+                    self.panels.side = side;
+                }
             }
         });
         match (self.panels.side, room) {
@@ -86,26 +93,6 @@ impl App {
                 });
             }
         }
-    }
-}
-
-/// A tab of this size. That of measurements has the colour of the worst that is wrong.
-fn tab(
-    ui: &mut egui::Ui,
-    panels: &mut Panels,
-    side: Side,
-    name: &str,
-    hover: &str,
-    size: egui::Vec2,
-    worst: Option<Color32>,
-) {
-    let is_shown = panels.side == side;
-    let color = worst.filter(|_| side == Side::Measurements && !is_shown).map(|color| legible(ui, color));
-    let text = color.map_or_else(|| RichText::new(name), |color| RichText::new(name).color(color));
-    let response = ui.add_sized(size, egui::Button::selectable(is_shown, text).frame_when_inactive(true));
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Tab, true, is_shown, name));
-    if response.on_hover_text(hover).clicked() {
-        panels.side = side;
     }
 }
 

@@ -9,6 +9,7 @@ use super::axis_gizmo::axes_place;
 use super::picture::PictureRequest;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{MeasureError, Seen};
+use crate::app::painting::filled;
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
 use crate::app::{App, Document};
@@ -91,7 +92,7 @@ impl App {
             }
             None => {
                 let background = self.settings_in(ui.ctx().theme()).background_color();
-                ui.painter().add(self.painting.fill(rect, rgb(background)));
+                ui.painter().add(filled(&self.painting, rect, rgb(background)));
             }
         }
         self.viewport_notes(ui, rect);

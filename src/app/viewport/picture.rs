@@ -8,13 +8,13 @@ use glam::{Vec2, vec2};
 use super::pace::next_steps;
 use crate::app::Document;
 use crate::app::jobs::given::FromFiles;
-use crate::app::painting::{Painting, ShownPicture};
+use crate::app::painting::ShownPicture;
 use geometry::mesh::Moment;
 use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use inspect::engine::Engine;
-use inspect::render::{Camera, LeftPose, Pixel, Renderer, Scene, Target, half_at, section};
+use inspect::render::{Camera, LeftPose, Pixel, Renderer, Scene, Target, WindowPipelines, half_at, section};
 use inspect::settings::{ColorSource, Settings, SplitSide};
 
 /// Everything that the picture depends on.
@@ -173,7 +173,7 @@ impl Picture {
     }
 
     /// Makes a target of this size, if there is none yet.
-    pub(crate) fn fit(&mut self, painting: &Painting, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
+    pub(crate) fn fit(&mut self, painting: &WindowPipelines, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
@@ -181,7 +181,7 @@ impl Picture {
         if self.drawn.take().is_some() {
             self.before = self.target.take().map(|(_, shown)| shown);
         }
-        let shown = painting.shown(&engine.gpu, &target, wgpu::FilterMode::Nearest);
+        let shown = ShownPicture::new(painting, &engine.gpu, &target, wgpu::FilterMode::Nearest);
         self.target = Some((target, shown));
         self.drawing = None;
         Ok(())
