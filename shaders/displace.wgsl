@@ -9,19 +9,22 @@ fn wrapped(x: f32) -> f32 {
 
 // Returns where the texture coordinate `x` lies along a row or column of `size` px: in px from the centre of px 0. In
 // images that repeat, `size` is added, so that the result isn't negative.
-fn pixel_coordinate(map: HeightMap, x: f32, size: u32) -> f32 {
-    if map.repeats != 0u {
+fn pixel_coordinate(wrap: u32, x: f32, size: u32) -> f32 {
+    if wrap == WRAP_REPEAT {
         return wrapped(x) * f32(size) + f32(size) - 0.5;
     }
-    return clamp(x * f32(size) - 0.5, 0.0, f32(size - 1u));
+    // There and back again.
+    let turned = 2.0 * wrapped(0.5 * x);
+    let place = select(x, min(turned, 2.0 - turned), wrap == WRAP_MIRROR);
+    return clamp(place * f32(size) - 0.5, 0.0, f32(size - 1u));
 }
 
 // Returns the height of a mip level at a texture coordinate, bilinearly interpolated.
 fn bilinear_height(map: HeightMap, level: u32, uv: vec2<f32>) -> f32 {
     let width = max(map.size.x >> level, 1u);
     let height = max(map.size.y >> level, 1u);
-    let x = pixel_coordinate(map, uv.x, width);
-    let y = pixel_coordinate(map, uv.y, height);
+    let x = pixel_coordinate(map.wrap & 3u, uv.x, width);
+    let y = pixel_coordinate(map.wrap >> 2u, uv.y, height);
     let left = u32(x) % width;
     let upper = u32(y) % height;
     // Images that don't repeat give weight 0 to a px beyond the last one.

@@ -53,8 +53,8 @@ fn layer_output(seen: Seen) -> vec4<f32> {
     return vec4<f32>(seen.color, 1.0 - seen.behind.x);
 }
 
-// What is seen of a place that shows what is behind it. A body that refracts light shows the picture of what is behind it, at
-// another place: that takes the place of what is right behind.
+// What is seen of a place that shows what is behind it. A body that refracts light, and a rough surface, show the picture of what
+// is behind them, at another place or blurred: that takes the place of what is right behind.
 fn material_seen(place: SurfacePlace, frame_of_place: Frame) -> Seen {
     let detail = place_detail(place);
     let base = base_color(place, detail);
@@ -67,7 +67,7 @@ fn material_seen(place: SurfacePlace, frame_of_place: Frame) -> Seen {
     if HAS_TRANSMISSION {
         let through = coverage * transmitted_through(look, normal, place.to_eye);
         if has_map(BEHIND) && LAYER_DRAW == LAYER_OVER {
-            let seen = seen_in_body(place, detail, look, normal, frame_of_place);
+            let seen = seen_through(place, detail, look, normal, frame_of_place);
             color += through * seen.rgb;
             // In a transparent picture, light may come from where there is nothing.
             behind += vec3<f32>(dot(through, vec3<f32>(1.0 / 3.0)) * (1.0 - seen.a));
@@ -79,8 +79,8 @@ fn material_seen(place: SurfacePlace, frame_of_place: Frame) -> Seen {
 }
 
 // What is seen of the picture behind a body, where the refracted ray leaves it (KHR_materials_volume, section
-// "Implementation"); and how much of it is covered. Roughness blurs by mip levels.
-fn seen_in_body(place: SurfacePlace, detail: PlaceDetail, look: LookAt, normal: vec3<f32>, at: Frame) -> vec4<f32> {
+// "Implementation"), or behind a thin surface, of thickness 0; and how much of it is covered. Roughness blurs by mip levels.
+fn seen_through(place: SurfacePlace, detail: PlaceDetail, look: LookAt, normal: vec3<f32>, at: Frame) -> vec4<f32> {
     let thickness = material.thickness * map_texel(place, detail, SLOT_THICKNESS).g;
     // An index of refraction of 0 stands for an infinite one.
     let ray = refract(-place.to_eye, normal, select(1.0 / look.ior, 0.0, look.ior < 1.0));

@@ -21,7 +21,7 @@ override LIGHT_COUNT: u32 = MOST_LIGHTS;
 @group(1) @binding(2) var base_sampler: sampler;
 @group(1) @binding(20) var<uniform> lights: array<PunctualLight, MOST_LIGHTS>;
 
-// The bit in MAPS of the picture of what is behind a body that refracts light.
+// The bit in MAPS of the picture of what is behind a body that refracts light, or a rough surface.
 const BEHIND: u32 = MAP_COUNT;
 
 // Shorter tangents, squared, say nothing about a direction.
@@ -51,7 +51,7 @@ struct SurfacePlace {
     normal: vec3<f32>,
     front: bool,
     to_eye: vec3<f32>,
-    // In object space, if LIGHT_COUNT isn't 0 or there are bodies that refract light.
+    // In object space, if LIGHT_COUNT isn't 0 or MAPS has BEHIND.
     position: vec3<f32>,
 }
 

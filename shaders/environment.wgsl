@@ -1,9 +1,7 @@
-// The light from all around, which src/inspect/render/environment.rs makes: a cube map that is blurred by roughness from level to level, a
-// table of directional albedos, and irradiance as spherical harmonics. Directions are in object space.
+// The light from all around, which src/inspect/render/environment.rs makes: a cube map that is blurred by roughness from level to
+// level, one of irradiance, and a table of directional albedos. Directions are in object space.
 
 struct Surroundings {
-    // Irradiance divided by PI: coefficients of 1, y, z, x, xy, yz, 3zz - 1, xz and xx - yy, in linear RGB.
-    irradiance: array<vec4<f32>, 9>,
     // Turns a direction in object space into the light's own.
     light_from_object: mat3x3<f32>,
     // Factor of all light.
@@ -17,13 +15,16 @@ struct Surroundings {
 // Whether highlights may be longer along a direction.
 override HAS_ANISOTROPY: bool = true;
 
-// Levels of the cube map: from a mirror's to that of roughness 1.
+// Levels of the first cube: from a mirror's to that of roughness 1.
 const ENVIRONMENT_LEVELS: u32 = 6u;
+
+// The level of the second cube that has irradiance, divided by PI.
+const IRRADIANCE_LEVEL: u32 = 1u;
 
 // Width and height of the table, in texels. The first and the last are for cosine and roughness 0 and 1.
 const DFG_SIZE: u32 = 64u;
 
-@group(1) @binding(16) var environment_map: texture_cube<f32>;
+@group(1) @binding(16) var environment_map: texture_cube_array<f32>;
 @group(1) @binding(17) var environment_sampler: sampler;
 @group(1) @binding(18) var dfg_table: texture_2d<f32>;
 // No branch depends on this uniform, nor on those of materials and lights: see draw_surface_inputs.wgsl. Where a material has no coat or no
@@ -37,17 +38,17 @@ fn level_of_roughness(roughness: f32) -> f32 {
 
 // Radiance from a direction, blurred as a surface of that roughness would.
 fn environment_radiance(direction: vec3<f32>, roughness: f32) -> vec3<f32> {
-    let turned = surroundings.light_from_object * direction;
-    return surroundings.brightness * textureSampleLevel(environment_map, environment_sampler, turned, level_of_roughness(roughness)).rgb;
+    return environment_light(direction, 0, level_of_roughness(roughness));
 }
 
-// Irradiance of a surface with that normal, divided by PI (Ramamoorthi and Hanrahan 2001, equation 11).
+// Irradiance of a surface with that normal, divided by PI.
 fn environment_irradiance(normal: vec3<f32>) -> vec3<f32> {
-    let n = surroundings.light_from_object * normal;
-    let c = surroundings.irradiance;
-    let sum = c[0] + c[1] * n.y + c[2] * n.z + c[3] * n.x + c[4] * (n.x * n.y) + c[5] * (n.y * n.z)
-        + c[6] * (3.0 * n.z * n.z - 1.0) + c[7] * (n.x * n.z) + c[8] * (n.x * n.x - n.y * n.y);
-    return surroundings.brightness * max(sum.rgb, vec3<f32>(0.0));
+    return environment_light(normal, 1, f32(IRRADIANCE_LEVEL));
+}
+
+fn environment_light(direction: vec3<f32>, cube: i32, level: f32) -> vec3<f32> {
+    let turned = surroundings.light_from_object * direction;
+    return surroundings.brightness * textureSampleLevel(environment_map, environment_sampler, turned, cube, level).rgb;
 }
 
 // Factors of f0 and f90 in the part of light that microfacets reflect at once.

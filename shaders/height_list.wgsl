@@ -1,7 +1,7 @@
 // Reads the heights of all maps from one texture, as the passes have them. Twin: src/geometry/tessellate/height_list.rs.
 
 // The heights of all maps are one list, which fills the rows of the texture `heights`, each of this many texels.
-const HEIGHTS_ACROSS: u32 = 4096u;
+const HEIGHTS_ACROSS: u32 = 8192u;
 
 @group(0) @binding(20) var heights: texture_2d<f32>;
 

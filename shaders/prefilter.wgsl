@@ -1,4 +1,5 @@
-// Blurs an environment as rough surfaces do. src/inspect/render/prefilter.rs has the same functions.
+// Blurs an environment as rough surfaces do. src/inspect/render/prefilter.rs has the first two functions, and
+// src/inspect/for_tests/prefiltered.rs the others.
 
 // A direction on a face of a cube map; `at` is -1 to 1 along the face's axes (WebGPU, section on cube maps).
 fn cube_direction(face: u32, at: vec2<f32>) -> vec3<f32> {

@@ -179,7 +179,7 @@ fn reflect_ambient(look: LookAt, light: AmbientLight) -> vec3<f32> {
 }
 
 // The part of the light from right behind a thin surface that comes through it towards the eye: what isn't reflected, in the base
-// colour (KHR_materials_transmission, thin surfaces). The surface bends and blurs nothing.
+// colour (KHR_materials_transmission, thin surfaces).
 fn transmitted(look: LookAt, dfg: vec2<f32>, coat_dfg: vec2<f32>) -> vec3<f32> {
     let f0 = dielectric_f0(look);
     let reflected = albedo_at_once(f0, look.specular, dfg) + albedo_of_more(f0, look.specular, dfg);

@@ -1,6 +1,6 @@
 // The sheen of cloth: light that is reflected by fibres which stand up from the surface (KHR_materials_sheen; Conty and Kulla 2017,
 // "Production Friendly Microfacet Sheen BRDF"). `alpha` is the square of the perceptual roughness. src/inspect/render/sheen.rs has the same
-// functions.
+// functions, but for the last, which src/inspect/for_tests/reflectance.rs has.
 
 // The least alpha. Smoother fibres would reflect light only along the surface.
 const LEAST_SHEEN_ALPHA: f32 = 1e-4;

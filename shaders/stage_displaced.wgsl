@@ -12,8 +12,8 @@ struct HeightConstants {
     // The width and height of level 0 of the image in px, and the number of its levels.
     size: vec2<u32>,
     levels: u32,
-    // 1 if the image repeats, 0 if the px at its border go on for ever.
-    repeats: u32,
+    // What is beyond the image, a WRAP: along u in the lowest two bits, along v in the next.
+    wrap: u32,
     // How far white is above black, in object units.
     scale: f32,
     // The height, 0 to 1, that stays where it is.
@@ -44,7 +44,7 @@ struct StageRelief {
 
 // Returns the height image as the functions that read it take it.
 fn height_map(constants: HeightConstants) -> HeightMap {
-    return HeightMap(constants.size, constants.levels, 0u, constants.repeats, 1u, constants.scale, constants.midlevel);
+    return HeightMap(constants.size, constants.levels, 0u, constants.wrap, 1u, constants.scale, constants.midlevel);
 }
 
 // Returns the mip level on an edge to which LOD gives `factor`, and whose dominant side has these texture coordinates at its ends.

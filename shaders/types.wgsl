@@ -126,8 +126,8 @@ struct HeightMap {
     @align(16) size: vec2<u32>,
     levels: u32,
     start: u32,
-    // 1 if it repeats, 0 if the px at its border go on for ever.
-    repeats: u32,
+    // What is beyond it, a WRAP: along u in the lowest two bits, along v in the next.
+    wrap: u32,
     // 1 if it has a scale and a midlevel of its own, 0 if those of Params hold.
     has_amount: u32,
     scale: f32,

@@ -45,7 +45,7 @@ pub fn run() -> ExitCode {
 fn open_window(Cli { file, opening, limit, adapter, .. }: &Cli) -> Result<String, ExitCode> {
     let change = |preparation: &mut Preparation| opening.change(preparation);
     let opening = (!opening.is_empty()).then_some(&change as &dyn Fn(&mut Preparation));
-    match app::run(file.clone(), opening, limit.limits(), adapter.choice()) {
+    match app::run(file.clone(), opening, limit.limits(), adapter.choice(), |_, _| {}) {
         Ok(()) => Err(ExitCode::SUCCESS),
         Err(WindowError::NoDisplay(reason)) => Ok(format!("There is no display to open a window on ({reason})")),
         Err(error) => Err(cli::fail(&error)),

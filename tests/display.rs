@@ -16,8 +16,7 @@ use inspect::render::camera::Camera;
 use inspect::settings::Settings;
 use load::Limits;
 use load::source::Source;
-use pnaen::app::App;
-use pnaen::app::window::run::run_watched;
+use pnaen::app::{App, run};
 
 /// More time than each test needs on two slow cores.
 const PATIENCE: Duration = Duration::from_secs(180);
@@ -133,7 +132,7 @@ fn closing_while_a_mesh_loads_ends_at_once() {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
     };
-    let ended = run_watched(Some(slow), Limits::default(), AdapterChoice::Best, watch);
+    let ended = run(Some(slow), None, Limits::default(), AdapterChoice::Best, watch);
     let took = closed.get().map(|closed| closed.elapsed());
     assert!(ended.is_ok() && took.is_some_and(|took| took < Duration::from_secs(2)), "{ended:?} {took:?}");
 }
@@ -170,7 +169,7 @@ fn without_a_dialog() {
             context.input_mut(|input| input.events.extend(keys));
         }
     };
-    let ended = run_watched(None, Limits::default(), AdapterChoice::Best, watch);
+    let ended = run(None, None, Limits::default(), AdapterChoice::Best, watch);
     assert!(ended.is_ok(), "{ended:?}");
     let said = said.borrow();
     assert!(matches!(said.first(), Some(("Open path", Some(why))) if why.contains("no file dialog")), "{said:?}");
@@ -208,7 +207,7 @@ fn a_window_replaces_a_lost_device_once_and_then_reports_the_loss() {
             }
         }
     };
-    let ended = run_watched(Some(torus.clone()), Limits::default(), AdapterChoice::Best, watch);
+    let ended = run(Some(torus.clone()), None, Limits::default(), AdapterChoice::Best, watch);
     assert!(ended.is_ok(), "{ended:?}");
     let had = had.borrow();
     assert_eq!(had.len(), 2, "the device was lost twice");

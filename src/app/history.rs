@@ -8,7 +8,7 @@ use super::jobs::job_list::Work;
 use crate::commands::CompanionFile;
 use gpu::{LodShader, SurfaceShader};
 use inspect::engine::Preparation;
-use inspect::render::Camera;
+use inspect::render::{Camera, LeftPose};
 use inspect::settings::Settings;
 use load::{Import, Source};
 
@@ -29,6 +29,7 @@ pub(super) struct Undoable {
     pub own_limit: bool,
     /// Whether the mesh is compared with what it was before its file changed.
     pub is_with_before: bool,
+    pub left_pose: LeftPose,
 }
 
 /// The states before and after the present one.
@@ -118,6 +119,7 @@ impl App {
             companions: CompanionFile::ALL.map(|companion| self.companion(companion)),
             own_limit: self.has_own_limit(),
             is_with_before: self.shows_before(),
+            left_pose: self.viewport.playback.left,
         }
     }
 
@@ -139,6 +141,7 @@ impl App {
                 step.companions[companion as usize] = None;
             }
             step.is_with_before = false;
+            step.left_pose = LeftPose::Same;
         });
     }
 
@@ -164,9 +167,9 @@ impl App {
     }
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
-        let Some(Undoable { settings, preparation, companions: files, own_limit, is_with_before }) = step else {
-            return;
-        };
+        let Some(step) = step else { return };
+        let Undoable { settings, preparation, companions: files, own_limit, is_with_before, left_pose } = step;
+        self.viewport.playback.left = left_pose;
         use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
         // A limit that was being read anew is stale.
         let reads_limit = own_limit && (!self.has_own_limit() || self.jobs.has(Work::Companion(ReferenceShape)));

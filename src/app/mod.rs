@@ -27,7 +27,7 @@ use geometry::mesh::Texture;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use inspect::engine::{Engine, Loaded};
 use inspect::measure::Cracks;
-use inspect::render::Camera;
+use inspect::render::{Camera, WindowPipelines};
 use inspect::settings::{Settings, SplitSide};
 use load::Source;
 use load::files::Limits;
@@ -40,7 +40,7 @@ use jobs::companion_files::{ChosenReferenceShape, LeftMesh, Light, OpenFile};
 use jobs::given_factors::GivenFactors;
 use jobs::job_list::Jobs;
 use jobs::user_shader_job::OpenShader;
-use painting::{Painting, panel_frame};
+use painting::{filled, panel_frame};
 use panels::Panels;
 use viewport::Viewport;
 use viewport::pointer_value::PointerValue;
@@ -53,7 +53,7 @@ pub use window::{WindowError, run};
 pub struct App {
     engine: Engine,
     render_state: egui_wgpu::RenderState,
-    painting: Painting,
+    painting: WindowPipelines,
     settings: Settings,
     /// The meshes that were dropped on the window together.
     dropped: Vec<PathBuf>,
@@ -105,7 +105,7 @@ impl App {
         limits: Limits,
     ) -> Result<Self, GpuError> {
         let render_state = context.wgpu_render_state.clone().ok_or(GpuError::NoAdapter)?;
-        let painting = Painting::new(&engine.gpu, render_state.target_format)?;
+        let painting = WindowPipelines::new(&engine.gpu, render_state.target_format)?;
         style::style(&context.egui_ctx);
         let mut app = Self {
             viewport: Viewport::new(&engine),
@@ -257,7 +257,7 @@ impl eframe::App for App {
         if self.window.fatal_screen.is_some() {
             return self.show_fatal_screen(ui);
         }
-        ui.painter().add(self.painting.fill(ui.ctx().content_rect(), ui.visuals().panel_fill));
+        ui.painter().add(filled(&self.painting, ui.ctx().content_rect(), ui.visuals().panel_fill));
         let frame = panel_frame(ui);
         egui::Panel::top("menu").frame(frame).show(ui, |ui| self.menu_bar(ui));
         egui::Panel::bottom("status").frame(frame).show(ui, |ui| self.status_line(ui));

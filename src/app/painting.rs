@@ -3,29 +3,12 @@
 use egui::{Color32, PaintCallbackInfo, Rect, Shape};
 use egui_wgpu::{Callback, CallbackResources, CallbackTrait};
 
-use gpu::{Gpu, GpuError};
+use gpu::Gpu;
 use inspect::render::{Target, WindowPipelines};
 
-/// What paints into the textures of one window.
-pub(super) struct Painting(WindowPipelines);
-
-impl Painting {
-    /// `format` is that of the window's textures.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    pub(super) fn new(gpu: &Gpu, format: wgpu::TextureFormat) -> Result<Self, GpuError> {
-        WindowPipelines::new(gpu, format).map(Self)
-    }
-
-    pub(super) fn shown(&self, gpu: &Gpu, target: &Target, filter: wgpu::FilterMode) -> ShownPicture {
-        ShownPicture { pipeline: self.0.picture.clone(), group: self.0.shown(gpu, target, filter) }
-    }
-
-    /// An area of one opaque colour.
-    pub(super) fn fill(&self, area: Rect, color: Color32) -> Shape {
-        Callback::new_paint_callback(area, FilledArea { pipeline: self.0.fill.clone(), color }).into()
-    }
+/// An area of one opaque colour.
+pub(super) fn filled(pipelines: &WindowPipelines, area: Rect, color: Color32) -> Shape {
+    Callback::new_paint_callback(area, FilledArea { pipeline: pipelines.fill.clone(), color }).into()
 }
 
 /// The frame of a panel that shows the window's background.
@@ -40,6 +23,10 @@ pub(super) struct ShownPicture {
 }
 
 impl ShownPicture {
+    pub(super) fn new(pipelines: &WindowPipelines, gpu: &Gpu, target: &Target, filter: wgpu::FilterMode) -> Self {
+        Self { pipeline: pipelines.picture.clone(), group: pipelines.shown(gpu, target, filter) }
+    }
+
     /// The picture, stretched over this area.
     pub(super) fn over(&self, area: Rect) -> Shape {
         Callback::new_paint_callback(area, self.clone()).into()

@@ -1,6 +1,7 @@
 //! The sections of the panels, which fold.
 
-use egui::{Color32, Rect, Sense, Shape, Stroke, pos2, vec2};
+use egui::collapsing_header::paint_default_icon;
+use egui::{Rect, Sense, pos2, vec2};
 
 /// Declares the sections of the left and of the right panel: each with its title, and whether it is open at the first
 /// start, as what people set and read every day is.
@@ -93,8 +94,8 @@ fn title_row(ui: &mut egui::Ui, title: &str, is_open: bool) -> egui::Response {
     if response.has_focus() {
         ui.painter().rect_stroke(rect, 3.0, visuals.selection.stroke, egui::StrokeKind::Inside);
     }
-    let icon = Rect::from_center_size(pos2(rect.left() + 6.0, rect.center().y), vec2(8.0, 8.0));
-    ui.painter().add(triangle(icon, is_open, text));
+    let icon = Rect::from_center_size(pos2(rect.left() + 6.0, rect.center().y), vec2(10.0, 10.0));
+    paint_default_icon(ui, if is_open { 1.0 } else { 0.0 }, &response.clone().with_new_rect(icon));
     let font = egui::TextStyle::Body.resolve(ui.style());
     let title = ui.painter().layout_no_wrap(title.to_owned(), font, text);
     let place = pos2(rect.left() + 18.0, rect.center().y - title.size().y / 2.0);
@@ -102,14 +103,6 @@ fn title_row(ui: &mut egui::Ui, title: &str, is_open: bool) -> egui::Response {
     ui.painter().hline(rect.x_range(), rect.bottom() + 1.0, line);
     ui.add_space(2.0);
     response
-}
-
-fn triangle(place: Rect, is_open: bool, color: Color32) -> Shape {
-    let points = match is_open {
-        true => vec![place.left_top() + vec2(0.0, 1.5), place.right_top() + vec2(0.0, 1.5), place.center_bottom()],
-        false => vec![place.left_top() + vec2(1.5, 0.0), place.right_center(), place.left_bottom() + vec2(1.5, 0.0)],
-    };
-    Shape::convex_polygon(points, color, Stroke::NONE)
 }
 
 /// Shows the contents of a panel, which scroll. They have the width that a scroll bar leaves, also where there is none, and never

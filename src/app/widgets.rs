@@ -55,6 +55,14 @@ pub(super) fn file_row(ui: &mut egui::Ui, name: &str, hover: &str, path: &Path) 
     ui.end_row();
 }
 
+/// A row with a name and a control.
+pub(super) fn control_row(ui: &mut egui::Ui, name: &str, hover: &str, control: impl egui::Widget) -> egui::Response {
+    let label = ui.label(name).on_hover_text(hover);
+    let response = ui.add(control).labelled_by(label.id).on_hover_text(hover);
+    ui.end_row();
+    response
+}
+
 /// A row with a button. Returns whether it was clicked.
 pub(super) fn button_row(ui: &mut egui::Ui, name: &str, hover: &str) -> bool {
     ui.label("");
@@ -188,7 +196,7 @@ pub(super) fn found_list<'a, T>(
         let FoundRow { columns, is_selected, hover } = row(&found[index]);
         let response = ui.selectable_label(is_selected, RichText::new(columns).monospace()).on_hover_text(hover);
         if response.clicked() {
-            clicked = Some(&found[index]);
+            clicked = found.get(index);
         }
         response
     });

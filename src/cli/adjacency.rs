@@ -39,7 +39,7 @@ pub struct Args {
     /// point moves, gradients of both texture coordinates, and the length of the point's shortest edge in px of the image
     #[arg(long, value_name = "OUT.bin", requires = "height")]
     pub corners: Option<PathBuf>,
-    /// The height image of --corners: a PNG, JPEG, WebP, TIFF or EXR image over all materials, or `material`, the materials' base colour image
+    /// The height image of --corners: a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image over all materials, or `material`, the materials' base colour image
     #[arg(long, value_name = "IMAGE|material", requires = "corners", value_parser = options::heights())]
     pub height: Option<HeightSource>,
 }
@@ -58,7 +58,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let given = args.against.as_deref().map(read_bytes).transpose()?;
     let preparation = Preparation { heights: args.height.clone(), ..args.weld.preparation() };
     let loaded = load_apart(&args.file, &preparation, &written)?;
-    args.weld.parts.say_idle(|_| true, "--part has no effect on indices, which are the same for all surfaces");
+    args.weld.parts.say_idle(|own| own.is_of_tessellation(), "a surface or detail of --part has no effect on indices");
     if let Some(path) = &args.corners {
         write_corners(&loaded, path)?;
     }
@@ -110,8 +110,7 @@ fn compare_with(layout: Layout, path: &Path, bytes: &[u8], loaded: &Loaded, comp
         .chunk_by(|a, b| a.patch == b.patch)
         .filter_map(|patch| patch.iter().map(|difference| difference.meaning).max())
         .collect();
-    let differ = if worst.len() == 1 { "differs" } else { "differ" };
-    Err(CliError::OtherIndices { path: name, different: worst.len(), patches, differ, meanings: counted(worst) })
+    Err(CliError::OtherIndices { path: name, different: worst.len(), patches, meanings: counted(worst) })
 }
 
 fn difference_text(loaded: &Loaded, difference: &IndexDifference, given: &[u32], computed: &[u32]) -> String {
@@ -132,24 +131,12 @@ fn difference_text(loaded: &Loaded, difference: &IndexDifference, given: &[u32],
         Part::DominantSide(k) => format!("dominant side of {k}-{}", (k + 1) % 3),
     };
     let (given, computed) = (corners(given), corners(computed));
-    format!("patch {patch}{triangle}, {part}: the file has {given} instead of {computed}: {}", words(*meaning))
+    format!("patch {patch}{triangle}, {part}: the file has {given} instead of {computed}: {}", meaning.text())
 }
 
 /// Returns the number of patches for each meaning, the least harmful first.
 fn counted(mut meanings: Vec<Meaning>) -> String {
     meanings.sort_unstable();
-    let runs = meanings.chunk_by(|a, b| a == b).map(|run| format!("{} ({})", run.len(), words(run[0])));
+    let runs = meanings.chunk_by(|a, b| a == b).map(|run| format!("{} ({})", run.len(), run[0].text()));
     runs.collect::<Vec<_>>().join(", ")
-}
-
-fn words(meaning: Meaning) -> &'static str {
-    match meaning {
-        Meaning::Turned => "the same patch, starting at another corner",
-        Meaning::OtherDominant => "another dominant corner, the same for all patches around it",
-        Meaning::SameNormals => "other corners, same points and normals",
-        Meaning::OtherNormals => "other corners, same points, other normals",
-        Meaning::MixedDominant => "not the same dominant corner for all patches around it",
-        Meaning::Exchanged => "the side's two corners exchanged",
-        Meaning::OtherPoints => "other points",
-    }
 }

@@ -4,13 +4,10 @@ use std::fmt;
 
 use serde::Serialize;
 
+use super::material_report::numbers;
 use geometry::mesh::{FileCamera, Light, LightKind, Projection};
 use geometry::names::shown;
 use geometry::numbers::exact;
-
-fn numbers(numbers: [f32; 3]) -> String {
-    numbers.map(exact).join(" ")
-}
 
 /// A camera in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -51,7 +48,7 @@ impl fmt::Display for CameraInfo {
         if let Some(height) = self.height {
             write!(f, ", {} high", exact(height))?;
         }
-        writeln!(f, ", at {}, towards {}", numbers(self.place), numbers(self.direction))
+        writeln!(f, ", at {}, towards {}", numbers(&self.place), numbers(&self.direction))
     }
 }
 
@@ -94,10 +91,10 @@ impl fmt::Display for LightInfo {
     /// Writes it on one line.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let unit = if self.kind == "directional" { "lx" } else { "cd" };
-        write!(f, "light         {}, {} {unit}", self.kind, numbers(self.intensity))?;
+        write!(f, "light         {}, {} {unit}", self.kind, numbers(&self.intensity))?;
         let parts = [
-            self.place.map(|place| format!(", at {}", numbers(place))),
-            self.direction.map(|direction| format!(", towards {}", numbers(direction))),
+            self.place.map(|place| format!(", at {}", numbers(&place))),
+            self.direction.map(|direction| format!(", towards {}", numbers(&direction))),
             self.range.map(|range| format!(", up to {}", exact(range))),
             self.cone.map(|cone| format!(", cone {} degrees", cone.map(exact).join(" to "))),
         ];

@@ -15,14 +15,13 @@ use super::{
 };
 use geometry::tessellate::{Normals, Partitioning, Surface, Tessellation};
 use inspect::engine::{Engine, Loaded};
-use inspect::export::ending;
 use inspect::measure::AccuracyOptions;
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::Target;
 use inspect::settings::options::{FACTOR, PIXELS, TOLERANCE};
 use inspect::settings::{ARENA_BYTES, Settings};
 use lab::chart::report::{LeftOut, Part, TABLE};
-use lab::chart::{Bench, Effort, LodKind, Plan, Setting, Subject, bitmap, columns, has_converged, svg};
+use lab::chart::{Bench, Effort, LodKind, Plan, Setting, Subject, columns, has_converged, save};
 use load::Source;
 use load::files::file_reason;
 
@@ -239,11 +238,7 @@ impl Session {
 
 /// Writes the picture, and prints its sentences unless the table goes to standard output.
 fn publish(args: &Args, subjects: &[Subject]) -> Result<(), CliError> {
-    match &args.output {
-        Some(path) if ending(path) == "svg" => write_text(path, &svg(subjects)?)?,
-        Some(path) => inspect::shot::write_picture(path, &bitmap(subjects)?.into())?,
-        None => {}
-    }
+    args.output.as_deref().map_or(Ok(()), |path| save(path, subjects))?;
     if args.csv.as_deref() == Some(Path::new("-")) {
         return Ok(());
     }

@@ -18,7 +18,7 @@ use clap::ValueEnum;
 use super::gate_options::FailOnOption;
 use super::{
     AdapterOption, CliError, ProgressPrinter, file_error, file_of, keep_apart, make_folder, note, options,
-    stop_on_interrupt, write_bytes, write_text,
+    stop_on_interrupt, to_json, write_bytes, write_text,
 };
 use geometry::cores::in_ranges;
 use inspect::engine::Engine;
@@ -91,13 +91,13 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     if let Some(folder) = &args.page {
         write_page(folder, &report)?;
     }
-    let written = match args.format {
-        Format::Text => Ok(report.text()),
-        Format::Json => report.json().map_err(std::io::Error::from),
-        Format::Junit => junit(&report),
-        Format::Sarif => sarif(&report).map_err(std::io::Error::from),
+    let text = match args.format {
+        Format::Text => report.text(),
+        Format::Json => to_json(&report.json())?,
+        Format::Junit => junit(&report).map_err(CliError::Output)?,
+        Format::Sarif => to_json(&sarif(&report))?,
     };
-    write_text(&args.output, &written.map_err(CliError::Output)?)?;
+    write_text(&args.output, &text)?;
     match report.left_out {
         0 if report.passed() => Ok(()),
         0 => Err(CliError::Check(report.summary())),

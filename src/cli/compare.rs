@@ -56,32 +56,25 @@ pub struct Args {
 
 /// A distance of the command line.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Within {
-    /// Units in the last place of the mesh's largest coordinate.
-    Ulp(f64),
-    /// Object units.
-    Units(f64),
+pub struct Within {
+    number: f64,
+    /// Whether it is in units in the last place of the mesh's largest coordinate, and not in object units.
+    in_ulp: bool,
 }
 
 impl Within {
     /// The distance in object units. `ulp` is one ULP in object units.
     fn units(self, ulp: f64) -> f64 {
-        match self {
-            Self::Ulp(count) => count * ulp,
-            Self::Units(units) => units,
-        }
+        if self.in_ulp { self.number * ulp } else { self.number }
     }
 }
 
 /// Parses a distance in object units, or with the unit ulp.
 fn within(text: &str) -> Result<Within, String> {
     let lower = text.trim().to_ascii_lowercase();
-    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
-    let found = match lower.strip_suffix("ulp") {
-        Some(count) => number(count).map(Within::Ulp),
-        None => number(&lower).map(Within::Units),
-    };
-    found.ok_or_else(|| {
+    let (number, in_ulp) = lower.strip_suffix("ulp").map_or((&*lower, false), |count| (count, true));
+    let number = number.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number >= 0.0);
+    number.map(|number| Within { number, in_ulp }).ok_or_else(|| {
         "expected a distance that isn't negative, in object units such as 1e-5, or in ULP such as 16ulp".into()
     })
 }
@@ -169,12 +162,12 @@ mod tests {
 
     #[test]
     fn distances_are_in_object_units_or_in_ulp() {
-        assert_eq!(within("16ulp"), Ok(Within::Ulp(16.0)));
-        assert_eq!(within(" 0.5 ULP"), Ok(Within::Ulp(0.5)));
-        assert_eq!(within("1e-5"), Ok(Within::Units(1e-5)));
+        assert_eq!(within("16ulp"), Ok(Within { number: 16.0, in_ulp: true }));
+        assert_eq!(within(" 0.5 ULP"), Ok(Within { number: 0.5, in_ulp: true }));
+        assert_eq!(within("1e-5"), Ok(Within { number: 1e-5, in_ulp: false }));
         for text in ["", "ulp", "-1", "inf", "1m"] {
             assert!(within(text).is_err(), "{text}");
         }
-        assert_eq!(Within::Ulp(4.0).units(0.25), 1.0);
+        assert_eq!(Within { number: 4.0, in_ulp: true }.units(0.25), 1.0);
     }
 }

@@ -10,10 +10,10 @@ use glam::{Vec2, Vec3};
 use inspect::engine::Preparation;
 use inspect::render::Camera;
 use inspect::settings::{Colors, Lighting, Settings, options};
-use inspect::shot::{CopiedCommand, Turn, given};
+use inspect::shot::{CopiedCommand, ShotView, Turn, given};
 use load::files::Limits;
 use load::import::Subdivide;
-use load::{HeightSource, ShownParts, Source};
+use load::{HeightSource, NormalSource, ShownParts, Source};
 use proptest::prelude::*;
 
 use crate::cli::options::Declared;
@@ -44,16 +44,15 @@ fn shown<'a>(
     settings: &'a Settings,
     camera: &'a Camera,
 ) -> CopiedCommand<'a> {
-    let (size, radius) = ([640, 480], 2.0);
+    let view = ShotView { camera: *camera, lod_camera: None, size: [640, 480], transparent: false, legend: false };
     CopiedCommand {
         source,
         preparation,
         settings,
-        camera,
-        lod_camera: None,
-        radius,
-        size,
+        view,
+        radius: 2.0,
         animation: None,
+        left_animation: None,
         reference_shape: None,
         reference_subdivide: None,
         left_mesh: None,
@@ -63,8 +62,6 @@ fn shown<'a>(
         matcap_image: None,
         environment: None,
         triangle: None,
-        transparent: false,
-        legend: false,
         output: None,
         turn: None,
     }
@@ -100,8 +97,15 @@ fn options_with_other_values_are_written() {
             hidden: vec!["-left door".to_owned(), "b, c".to_owned()],
             only: vec!["d".to_owned()],
             styles: vec![
-                ("-a:b".to_owned(), PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.25) }),
-                ("d".to_owned(), PartStyle { surface: None, detail: Some(2.0) }),
+                (
+                    "-a:b".to_owned(),
+                    PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.25), ..PartStyle::default() },
+                ),
+                ("d".to_owned(), PartStyle { detail: Some(2.0), ..PartStyle::default() }),
+                (
+                    "material:a b".to_owned(),
+                    PartStyle { normals: Some(NormalSource::Made), crease_angle: Some(22.5), ..PartStyle::default() },
+                ),
             ],
             morphs: [("-a = b".to_owned(), -0.1), ("Smile".to_owned(), 0.7)].into(),
         },
@@ -150,7 +154,8 @@ fn a_transparent_picture_with_a_legend_is_written_without_a_background() {
     assert_eq!((plain.shot.transparent, plain.shot.legend), (false, false));
     assert_eq!(plain.shot.picture.0.background, Some([1, 2, 3]));
     let output = Some(Path::new("-odd name.png"));
-    let args = parsed(&CopiedCommand { transparent: true, legend: true, output, ..shown }.line());
+    let view = ShotView { transparent: true, legend: true, ..shown.view };
+    let args = parsed(&CopiedCommand { view, output, ..shown }.line());
     assert_eq!((args.shot.transparent, args.shot.legend, args.shot.picture.0.background), (true, true, None));
     assert_eq!(args.output, Path::new("./-odd name.png"));
 }
@@ -223,15 +228,19 @@ fn a_frozen_lod_camera_is_written_unless_it_is_the_pictures() {
         ("shape:torus".parse().expect("a shape"), Preparation::default(), Settings::default());
     let own = camera();
     let frozen = Camera { azimuth: -7.5, distance: 3.0, orthographic: true, ..own };
-    let with = |lod_camera| CopiedCommand { lod_camera, ..shown(&source, &preparation, &settings, &own) }.line();
-    let args = parsed(&with(Some((&frozen, [320, 200]))));
+    let with = |lod_camera: Option<(Camera, [f32; 2])>| {
+        let shown = shown(&source, &preparation, &settings, &own);
+        let lod_camera = lod_camera.map(|(camera, size)| (camera, Vec2::from(size)));
+        CopiedCommand { view: ShotView { lod_camera, ..shown.view }, ..shown }.line()
+    };
+    let args = parsed(&with(Some((frozen, [320.0, 200.0]))));
     let Some(camera) = args.shot.lod.lod_camera else { panic!("it has an LOD camera") };
     assert_eq!((camera.azimuth, camera.elevation, camera.distance), (-7.5, own.elevation, Some(1.5)));
     assert_eq!(args.shot.lod.lod_target, Some(own.target));
     assert_eq!((args.shot.lod.lod_size, args.shot.lod.lod_orthographic), (Some([320, 200]), true));
-    let args = parsed(&with(Some((&frozen, [640, 480]))));
+    let args = parsed(&with(Some((frozen, [640.0, 480.0]))));
     assert!(args.shot.lod.lod_camera.is_some() && args.shot.lod.lod_size.is_none(), "its view has the picture's size");
-    assert_eq!(with(Some((&own, [640, 480]))), with(None));
+    assert_eq!(with(Some((own, [640.0, 480.0]))), with(None));
 }
 
 proptest! {

@@ -1,16 +1,15 @@
-//! `pnaen domain`: prints the tessellator's domain points, and its triangles or lines.
+//! `pnaen domain`: prints or draws the tessellator's domain points, and its triangles or lines.
+
+mod diagram;
 
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::tessellate::Device;
-use super::{AdapterOption, CliError, read_text, refuse};
+use super::{AdapterOption, CliError, options, read_text, refuse, write_text};
 use geometry::names::shown_path;
-use geometry::tessellate::{
-    DomainKind, HullFactors, IsolineFactors, Partitioning, QuadFactors, domain_plan, domain_point, domain_triangle,
-    point_count, process, triangle_count,
-};
-use gpu::{DomainPass, DomainPattern, Gpu};
+use geometry::tessellate::{DomainKind, HullFactors, IsolineFactors, Partitioning, QuadFactors, process};
+use gpu::{DomainPass, Gpu};
 use inspect::settings::Choice;
 use inspect::shot::ShotError;
 
@@ -38,6 +37,9 @@ pub struct Args {
     /// File with a set of factors per line, separated by spaces (- for standard input)
     #[arg(long, value_name = "FILE")]
     pub input: Option<PathBuf>,
+    /// Picture of the pattern to write instead of numbers, an SVG file
+    #[arg(short, long, value_name = "OUT.svg", value_parser = options::ending_in(&["svg"], "diagrams are SVG files: name it .svg"), conflicts_with = "input")]
+    pub output: Option<PathBuf>,
     /// Where to compute: triangles by default on the GPU, quads and isolines on the CPU, which needs no graphics driver
     #[arg(long, value_enum)]
     pub device: Option<Device>,
@@ -53,37 +55,39 @@ const BATCH: usize = 256;
 
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     args.check()?;
-    let out = BufWriter::new(std::io::stdout().lock());
-    let mut printer = Printer { out, is_numbered: args.input.is_some(), number: 0 };
+    let mut shown = Output { args, out: BufWriter::new(std::io::stdout().lock()), number: 0 };
     match args.kind {
         DomainKind::Tri if args.device == Some(Device::Cpu) => {
-            args.sets()?.iter().try_for_each(|set| printer.print_triangles(&on_cpu(args.partitioning, set)))?;
+            for [e0, e1, e2, inside] in args.sets()? {
+                let factors = process(args.partitioning, [e0, e1, e2], inside);
+                shown.add(&factors.points(), &factors.triangles())?;
+            }
         }
         DomainKind::Tri => {
             let sets = args.sets()?;
             let gpu = Gpu::chosen(&args.adapter.choice())?;
             let pass = DomainPass::default();
             for batch in sets.chunks(BATCH) {
-                let patterns = pass.run(&gpu, args.partitioning, batch)?;
-                patterns.iter().try_for_each(|pattern| printer.print_triangles(pattern))?;
+                let mut patterns = pass.run(&gpu, args.partitioning, batch)?.into_iter();
+                patterns.try_for_each(|own| shown.add(&own.points, &own.triangles))?;
             }
         }
         DomainKind::Quad => {
             for [e0, e1, e2, e3, u, v] in args.sets()? {
                 let drawn = QuadFactors::new(args.partitioning, [e0, e1, e2, e3], [u, v]);
-                let pattern = |own: QuadFactors| DomainPattern { points: own.points(), triangles: own.triangles() };
-                printer.print_triangles(&drawn.map(pattern).unwrap_or_default())?;
+                let (points, triangles) = drawn.map(|own| (own.points(), own.triangles())).unwrap_or_default();
+                shown.add(&points, &triangles)?;
             }
         }
         DomainKind::Isoline => {
             for [density, detail] in args.sets()? {
                 let drawn = IsolineFactors::new(args.partitioning, density, detail);
                 let (points, lines) = drawn.map(|own| (own.points(), own.lines())).unwrap_or_default();
-                printer.print(&points, "line", &lines)?;
+                shown.add(&points, &lines)?;
             }
         }
     }
-    printer.out.flush().map_err(CliError::Output)
+    shown.out.flush().map_err(CliError::Output)
 }
 
 impl Args {
@@ -100,16 +104,11 @@ impl Args {
         self.adapter.check(self.device == Some(Device::Cpu))
     }
 
-    /// Returns the set of `--factors`, or those of the file.
+    /// Returns the set of `--factors`, or those of the file, one per line. Empty lines are skipped.
     fn sets<const N: usize>(&self) -> Result<Vec<[f32; N]>, CliError> {
-        match (&self.input, &self.factors) {
-            (Some(path), _) => self.read_sets(path),
-            (None, list) => list.iter().map(|list| self.set(list).map_err(CliError::Usage)).collect(),
-        }
-    }
-
-    /// Reads sets of factors from a file, one per line. Empty lines are skipped.
-    fn read_sets<const N: usize>(&self, path: &Path) -> Result<Vec<[f32; N]>, CliError> {
+        let Some(path) = &self.input else {
+            return self.factors.iter().map(|list| self.set(list).map_err(CliError::Usage)).collect();
+        };
         let text = read_text(path)?;
         let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
         let set = |(index, line): (usize, &str)| {
@@ -123,13 +122,9 @@ impl Args {
     /// Returns a set of as many factors as the kind of patch has, or says why these are none.
     fn set<const N: usize>(&self, list: &[f32]) -> Result<[f32; N], &'static str> {
         let set = list.try_into().map_err(|_| match self.kind {
-            DomainKind::Tri => "expected four numbers, of three edges and inside: 3,2.5,inf,4, or in a file 3 2.5 inf 4",
-            DomainKind::Quad => {
-                "expected six numbers, of four edges and inside along u and v: 3,2.5,inf,4,2,2, or in a file 3 2.5 inf 4 2 2"
-            }
-            DomainKind::Isoline => {
-                "expected two numbers, of isolines and of segments of each: 3,2.5, or in a file 3 2.5"
-            }
+            DomainKind::Tri => "expected four numbers, of edges and inside: 3,2.5,inf,4, or in a file 3 2.5 inf 4",
+            DomainKind::Quad => "expected six numbers, of edges and inside: 3,2,inf,4,2,2, or in a file 3 2 inf 4 2 2",
+            DomainKind::Isoline => "expected two numbers, of isolines and their segments: 3,2.5, or in a file 3 2.5",
         })?;
         match *list {
             [e0, e1, e2, inside]
@@ -142,43 +137,29 @@ impl Args {
     }
 }
 
-/// Prints patterns, one after another.
-struct Printer<W> {
+/// Prints patterns, one after another, or draws the only one.
+struct Output<'a, W> {
+    args: &'a Args,
     out: W,
-    /// Whether every line begins with the number of the pattern.
-    is_numbered: bool,
     /// The number of the next pattern.
     number: usize,
 }
 
-impl<W: Write> Printer<W> {
-    /// Prints points, and what joins them, which has this name.
-    fn print<const N: usize>(
-        &mut self,
-        points: &[[u32; 2]],
-        name: &str,
-        primitives: &[[u32; N]],
-    ) -> Result<(), CliError> {
-        let prefix = if self.is_numbered { format!("{},", self.number) } else { String::new() };
+impl<W: Write> Output<'_, W> {
+    /// Shows points, and what joins them: lines or triangles.
+    fn add<const N: usize>(&mut self, points: &[[u32; 2]], primitives: &[[u32; N]]) -> Result<(), CliError> {
+        if let (Some(path), Some(factors)) = (&self.args.output, &self.args.factors) {
+            return Ok(write_text(path, &diagram::svg(self.args.kind, factors, points, primitives))?);
+        }
+        // In a list every line begins with the number of its pattern.
+        let prefix = self.args.input.as_ref().map_or_else(String::new, |_| format!("{},", self.number));
         self.number += 1;
+        let name = if N == 2 { "line" } else { "triangle" };
         let mut write = |line: String| writeln!(self.out, "{prefix}{line}").map_err(CliError::Output);
         let mut numbered = points.iter().enumerate();
         numbered.try_for_each(|(index, [u, v])| write(format!("point,{index},{u},{v}")))?;
         let joined = |own: &[u32; N]| own.map(|point| point.to_string()).join(",");
         primitives.iter().try_for_each(|own| write(format!("{name},{}", joined(own))))
-    }
-
-    fn print_triangles(&mut self, pattern: &DomainPattern) -> Result<(), CliError> {
-        self.print(&pattern.points, "triangle", &pattern.triangles)
-    }
-}
-
-fn on_cpu(partitioning: Partitioning, &[e0, e1, e2, inside]: &[f32; 4]) -> DomainPattern {
-    let factors = process(partitioning, [e0, e1, e2], inside);
-    let plan = domain_plan(factors);
-    DomainPattern {
-        points: (0..point_count(factors)).map(|i| domain_point(&plan, i)).collect(),
-        triangles: (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect(),
     }
 }
 

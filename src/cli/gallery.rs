@@ -58,16 +58,12 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     warn(&gallery.warnings()?);
     let (mut all, mut progress_printer) = (Vec::new(), ProgressPrinter::new());
     for exhibit in exhibits() {
-        let (picture, shown) = gallery.draw(&exhibit, |tile| progress_printer.print(|| place(&exhibit, tile)))?;
-        write_picture(&args.output.join(format!("{}.png", exhibit.name)), &picture.into())?;
+        let Exhibit { name, tiles, .. } = &exhibit;
+        let said = |tile: usize| format!("{name}, {} of {}: {}", tile + 1, tiles.len(), tiles[tile].name);
+        let (picture, shown) = gallery.draw(&exhibit, |tile| progress_printer.print(|| said(tile)))?;
+        write_picture(&args.output.join(format!("{name}.png")), &picture.into())?;
         all.push((exhibit, shown));
     }
     let subject = args.file.as_ref().map(Source::title);
     Ok(write_text(&args.output.join(PAGE), &page(subject.as_deref(), &engine.gpu.info.name, &all))?)
-}
-
-/// Which tile is being drawn.
-fn place(exhibit: &Exhibit, tile: usize) -> String {
-    let (number, count) = (tile + 1, exhibit.tiles.len());
-    format!("{}, {number} of {count}: {}", exhibit.name, exhibit.tiles[tile].name)
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::camera_and_light_report::{CameraInfo, LightInfo};
-use super::material_report::MaterialInfo;
+use super::material_report::{MaterialInfo, numbers};
 use super::options::WeldOption;
 use super::{CliError, to_json, write_text};
 use geometry::mesh::crease_band::CreaseBand;
@@ -33,7 +33,7 @@ pub struct Args {
 pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let progress = Progress::default();
     let loaded = engine::load(&args.file, &args.weld.preparation(), &progress)?;
-    args.weld.parts.say_idle(|_| true, "--part has no effect here, where nothing is tessellated");
+    args.weld.parts.say_idle(|own| own.is_of_tessellation(), "a surface or detail of --part has no effect here");
     let info = Info::new(&loaded, &progress)?;
     let text = if args.json { to_json(&info)? } else { info.to_string() };
     Ok(write_text("-".as_ref(), &text)?)
@@ -160,10 +160,8 @@ impl fmt::Display for Info {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.write_mesh(f)?;
         self.write_odd(f)?;
-        let [x, y, z] = self.bounds.min.map(exact);
-        let [to_x, to_y, to_z] = self.bounds.max.map(exact);
-        writeln!(f, "from          {x} {y} {z} (object units)")?;
-        writeln!(f, "to            {to_x} {to_y} {to_z}, diagonal {}", exact(self.bounds.diagonal))?;
+        writeln!(f, "from          {} (object units)", numbers(&self.bounds.min))?;
+        writeln!(f, "to            {}, diagonal {}", numbers(&self.bounds.max), exact(self.bounds.diagonal))?;
         self.materials.iter().try_for_each(|material| write!(f, "{material}"))?;
         self.lights.iter().try_for_each(|light| write!(f, "{light}"))?;
         self.cameras.iter().try_for_each(|camera| write!(f, "{camera}"))?;

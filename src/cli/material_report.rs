@@ -7,6 +7,7 @@ use serde::Serialize;
 use geometry::choice::Choice;
 use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Slot};
 use geometry::names::shown;
+use geometry::numbers::exact;
 
 /// A material in numbers.
 #[derive(Clone, Debug, Serialize)]
@@ -106,9 +107,9 @@ fn map(slot: Slot, map: &Map, look: &Look) -> MapInfo {
     MapInfo { slot: slot.name(), size: map.texture.size, uv_set, strength }
 }
 
-/// Numbers of a colour, separated by spaces.
-fn numbers(color: &[f32]) -> String {
-    color.iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
+/// Numbers of a colour or a place, separated by spaces.
+pub(super) fn numbers(all: &[f32]) -> String {
+    all.iter().copied().map(exact).collect::<Vec<_>>().join(" ")
 }
 
 impl fmt::Display for MaterialInfo {

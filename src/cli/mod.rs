@@ -50,12 +50,10 @@ use geometry::names::{on_one_line, shown};
 use geometry::progress::{Cancelled, Progress};
 use gpu::GpuError;
 use inspect::engine::{Loaded, Preparation};
-use inspect::export::ExportError;
 use inspect::shader_files::ShaderError;
 use inspect::shot::files::{file_error, read_bytes, read_text, to_json, write_bytes, write_text};
 use inspect::shot::{ShotError, given};
 use inspect::user_shader::UserShaderError;
-use lab::check::ConfigError;
 use load::environment_file::EnvironmentError;
 use load::files::file_reason;
 use load::selection::choice;
@@ -151,14 +149,10 @@ pub enum CliError {
     Matcap(#[from] MatcapError),
     #[error(transparent)]
     UserShader(#[from] UserShaderError),
-    #[error(transparent)]
-    Export(#[from] ExportError),
     #[error("{path}: there is no folder {folder} to write it in; make it first")]
     NoFolder { path: String, folder: String },
     #[error("{path} is {by} by the same command, so it isn't overwritten; choose another name")]
     Taken { path: String, by: &'static str },
-    #[error(transparent)]
-    Gallery(#[from] lab::gallery::GalleryError),
     #[error("{0}")]
     Usage(&'static str),
     #[error(
@@ -185,8 +179,8 @@ pub enum CliError {
     NoPatch { file: String, triangle: u32 },
     #[error("{path}: {fault}")]
     Indices { path: String, fault: inspect::adjacency_file::IndicesFault },
-    #[error("{path}: {different} of {patches} patches {differ}: {meanings}")]
-    OtherIndices { path: String, different: usize, patches: usize, differ: &'static str, meanings: String },
+    #[error("{path}: {different} of {patches} patches {}: {meanings}", if *different == 1 { "differs" } else { "differ" })]
+    OtherIndices { path: String, different: usize, patches: usize, meanings: String },
     #[error(
         "{file}: --corners needs one height image over all triangles, which its materials don't have: name one with --height"
     )]
@@ -207,14 +201,10 @@ pub enum CliError {
     Interrupted { done: usize, all: usize, what: &'static str },
     #[error(transparent)]
     Shaders(#[from] ShaderError),
-    #[error(transparent)]
-    Chart(#[from] inspect::plot::ChartError),
     #[error("{}", .0.join("; "))]
     Gates(Vec<String>),
     #[error("{0}")]
     Check(String),
-    #[error(transparent)]
-    Config(#[from] ConfigError),
     #[error("there is nothing to check: no meshes found in these folders; name others")]
     NoAssets,
     #[error("the output could not be written: {0}")]
@@ -240,27 +230,22 @@ pub fn run(command: Command) -> ExitCode {
         Command::Info(args) => info::run(&args),
         Command::Adapters(args) => adapters::run(&args),
     };
-    match result {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(CliError::Output(error) | CliError::Shot(ShotError::Output(error)))
+    let Err(error) = result else { return ExitCode::SUCCESS };
+    let code = match &error {
+        CliError::Output(error) | CliError::Shot(ShotError::Output(error))
             if error.kind() == std::io::ErrorKind::BrokenPipe =>
         {
-            ExitCode::SUCCESS
+            return ExitCode::SUCCESS;
         }
-        Err(error @ (CliError::Usage(_) | CliError::Shaders(ShaderError::Unexportable { .. }))) => {
-            fail(&error);
-            ExitCode::from(2)
-        }
-        Err(error @ CliError::Interrupted { .. }) => {
-            fail(&error);
-            ExitCode::from(INTERRUPTED)
-        }
-        Err(CliError::Gates(sentences)) => {
-            sentences.iter().for_each(|sentence| note(sentence));
-            ExitCode::FAILURE
-        }
-        Err(error) => fail(&error),
+        CliError::Usage(_) | CliError::Shaders(ShaderError::Unexportable { .. }) => 2,
+        CliError::Interrupted { .. } => INTERRUPTED,
+        _ => 1,
+    };
+    match &error {
+        CliError::Gates(sentences) => sentences.iter().for_each(|sentence| note(sentence)),
+        error => note(&error.to_string()),
     }
+    ExitCode::from(code)
 }
 
 /// Prints an error on standard error, and returns the exit code of a failure.

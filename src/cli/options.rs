@@ -26,14 +26,14 @@ use load::format::known_extensions;
 use load::import::Subdivide;
 use load::{HeightSource, ShownParts, Source};
 
-pub(crate) use cameras::{CamerasOption, NamedView, check_view_name};
+pub(crate) use cameras::{CamerasOption, NamedView, check_view_name, said};
 use declared::GivenTessellation;
 pub(crate) use declared::{
     Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,
 };
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
-    CameraOption, ending_in, heights, model, picture, picture_or_page, size, source, whole, whole_from, within,
+    CameraOption, ending_in, heights, picture, picture_or_page, seconds, size, source, whole, whole_from, within,
 };
 pub(crate) use view::{LodCameraOption, MeshAt, ViewOptions};
 
@@ -48,9 +48,9 @@ pub struct SurfaceOptions {
     /// Under LOD by error, raise the tolerance until there are no more triangles than this
     #[arg(long, value_name = "N", value_parser = whole_from(1_u64))]
     pub max_triangles: Option<u64>,
-    /// Height map that displaces the surface: a PNG, JPEG, WebP, TIFF or EXR image over all materials, its stored brightness from
-    /// 0 (black) to 1 (white); `material`, the brightness of each material's base colour image; or `file`, the images that the file
-    /// gives its materials, of which MATERIAL=IMAGE,scale=S,midlevel=H replaces one (S in object units)
+    /// Height map that displaces the surface: a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image over all materials, its stored
+    /// brightness from 0 (black) to 1 (white); `material`, the brightness of each material's base colour image; or `file`, the images
+    /// that the file gives its materials, of which MATERIAL=IMAGE,scale=S,midlevel=H replaces one (S in object units)
     #[arg(long, value_name = "IMAGE|material|file|MATERIAL=IMAGE", value_parser = heights())]
     pub height: Vec<HeightSource>,
     /// Memory for output on the device, in MiB, 1 to 65536; output that doesn't fit is made in chunks
@@ -62,7 +62,7 @@ pub struct SurfaceOptions {
     #[arg(long, value_name = "NAME")]
     pub animation: Option<String>,
     /// Time in the animation, in s; after its end the pose is that of the end
-    #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = values::seconds, default_value_t = 0.0, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SECONDS", requires = "animation", value_parser = seconds, default_value_t = 0.0, allow_hyphen_values = true)]
     pub time: f64,
     /// Width and height of the view, in px
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = size)]
@@ -117,7 +117,8 @@ impl SurfaceOptions {
         let takes_heights = !self.height.is_empty() || own.displacement.is_on();
         let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);
         refuse(is_lost, "--height-scale and --midlevel need --height, or --displacement")?;
-        let is_lost = own == Tessellation::untessellated() && !self.weld.parts.shown().styles.is_empty();
+        let has_styles = self.weld.parts.part.iter().any(|(_, own)| own.is_of_tessellation());
+        let is_lost = own == Tessellation::untessellated() && has_styles;
         refuse(is_lost, "--part has no effect on the mesh as it is: choose another surface, factor or partitioning")?;
         let has_strength =
             own.surface.is_phong() || other.is_some_and(Surface::is_phong) || self.weld.parts.shown().has_phong();
@@ -315,9 +316,9 @@ pub struct PartOptions {
     /// Show only the part, group or material of this name or path, and others that are given so
     #[arg(long, value_name = "NAME", allow_hyphen_values = true)]
     show_part: Vec<String>,
-    /// Give the part or group of this name a surface of its own, LOD 1/64 to 16 times as fine, or both, such as
-    /// `NAME:surface=flat,detail=0.5`; may be given several times. Materials can't have them. Edges between parts take the surface
-    /// that comes first in the list of `--surface`, and the finest detail
+    /// Give the part, group or material of this name a surface of its own, LOD 1/64 to 16 times as fine, normals, or a crease
+    /// angle, such as `NAME:surface=flat,detail=0.5,normals=made,crease=30`; may be given several times. A part's count before its
+    /// material's. Edges between parts take the surface that comes first in the list of `--surface`, and the finest detail
     #[arg(long, value_name = "NAME:KEY=VALUE,..", allow_hyphen_values = true, value_parser = values::part_style)]
     part: Vec<(String, PartStyle)>,
     /// Give a morph target or blend shape this weight where no clip moves it, such as Smile=0.7; may be given several times.

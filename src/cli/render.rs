@@ -96,7 +96,9 @@ pub fn run_with(args: &Args, line: &str, engine: impl FnOnce() -> Result<Engine,
     let read: Vec<_> = places.iter().map(Option::as_deref).chain([args.cameras.file()]).collect();
     args.shot.check(&args.file, &read, &written)?;
     args.shot.check_gates(&args.gates.gates.fail_on)?;
-    let references = args.references(&places)?;
+    let reference = |path: &Path| Reference::read(path, args.threshold);
+    let references = places.iter().map(|place| place.as_deref().map(reference).transpose());
+    let references: Vec<_> = references.collect::<Result<_, _>>()?;
     let (subject, factors_file) = args.shot.subject(&args.file, &written)?;
     let mut shot = args.shot.shot(engine()?, subject)?;
     let cameras = views.iter().map(|view| args.camera(view, &shot)).collect::<Result<Vec<_>, _>>()?;
@@ -170,12 +172,6 @@ impl Args {
         let camera = view.camera(&self.shot.surface, shot.place(), self.shot.framed_size())?;
         self.shot.check_camera(&camera)?;
         Ok(Some(camera))
-    }
-
-    /// Reads the reference pictures at these places, each of which may be none.
-    fn references(&self, places: &[Option<PathBuf>]) -> Result<Vec<Option<Reference>>, CliError> {
-        let read = |path: &Path| Reference::read(path, self.threshold);
-        Ok(places.iter().map(|place| place.as_deref().map(read).transpose()).collect::<Result<_, _>>()?)
     }
 
     /// The reference picture of a view, if there are references.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::options::{LodCameraOption, PictureOptions, ReferenceOption, whole_from};
+use super::options::{LodCameraOption, PictureOptions, ReferenceOption, seconds, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of, files_of_heights,
     keep_apart, load, load_apart, note, options, refuse, warn,
@@ -17,9 +17,9 @@ use inspect::engine::{ClipFinding, Engine, Loaded, Preparation, worst_moment};
 use inspect::gates::{Gate, GateKind};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::environment::Environment;
-use inspect::render::{Camera, Scene, framed_size};
-use inspect::settings::{Choice, ColorSource, Lighting};
-use inspect::shot::{FactorsFile, Shot, ShotError, ShotView, Subject};
+use inspect::render::{Camera, LeftPose, Scene, framed_size};
+use inspect::settings::{Choice, ColorSource, Lighting, Settings};
+use inspect::shot::{AT_REST, FactorsFile, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
 use load::{Source, load_matcap};
@@ -47,6 +47,12 @@ pub struct ShotOptions {
     /// Another mesh for the left of the split, such as the high-poly original: a mesh file, or a shape
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub split_with: Option<Source>,
+    /// Show the mesh left of the split in a pose of this animation, or at `rest`
+    #[arg(long, value_name = "NAME", requires = "split", allow_hyphen_values = true)]
+    pub split_animation: Option<String>,
+    /// Time in that animation, or without it in --animation, in s
+    #[arg(long, value_name = "SECONDS", requires = "split", value_parser = seconds, allow_hyphen_values = true)]
+    pub split_time: Option<f64>,
     /// Outline the patch of this triangle (its number in the mesh, from 0); the edges of factors 0, 1 and 2 are red, green
     /// and blue
     #[arg(long, value_name = "TRIANGLE", value_parser = whole_from(0_u32))]
@@ -77,14 +83,17 @@ impl ShotOptions {
         self.surface.check(self.picture.0.left_surface())?;
         self.user_lod.check_alone(&self.given)?;
         refuse(
-            self.matcap_image.is_some() && self.picture.0.overlays.colors.source() != ColorSource::LitSphere,
+            self.matcap_image.is_some() && !self.shows(|own| own.overlays.colors.source() == ColorSource::LitSphere),
             "--matcap-image needs --overlay matcap, which shows it",
         )?;
-        let (has_file, needs_file) = (self.environment.is_some(), self.picture.0.lighting == Lighting::Environment);
+        let (has_file, needs_file) =
+            (self.environment.is_some(), self.shows(|own| own.lighting == Lighting::Environment));
         refuse(has_file && !needs_file, "--environment is the light of --lighting environment: choose one light")?;
         refuse(needs_file && !has_file, "--lighting environment needs --environment, the file that has the light")?;
         let is_hidden = self.split_with.is_some() && self.picture.0.split.is_none();
         refuse(is_hidden, "--split-with needs --split, which shows it")?;
+        let is_of_none = self.split_animation.is_none() && self.surface.animation.is_none();
+        refuse(self.split_time.is_some() && is_of_none, "--split-time needs --split-animation, or --animation")?;
         let reference_shape = self.reference.reference_shape.as_ref().and_then(file_of);
         let left = self.split_with.as_ref().and_then(file_of);
         let (factors, matcap) = (self.given.given.as_deref(), self.matcap_image.as_deref());
@@ -92,6 +101,11 @@ impl ShotOptions {
         let own = [file_of(file), reference_shape, left, factors, matcap, self.environment.as_deref()];
         let own = own.into_iter().chain(files_of_heights(&self.surface.height));
         keep_apart(own.chain(shaders).chain(read.iter().copied()), written.iter().copied())
+    }
+
+    /// Whether a half of the picture has settings like this.
+    fn shows(&self, is_shown: impl Fn(&Settings) -> bool) -> bool {
+        self.picture.0.halves().any(|own| is_shown(&own))
     }
 
     /// Width and height in px of the middle of the picture that shows all of the mesh.
@@ -138,14 +152,19 @@ impl ShotOptions {
         let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
         let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
         let has_bones = left.iter().chain([&loaded]).any(|own| !own.mesh.bones.is_empty());
-        if self.picture.0.overlays.bones && !has_bones {
+        if self.shows(|own| own.overlays.bones) && !has_bones {
             note("--overlay bones has no effect: no skin moves the mesh");
         }
         let selected = self.select.map(|triangle| selected_patch(&loaded, triangle)).transpose()?;
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
         let (given, factors_file) = given.unzip();
+        let left_pose = self.left_pose(left.as_ref().unwrap_or(&loaded))?;
+        let mut settings = self.surface.settings_of(&self.picture.0);
+        // A pose may turn a part inside out.
+        settings.left.cull_back_faces &= left_pose == LeftPose::Same;
         let subject = Subject {
             left,
+            left_pose,
             moment: self.surface.moment(&loaded)?,
             given: given.map(Given::from).or(user_lod),
             surface_shader,
@@ -154,22 +173,32 @@ impl ShotOptions {
             reference_surface,
             selected,
             arena_bytes: self.surface.arena_bytes(),
-            ..Subject::new(loaded, self.surface.settings_of(&self.picture.0))
+            ..Subject::new(loaded, settings)
         };
         Ok((subject, factors_file))
+    }
+
+    /// The pose of the mesh left of the split.
+    fn left_pose(&self, left: &Loaded) -> Result<LeftPose, CliError> {
+        let of_right = self.surface.animation.as_ref().filter(|_| self.split_time.is_some());
+        let Some(name) = self.split_animation.as_ref().or(of_right) else { return Ok(LeftPose::Same) };
+        let has_clip = left.mesh.rig.as_ref().is_some_and(|rig| rig.clip(name).is_some());
+        let animation = Some(name.clone()).filter(|name| name != AT_REST || has_clip);
+        let time = self.split_time.unwrap_or(0.0);
+        Ok(LeftPose::Own(SurfaceOptions { animation, time, ..self.surface.clone() }.moment(left)?))
     }
 
     /// The surface to compare with, and its name: the one that was chosen, or if the overlay is shown the exact surface; none for
     /// the limit surface.
     fn reference_surface(&self, loaded: &Loaded) -> Result<Option<(String, Arc<ReferenceShape>)>, CliError> {
-        let Self { surface, picture, reference, .. } = self;
-        let moves = surface.animation.is_some();
+        let Self { surface, reference, .. } = self;
+        let moves = surface.animation.is_some() || self.split_animation.is_some();
         let chosen = reference.load(&loaded.source, &loaded.preparation, Source::to_string)?;
         refuse(
             moves && chosen.is_some(),
             "--reference-surface and --reference-subdivide can't be combined with --animation: that surface doesn't move",
         )?;
-        if chosen.is_some() || picture.0.overlays.colors.source() != ColorSource::ReferenceSurface {
+        if chosen.is_some() || !self.shows(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface) {
             return Ok(chosen.map(|(name, chosen)| (name, Arc::new(chosen))));
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();

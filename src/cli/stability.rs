@@ -60,12 +60,6 @@ fn method() -> impl TypedValueParser<Value = Method> {
     named(Method::all().into_iter().map(|method| PossibleValue::new(method.option())), find)
 }
 
-/// What runs, and the warnings of loading it.
-struct Loaded {
-    subject: Subject,
-    warnings: Vec<String>,
-}
-
 impl Args {
     /// Refuses gates that judge one tessellation, and what needs a device that isn't used.
     fn check(&self) -> Result<(), CliError> {
@@ -85,16 +79,15 @@ impl Args {
     }
 
     /// The chosen cases, then the files as cases of their own. All are loaded before the first one runs.
-    fn subjects(&self) -> Result<Vec<Loaded>, CliError> {
-        let cases = self.cases().map(|subject| Loaded { subject, warnings: Vec::new() });
-        let mut subjects: Vec<_> = cases.collect();
+    fn subjects(&self) -> Result<Vec<Subject>, CliError> {
+        let mut subjects: Vec<_> = self.cases().collect();
         for source in &self.files {
             let loaded = super::load(source, &self.weld.preparation())?;
             let name = free_name(&source.title(), &subjects);
             // With a crease band the mesh is welded already.
             let weld = if loaded.crease_band.width > 0.0 { 0.0 } else { self.weld.weld };
-            let subject = Subject::new(name, Arc::unwrap_or_clone(loaded.mesh), weld);
-            subjects.push(Loaded { subject, warnings: loaded.warnings });
+            let own = Subject::new(name, Arc::unwrap_or_clone(loaded.mesh), weld);
+            subjects.push(Subject { warnings: loaded.warnings, ..own });
         }
         Ok(subjects)
     }
@@ -110,12 +103,7 @@ impl Args {
 
     /// Judges a mesh by the gates that its rows don't judge: those that are about the mesh itself, and those that could be judged in no
     /// view. Returns those that fail.
-    fn judge_mesh(
-        &self,
-        Loaded { subject, warnings }: &Loaded,
-        effort: &Effort,
-        rows: &[Row],
-    ) -> Result<Vec<Failure>, CliError> {
+    fn judge_mesh(&self, subject: &Subject, effort: &Effort, rows: &[Row]) -> Result<Vec<Failure>, CliError> {
         let mut gates = self.gates.gates.fail_on.clone();
         gates.retain(|gate| !are_judged(gate.kind, &effort.methods, rows));
         if gates.is_empty() {
@@ -127,7 +115,7 @@ impl Args {
         let facts = Facts {
             mesh: Some((&subject.mesh, &topology)),
             junctions: Some(&junctions),
-            warnings: Some(warnings),
+            warnings: Some(&subject.warnings),
             leaks: Some(&leaks),
             ..Facts::from_mesh(&topology)
         };
@@ -158,16 +146,16 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let effort = args.effort();
     args.output.as_deref().map_or(Ok(()), make_folder)?;
     let (mut rows, mut sections, mut failed) = (Vec::new(), Vec::new(), Vec::new());
-    for loaded in &subjects {
-        let own = run_case(&loaded.subject, engine.as_ref(), &effort)?;
-        failed.extend(args.judge_mesh(loaded, &effort, &own)?);
+    for subject in &subjects {
+        let own = run_case(subject, engine.as_ref(), &effort)?;
+        failed.extend(args.judge_mesh(subject, &effort, &own)?);
         if !args.json {
             let text = table(&lines(&own));
             // The heading is printed only once.
             let rest = text.split_once('\n').map_or("", |(_, rest)| rest);
             write_text("-".as_ref(), if rows.is_empty() { &text } else { rest })?;
         }
-        sections.push((&loaded.subject, args.picture(&loaded.subject, engine.as_ref(), &effort)?));
+        sections.push((subject, args.picture(subject, engine.as_ref(), &effort)?));
         rows.extend(own);
     }
     if let Some(folder) = &args.output {
@@ -188,8 +176,8 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Returns the title, with a number added if another subject, or its picture, has that name already.
-fn free_name(title: &str, taken: &[Loaded]) -> String {
-    let is_free = |name: &String| taken.iter().all(|loaded| file_name(&loaded.subject.name) != file_name(name));
+fn free_name(title: &str, taken: &[Subject]) -> String {
+    let is_free = |name: &String| taken.iter().all(|other| file_name(&other.name) != file_name(name));
     let numbered = (2..).map(|number| {
         let (stem, extension) = title.rsplit_once('.').map_or((title, None), |(stem, rest)| (stem, Some(rest)));
         extension.map_or(format!("{stem} ({number})"), |extension| format!("{stem} ({number}).{extension}"))
@@ -225,8 +213,7 @@ mod tests {
         }
         let Command { args } = clap::Parser::parse_from(["stability", "--fail-on", "leaks"]);
         let subject = Subject::new("torus".into(), geometry::mesh::Shape::Torus.build(), 0.0);
-        let loaded = Loaded { subject, warnings: Vec::new() };
-        let failed = args.judge_mesh(&loaded, &args.effort(), &[]).expect("a judgement");
+        let failed = args.judge_mesh(&subject, &args.effort(), &[]).expect("a judgement");
         let [Failure { sentence, .. }] = &failed[..] else { panic!("{} failures", failed.len()) };
         assert!(
             sentence.starts_with("torus fails the gate leaks: leaks could be counted in none of the views"),
@@ -236,13 +223,12 @@ mod tests {
 
     #[test]
     fn names_and_pictures_are_unique() {
-        let loaded = |subject| Loaded { subject, warnings: Vec::new() };
-        let mut taken = vec![loaded(CASES[0].subject())];
+        let mut taken = vec![CASES[0].subject()];
         for name in ["split-normals.glb", "a.glb", "a.glb", "a.gltf", "a", "a"] {
             let name = free_name(name, &taken);
-            taken.push(loaded(Subject::new(name, Mesh::default(), 0.0)));
+            taken.push(Subject::new(name, Mesh::default(), 0.0));
         }
-        let names: Vec<_> = taken.iter().map(|loaded| loaded.subject.name.as_str()).collect();
+        let names: Vec<_> = taken.iter().map(|subject| subject.name.as_str()).collect();
         let expected = ["split-normals (2).glb", "a.glb", "a (2).glb", "a (3).gltf", "a (4)", "a (5)"];
         assert_eq!(names[1..], expected);
     }

@@ -23,16 +23,20 @@ use inspect::gates::{Facts, GateKind, Judgement, judge};
 use inspect::measure::{
     CrossingMeasurement, EmittedChunk, Measured, RequestedFactors, ScreenErrorMeasurement, Visitor,
 };
-use inspect::render::{Camera, Scene};
-use inspect::shot::{Shot, ShotView, Subject, report_user_lod, report_user_surface};
+use inspect::render::Camera;
+use inspect::shot::{Shot, ShotError, ShotView, Subject, report_user_lod, report_user_surface};
 use load::Source;
+
+/// The endings of meshes, and what is said of an output with another one.
+const ENDINGS: &[&str] = &["glb", "obj"];
+const WANTED: &str = "meshes are written as .glb or .obj files: name it one of these";
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// Mesh to write, a .glb or .obj file. With --cameras, a name with {} where each view's name goes
-    #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::model())]
+    #[arg(short, long, value_name = "OUT.glb|OUT.obj", value_parser = options::ending_in(ENDINGS, WANTED))]
     pub output: PathBuf,
     #[command(flatten)]
     pub surface: SurfaceOptions,
@@ -67,7 +71,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
 /// Like [`run`], with an engine that is made once the arguments have been checked.
 pub fn run_with(args: &Args, engine: impl FnOnce() -> Result<Engine, GpuError>) -> Result<(), CliError> {
     args.check()?;
-    let files = ViewFiles::new(&args.output, &["glb", "obj"], &args.cameras);
+    let files = ViewFiles::new(&args.output, ENDINGS, &args.cameras);
     let several = "--cameras writes several meshes: put {} into the name of -o where the views' names go";
     let views = files.views(&args.cameras, &args.surface, several)?;
     let written = files.checked(&views);
@@ -112,13 +116,13 @@ struct Ready<'a> {
 impl Ready<'_> {
     /// Checks that the view's file can hold so many vertices and triangles, before they are there.
     fn check(&self, view: &View, vertices: u64, triangles: u64) -> Result<(), CliError> {
-        Ok(Exported::check(&view.file, &self.mesh.posed.mesh, vertices, triangles)?)
+        Ok(Exported::check(&view.file, &self.mesh.posed.mesh, vertices, triangles).map_err(ShotError::from)?)
     }
 
     /// Writes what was tessellated for a view. Standard error tells what couldn't be written.
     fn write(&self, view: &View, tessellated: &Tessellated) -> Result<(), CliError> {
         let exported = Exported::new(&self.mesh.posed.mesh, &self.mesh.posed.topology, tessellated);
-        warn(&exported.write(&view.file)?);
+        warn(&exported.write(&view.file).map_err(ShotError::from)?);
         Ok(())
     }
 
@@ -144,19 +148,20 @@ impl Ready<'_> {
         given: Option<Given>,
         surface_shader: Option<Arc<SurfaceShader>>,
     ) -> Result<Vec<String>, CliError> {
-        let mut scene = engine.scene(&self.mesh.loaded, self.args.surface.arena_bytes())?;
+        let Args { gates, surface, file, .. } = self.args;
+        let mut scene = engine.scene(&self.mesh.loaded, surface.arena_bytes())?;
         let mut subject = Subject {
             moment: self.mesh.moment,
             given,
             surface_shader,
-            arena_bytes: self.args.surface.arena_bytes(),
-            ..Subject::new(self.mesh.loaded.clone(), self.args.surface.settings())
+            arena_bytes: surface.arena_bytes(),
+            ..Subject::new(self.mesh.loaded.clone(), surface.settings())
         };
         subject.apply_to_scene(&engine, &mut scene)?;
         let mut failed = Vec::new();
         for (index, (view, camera)) in views.iter().enumerate() {
             let lod_view = self.mesh.lod_view(camera);
-            let settings = self.args.surface.within_budget_on(&engine, &mut scene, lod_view)?;
+            let settings = surface.within_budget_on(&engine, &mut scene, lod_view)?;
             engine.count(&mut scene, &settings.inputs(lod_view), &mut Timing::Off)?;
             if index == 0 {
                 report_user_surface(&engine, &scene)?;
@@ -165,28 +170,17 @@ impl Ready<'_> {
             let (vertices, triangles) = scene.tessellator.totals();
             self.check(view, vertices, triangles)?;
             self.write(view, &engine.read_tessellated(&mut scene)?)?;
-            if !self.args.gates.gates.fail_on.is_empty() {
-                let mut shot = self.shot(engine.clone(), scene, Subject { settings, ..subject }, *camera)?;
-                failed.extend(self.judged_on_gpu(&mut shot, view)?);
+            if !gates.gates.fail_on.is_empty() {
+                let size = surface.size;
+                let seen = ShotView { camera: *camera, lod_camera: None, size, transparent: false, legend: false };
+                let mut shot = Shot::new(engine.clone(), scene, Subject { settings, ..subject }, seen)?;
+                let judged = shot.judge(&gates.gates.fail_on, surface.tessellation().tolerance, &Progress::new())?;
+                gates.write_evidence(&mut shot, &judged, &view.file)?;
+                failed.extend(failures(&view.name_of(file), &judged));
                 (scene, subject) = shot.into_parts();
             }
         }
         Ok(failed)
-    }
-
-    /// What gates judge, seen from `camera`.
-    fn shot(&self, engine: Engine, scene: Scene, subject: Subject, camera: Camera) -> Result<Shot, CliError> {
-        let size = self.args.surface.size;
-        let view = ShotView { camera, lod_camera: None, size, transparent: false, legend: false };
-        Ok(Shot::new(engine, scene, subject, view)?)
-    }
-
-    /// Judges what the device emitted for a view by the gates, and draws what they found. Returns a sentence for each that failed.
-    fn judged_on_gpu(&self, shot: &mut Shot, view: &View) -> Result<Vec<String>, CliError> {
-        let Args { gates, surface, file, .. } = self.args;
-        let judged = shot.judge(&gates.gates.fail_on, surface.tessellation().tolerance, &Progress::new())?;
-        gates.write_evidence(shot, &judged, &view.file)?;
-        Ok(failures(&view.name_of(file), &judged))
     }
 
     /// Judges what the CPU emitted by the gates.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use super::options::whole;
 use super::shot_options::ShotOptions;
@@ -18,7 +18,7 @@ pub struct Args {
     #[arg(help = super::options::mesh_help(), value_parser = super::options::source())]
     pub file: Source,
     /// Folder for numbered PNG files, which is made if it isn't there; or a .gif file
-    #[arg(short, long, value_name = "DIR|OUT.gif", value_parser = OsStringValueParser::new().try_map(place))]
+    #[arg(short, long, value_name = "DIR|OUT.gif", value_parser = PathBufValueParser::new().try_map(place))]
     pub output: PathBuf,
     /// Number of pictures in one turn, 2 to 3600
     #[arg(long, value_name = "N", default_value_t = Turn::default().frames, value_parser = whole(FRAMES))]
@@ -48,8 +48,7 @@ pub(super) fn run(args: &Args, line: &str) -> Result<(), CliError> {
 }
 
 /// Parses the path of a folder or a GIF file.
-fn place(path: std::ffi::OsString) -> Result<PathBuf, String> {
-    let path = PathBuf::from(path);
+fn place(path: PathBuf) -> Result<PathBuf, String> {
     match ending(&path).as_str() {
         other @ ("png" | "apng" | "jpg" | "jpeg" | "webp" | "mp4" | "webm" | "avi" | "mov") => {
             Err(format!("a turntable is a .gif file or a folder of PNG files, not .{other}"))

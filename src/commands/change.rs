@@ -33,10 +33,8 @@ impl Change {
             Self::FactorDown => settings.tessellation.factor = factor(settings.tessellation.factor - 1.0),
             Self::AdaptiveLod => settings.tessellation.lod = switched_lod(settings),
             Self::ToggleEdges => {
-                settings.tessellation.edges = match settings.tessellation.edges {
-                    Edges::AsPublished => Edges::PerEdge,
-                    Edges::PerEdge => Edges::AsPublished,
-                }
+                let is_shared = settings.tessellation.edges == Edges::PerEdge;
+                settings.tessellation.edges = if is_shared { Edges::AsPublished } else { Edges::PerEdge };
             }
             Self::CullBackFaces => settings.tessellation.cull_back_faces = !settings.tessellation.cull_back_faces,
             Self::MaterialColors => settings.overlays.colors = Colors::default(),
@@ -45,7 +43,7 @@ impl Change {
             Self::BlinkHalves => {
                 settings.split = settings.split.map(|split| if split < 1.0 { 1.0 } else { 0.0 });
             }
-            Self::SwapHalves => std::mem::swap(&mut settings.left, &mut settings.tessellation),
+            Self::SwapHalves => settings.swap_halves(),
             Self::Option(name, value) => {
                 if let Some(option) = options::all().find(|option| option.name == name) {
                     option.set(settings, value.map_or(Value::Unset, Value::Name));

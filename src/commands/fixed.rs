@@ -10,8 +10,8 @@ use geometry::mesh::Shape;
 use inspect::render::Standpoint;
 use inspect::settings::Choice;
 
-pub(crate) const HEIGHT_IMAGE: &str =
-    "Displaces the mesh by the brightness of a PNG, JPEG, WebP, TIFF or EXR image, which covers all materials.";
+pub(crate) const HEIGHT_IMAGE: &str = "Displaces the mesh by the brightness of a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image, \
+                                       which covers all materials.";
 
 /// All of them, in the order of the menus.
 pub(super) fn commands() -> Vec<Command> {
@@ -38,11 +38,13 @@ macro_rules! declared {
         $(needs $($need:ident)+)? => $action:expr, $text:expr;
     )+) => {
         vec![$(
-            Command::new($action, $name, $text)
-                $(.keys([$($key),+]))?
-                $(.at(Place::Menu(Menu::$menu, $group)))?
-                $(.at(Place::Submenu(Submenu::$submenu)))?
-                $(.needs(&[$(Need::$need),+]))?
+            Command {
+                $(keys: vec![$($key),+],)?
+                $(place: Some(Place::Menu(Menu::$menu, $group)),)?
+                $(place: Some(Place::Submenu(Submenu::$submenu)),)?
+                $(needs: &[$(Need::$need),+],)?
+                ..Command::new($action, $name, $text)
+            }
         ),+]
     };
 }
@@ -92,7 +94,10 @@ fn file() -> Vec<Command> {
     commands.extend(Shape::ALL.map(|shape| {
         let text = format!("Opens the shape {}, made in code.", shape.name());
         let name = format!("Shape: {}", shape.title());
-        Command::new(FileAction::OpenShape(shape), name, text).at(Place::Submenu(Submenu::Shapes))
+        Command {
+            place: Some(Place::Submenu(Submenu::Shapes)),
+            ..Command::new(FileAction::OpenShape(shape), name, text)
+        }
     }));
     commands.extend(writing());
     commands

@@ -20,14 +20,8 @@ const CLIPS: usize = 1000;
 const CREASE_BAND: f32 = 0.02;
 
 pub(super) fn commands(now: &Availability) -> Vec<Command> {
-    let mut all = settings();
-    all.extend(colors_and_overlays());
-    all.extend(mesh());
-    all.extend(clips(now));
-    all.extend(recent(now));
-    all.extend(bookmarks(now));
-    all.extend(file_cameras(now));
-    all
+    let all = [settings(), colors_and_overlays(), mesh(), clips(now), recent(now), bookmarks(now), file_cameras(now)];
+    all.into_iter().flatten().collect()
 }
 
 /// A command for each value of an option, with the option's label in its name.
@@ -36,8 +30,9 @@ fn values(option: &'static Declaration, needs: &'static [Need]) -> Vec<Command> 
     let unset = option.unset.iter().map(|unset| (None, unset.label, unset.text));
     let values = option.kind.descriptions();
     let values = values.iter().map(|value| (Some(value.name), value.label, value.text));
-    let command = |(value, name, text): (Option<&'static str>, &'static str, &'static str)| {
-        Command::new(Change::Option(option.name, value), format!("{label}: {name}"), text).needs(needs)
+    let command = |(value, name, text): (Option<&'static str>, &'static str, &'static str)| Command {
+        needs,
+        ..Command::new(Change::Option(option.name, value), format!("{label}: {name}"), text)
     };
     unset.chain(values).map(command).collect()
 }
@@ -68,7 +63,8 @@ fn left_surfaces() -> Vec<Command> {
     let unset = options::SPLIT_LEFT.unset.iter().map(|unset| (None, unset.label, unset.text));
     let surfaces = Surface::ALL.iter().map(|surface| (Some(*surface), surface.label(), surface.text()));
     let command = |(surface, name, text): (_, &str, &'static str)| {
-        Command::new(Change::LeftSurface(surface), format!("Left of the split: {name}"), text).needs(&[Need::Split])
+        let name = format!("Left of the split: {name}");
+        Command { needs: &[Need::Split], ..Command::new(Change::LeftSurface(surface), name, text) }
     };
     let both = declared! {
         "Swap left and right" needs Split => Change::SwapHalves,
@@ -129,8 +125,8 @@ fn colors_and_overlays() -> Vec<Command> {
             }
             Control::Switch(_) => (format!("Overlay: {}", overlay.label()), &[]),
         };
-        let command = Command::new(Change::Overlay(overlay), name, overlay.text());
-        command.keys([overlay_key(overlay)]).needs(needs)
+        let keys = vec![overlay_key(overlay)];
+        Command { keys, needs, ..Command::new(Change::Overlay(overlay), name, overlay.text()) }
     }));
     all
 }
@@ -142,7 +138,8 @@ fn mesh() -> Vec<Command> {
     };
     all.extend(TOLERANCES.map(|tolerance| {
         let text = format!("Joins positions within {tolerance:e} of the bounding diagonal.");
-        Command::new(Preparing::Weld(tolerance), format!("Weld: {tolerance:e}"), text).needs(&[Need::Document])
+        let name = format!("Weld: {tolerance:e}");
+        Command { needs: &[Need::Document], ..Command::new(Preparing::Weld(tolerance), name, text) }
     }));
     let on = format!("Makes a band of small triangles along creases, {CREASE_BAND} of the bounding diagonal wide.");
     all.extend(declared! {
@@ -162,7 +159,8 @@ fn clips(now: &Availability) -> Vec<Command> {
     };
     all.extend(now.clips.iter().take(CLIPS).enumerate().map(|(i, clip)| {
         let name = format!("Animation: {}", shortened(clip, 40));
-        Command::new(Action::AnimationClip(Some(i)), name, "Shows this clip from its start.").needs(&[Need::Clips])
+        let action = Action::AnimationClip(Some(i));
+        Command { needs: &[Need::Clips], ..Command::new(action, name, "Shows this clip from its start.") }
     }));
     all
 }
@@ -171,7 +169,8 @@ fn recent(now: &Availability) -> Vec<Command> {
     let open = |path: &PathBuf| {
         let name = format!("Recent: {}", path.file_name().unwrap_or_default().to_string_lossy());
         let text = format!("Opens {}.", path.display());
-        Command::new(FileAction::OpenRecent(path.clone()), name, text).at(Place::Submenu(Submenu::OpenRecent))
+        let place = Some(Place::Submenu(Submenu::OpenRecent));
+        Command { place, ..Command::new(FileAction::OpenRecent(path.clone()), name, text) }
     };
     now.recent.iter().map(open).collect()
 }
@@ -180,7 +179,10 @@ fn file_cameras(now: &Availability) -> Vec<Command> {
     let go = |(index, name): (usize, &String)| {
         let text = "Looks through this camera of the file: with its place, direction and height of view.";
         let name = format!("Camera: {}", shortened(name, 40));
-        Command::new(CameraAction::OfFile(index), name, text).at(Place::Submenu(Submenu::FileCameras))
+        Command {
+            place: Some(Place::Submenu(Submenu::FileCameras)),
+            ..Command::new(CameraAction::OfFile(index), name, text)
+        }
     };
     now.file_cameras.iter().enumerate().map(go).collect()
 }
@@ -191,8 +193,8 @@ const BOOKMARK_KEYS: [Key; MOST_BOOKMARKS] =
 fn bookmarks(now: &Availability) -> Vec<Command> {
     let go = |(index, key): (usize, Key)| {
         let text = format!("Goes to the view of bookmark {}.", index + 1);
-        let command = Command::new(CameraAction::Bookmark(index), format!("Bookmark {}", index + 1), text);
-        command.keys([alt(key)]).at(Place::Submenu(Submenu::Bookmarks))
+        let (keys, place) = (vec![alt(key)], Some(Place::Submenu(Submenu::Bookmarks)));
+        Command { keys, place, ..Command::new(CameraAction::Bookmark(index), format!("Bookmark {}", index + 1), text) }
     };
     BOOKMARK_KEYS.into_iter().enumerate().take(now.bookmarks).map(go).collect()
 }

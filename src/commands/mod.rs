@@ -14,6 +14,7 @@ use std::sync::LazyLock;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use geometry::choice::texts;
 use geometry::mesh::Shape;
 use geometry::names::every;
 use inspect::render::Standpoint;
@@ -191,27 +192,17 @@ pub enum Direction {
     Down,
 }
 
-/// A menu of the menu bar.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Menu {
-    File,
-    Edit,
-    View,
-    Help,
+texts! {
+    /// A menu of the menu bar.
+    pub enum Menu, fn name {
+        File => "File",
+        Edit => "Edit",
+        View => "View",
+        Help => "Help",
+    }
 }
 
 impl Menu {
-    pub const ALL: [Self; 4] = [Self::File, Self::Edit, Self::View, Self::Help];
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::File => "File",
-            Self::Edit => "Edit",
-            Self::View => "View",
-            Self::Help => "Help",
-        }
-    }
-
     /// The submenus of this menu, each with the number of its group.
     pub fn submenus(self) -> &'static [(u8, Submenu)] {
         match self {
@@ -222,24 +213,13 @@ impl Menu {
     }
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Submenu {
-    OpenRecent,
-    Shapes,
-    Bookmarks,
-    LookFrom,
-    FileCameras,
-}
-
-impl Submenu {
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::OpenRecent => "Open recent",
-            Self::Shapes => "Shapes",
-            Self::Bookmarks => "Bookmarks",
-            Self::LookFrom => "Look from",
-            Self::FileCameras => "Cameras of the file",
-        }
+texts! {
+    pub enum Submenu, fn name {
+        OpenRecent => "Open recent",
+        Shapes => "Shapes",
+        Bookmarks => "Bookmarks",
+        LookFrom => "Look from",
+        FileCameras => "Cameras of the file",
     }
 }
 
@@ -269,18 +249,6 @@ impl Command {
     fn new(action: impl Into<Action>, name: impl Into<Cow<'static, str>>, text: impl Into<Cow<'static, str>>) -> Self {
         let (action, name, text) = (action.into(), name.into(), text.into());
         Self { action, name, text, keys: Vec::new(), place: None, needs: &[] }
-    }
-
-    fn keys(self, keys: impl Into<Vec<KeyboardShortcut>>) -> Self {
-        Self { keys: keys.into(), ..self }
-    }
-
-    fn at(self, place: Place) -> Self {
-        Self { place: Some(place), ..self }
-    }
-
-    fn needs(self, needs: &'static [Need]) -> Self {
-        Self { needs, ..self }
     }
 
     /// Why it is not possible now, in a sentence; none if it is.
@@ -350,9 +318,7 @@ fn with_symbols(name: String) -> String {
 }
 
 pub fn all(now: &Availability) -> Vec<Command> {
-    let mut all = fixed::commands();
-    all.extend(generated::commands(now));
-    all
+    [fixed::commands(), generated::commands(now)].into_iter().flatten().collect()
 }
 
 /// The shortcut that closes the window, for a screen that has no other command.

@@ -84,6 +84,33 @@ macro_rules! choices {
 }
 pub use choices;
 
+/// Declares an enum each of whose values has a text, which the named function returns.
+#[macro_export]
+macro_rules! texts {
+    ($(#[$of_type:meta])* pub enum $type:ident, $(#[$of_function:meta])* fn $function:ident {
+        $($(#[$of_variant:meta])* $variant:ident => $text:expr,)+
+    }) => {
+        $(#[$of_type])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum $type {
+            $($(#[$of_variant])* $variant),+
+        }
+
+        impl $type {
+            /// All values, in the order of their declaration.
+            pub const ALL: [Self; [$(stringify!($variant)),+].len()] = [$(Self::$variant),+];
+
+            $(#[$of_function])*
+            pub const fn $function(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $text,)+
+                }
+            }
+        }
+    };
+}
+pub use texts;
+
 /// The descriptions of all values, in the order in which lists show them.
 pub fn descriptions<T: Choice>() -> Vec<Description> {
     T::ALL.iter().map(|value| value.description()).collect()

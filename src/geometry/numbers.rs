@@ -12,6 +12,14 @@ pub fn counted(number: u64, thing: &str) -> String {
     format!("{} {thing}{plural}", grouped(number))
 }
 
+/// Puts a number into a text, in which `#` stands for it. Of `[one|several]` the part stays that suits the number.
+pub fn numbered(number: u64, text: &str) -> String {
+    // Of three parts one is text for any number, one for 1 and one for others.
+    let left_out = if number == 1 { 2 } else { 1 };
+    let parts = text.split(['[', '|', ']']).enumerate().filter(|(index, _)| index % 3 != left_out);
+    parts.map(|(_, part)| part).collect::<String>().replace('#', &grouped(number))
+}
+
 /// Formats a number with commas between groups of three digits.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();
@@ -105,6 +113,14 @@ mod tests {
         assert_eq!([at(0), at(951_782_399)], ["1970-01-01 00:00 UTC", "2000-02-28 23:59 UTC"]);
         assert_eq!([at(951_782_400), at(951_868_800)], ["2000-02-29 00:00 UTC", "2000-03-01 00:00 UTC"]);
         assert_eq!([at(1_798_761_599), at(4_107_542_400)], ["2026-12-31 23:59 UTC", "2100-03-01 00:00 UTC"]);
+    }
+
+    #[test]
+    fn a_number_decides_the_words_around_it() {
+        let text = "# patch[ is|es are] far from [its|their] surface";
+        assert_eq!(numbered(1, text), "1 patch is far from its surface");
+        assert_eq!([0, 1000].map(|n| numbered(n, "take # byte[|s]")), ["take 0 bytes", "take 1,000 bytes"]);
+        assert_eq!([1, 2].map(|n| numbered(n, "# px show[s|]")), ["1 px shows", "2 px show"]);
     }
 
     #[test]

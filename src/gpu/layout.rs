@@ -127,8 +127,8 @@ pub struct HeightMap {
     pub size: [u32; 2],
     pub levels: u32,
     pub start: u32,
-    /// 1 if it repeats, 0 if the px at its border go on for ever.
-    pub repeats: u32,
+    /// What is beyond it, a [`Wrap`](geometry::mesh::Wrap): along u in the lowest two bits, along v in the next.
+    pub wrap: u32,
     /// 1 if it has a scale and a midlevel of its own, 0 if those of [`Params`] hold.
     pub has_amount: u32,
     pub scale: f32,

@@ -200,6 +200,11 @@ pub const PASSES: [&str; 13] = [
 /// Those of [`PASSES`] that draw what was emitted, or compute what an overlay shows; the others emit it.
 pub const DRAWING: [&str; 3] = ["least", "coverage", "draw"];
 
+/// The time of those passes together that draw, or of the others, in ms.
+pub fn ms_of(passes: &[PassTime], are_drawing: bool) -> f64 {
+    passes.iter().filter(|time| DRAWING.contains(&time.pass) == are_drawing).map(|time| time.ms).sum()
+}
+
 /// The profiler returns labels as owned text; this finds the static name again.
 fn pass_time(result: &GpuTimerQueryResult) -> Option<PassTime> {
     let pass = PASSES.into_iter().find(|pass| *pass == result.label)?;

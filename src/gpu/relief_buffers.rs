@@ -1,13 +1,14 @@
 //! What displacement needs in device memory: height images, and what patches share where they meet.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use super::buffer::{filled, filled_texture, uniform_buffer};
 use super::layout::{HeightMap, Share};
 use super::{Gpu, GpuError};
 use geometry::groups::in_groups;
-use geometry::mesh::{Dominance, Heights, MAX_MAPS, Mesh, Topology, patch_reliefs};
-
-/// Width in texels of the texture that holds all height images; `HEIGHTS_ACROSS` in `shaders/height_list.wgsl`.
-pub const HEIGHTS_ACROSS: u32 = 4096;
+use geometry::mesh::heights::{MOST_BYTES, bytes_of_maps};
+use geometry::mesh::{Dominance, HEIGHTS_ACROSS, Heights, MAX_MAPS, Mesh, Topology, patch_reliefs};
 
 /// A mesh's height images, all mip levels of all of them one after another in the rows of one texture.
 pub(crate) struct HeightImages {
@@ -23,41 +24,45 @@ impl HeightImages {
     }
 
     /// # Errors
-    /// They are larger than the adapter's textures.
+    /// They are larger than one texture.
     pub(crate) fn new(gpu: &Gpu, heights: &Heights) -> Result<Self, GpuError> {
-        let texels: u64 = heights.maps.iter().map(|map| map.heights.len() as u64).sum();
-        let rows = texels.div_ceil(u64::from(HEIGHTS_ACROSS)).max(1);
-        let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
-        if rows > limit {
-            let limit = 4 * limit * u64::from(HEIGHTS_ACROSS);
-            return Err(GpuError::TooLarge { what: "height images", bytes: 4 * texels, limit });
+        let bytes = bytes_of_maps(heights.maps.iter());
+        if bytes > MOST_BYTES {
+            return Err(GpuError::TooLarge { what: "height images", bytes, limit: MOST_BYTES });
         }
-        let rows = rows as u32;
+        let rows = bytes.div_ceil(4 * u64::from(HEIGHTS_ACROSS)).max(1) as u32;
         let mut all: Vec<f32> = Vec::with_capacity((rows * HEIGHTS_ACROSS) as usize);
-        heights.maps.iter().for_each(|map| all.extend_from_slice(&map.heights));
+        for (map, start) in heights.maps.iter().zip(starts(&heights.maps)) {
+            // Others are there already.
+            if start as usize == all.len() {
+                all.extend_from_slice(&map.heights);
+            }
+        }
         all.resize((rows * HEIGHTS_ACROSS) as usize, 0.0);
-        Ok(Self {
-            view: filled_texture(
-                gpu,
-                "heights",
-                [HEIGHTS_ACROSS, rows],
-                wgpu::TextureFormat::R32Float,
-                bytemuck::cast_slice(&all),
-            ),
-            bytes: 4 * all.len() as u64,
-        })
+        let (size, texels) = ([HEIGHTS_ACROSS, rows], bytemuck::cast_slice(&all));
+        let view = filled_texture(gpu, "heights", size, wgpu::TextureFormat::R32Float, texels);
+        Ok(Self { view, bytes: 4 * all.len() as u64 })
     }
+}
+
+/// Where the heights of each map begin in the texture. Maps that share heights begin at the same place.
+fn starts(maps: &[geometry::mesh::HeightMap]) -> impl Iterator<Item = u32> {
+    let (mut known, mut end) = (HashMap::new(), 0);
+    maps.iter().map(move |map| {
+        let start = *known.entry(Arc::as_ptr(&map.heights)).or_insert(end);
+        end = end.max(start + map.heights.len() as u32);
+        start
+    })
 }
 
 /// A [`HeightMap`] for each image.
 pub(crate) fn height_maps(gpu: &Gpu, heights: Option<&Heights>) -> wgpu::Buffer {
     let mut table = [HeightMap { size: [1, 1], levels: 1, ..bytemuck::Zeroable::zeroed() }; MAX_MAPS];
-    let mut start = 0;
-    for (entry, map) in table.iter_mut().zip(heights.iter().flat_map(|heights| &heights.maps)) {
+    let maps = heights.map(|heights| &heights.maps[..]).unwrap_or_default();
+    for ((entry, map), start) in table.iter_mut().zip(maps).zip(starts(maps)) {
         let (scale, midlevel) = map.amount.map_or((0.0, 0.0), |amount| (amount.scale, amount.midlevel));
-        let (repeats, has_amount) = (u32::from(map.repeats), u32::from(map.amount.is_some()));
-        *entry = HeightMap { size: map.size, levels: map.levels, start, repeats, has_amount, scale, midlevel };
-        start += map.heights.len() as u32;
+        let (wrap, has_amount) = (map.wrap[0] as u32 | (map.wrap[1] as u32) << 2, u32::from(map.amount.is_some()));
+        *entry = HeightMap { size: map.size, levels: map.levels, start, wrap, has_amount, scale, midlevel };
     }
     uniform_buffer(gpu, "height maps", bytemuck::cast_slice(&table))
 }

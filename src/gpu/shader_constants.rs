@@ -3,7 +3,7 @@
 use std::fmt::Debug;
 
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{EdgeKind, Look, Slot};
+use geometry::mesh::{EdgeKind, Look, Slot, Wrap};
 use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 
 /// All values of an enum, with their numbers.
@@ -19,7 +19,10 @@ pub fn enum_constants(file: &str) -> String {
         "convention" => constants("CONVENTION", numbered!(Convention)),
         "curvature" => constants("CURVATURE", numbered!(CurvatureKind)),
         "cull" => constants("CLIP", numbered!(Clip)),
-        "displace" => constants("DISPLACEMENT", numbered!(Displacement)),
+        "displace" => {
+            let wraps = [Wrap::Clamp, Wrap::Repeat, Wrap::Mirror].map(|value| (value, value as u32));
+            constants("DISPLACEMENT", numbered!(Displacement)) + &constants("WRAP", wraps)
+        }
         "draw_material" => constants("SLOT", numbered!(Slot)) + &images(),
         "draw_surface_color" => constants("EDGE", numbered!(EdgeKind)),
         "factors" => constants("PARTITIONING", numbered!(Partitioning)),

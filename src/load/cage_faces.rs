@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use glam::{DVec2, DVec4, Vec2, Vec3, swizzles::Vec4Swizzles};
 
-use super::import::{Import, Subdivision};
+use super::import::Subdivision;
 use super::recent_corners::NumberedCorner;
 use super::rig_builder::RigBuilder;
 use geometry::casts::to_u32;
@@ -12,7 +12,7 @@ use geometry::mesh::CornerDetail;
 use geometry::mesh::build_limits::{Budget, MAX_TRIANGLES, MemoryRefused};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::subdivision::{Cage, Refinement, Scheme, Size};
+use geometry::mesh::subdivision::{Cage, FaceVarying, Refinement, Scheme, Size};
 use geometry::progress::{Cancelled, Progress};
 
 /// Memory in bytes: of a corner of a cage with its point; of a refined point, and beside it while limits are computed; of a refined
@@ -23,6 +23,8 @@ const PER_POINT_MEANWHILE: u64 = 48;
 const PER_NORMAL: u64 = 12;
 const PER_UV: u64 = 64;
 const PER_DETAIL: u64 = 128;
+/// Of a distinct value while values at corners are smoothed.
+const PER_VALUE: u64 = 128;
 /// Of a refined point that a clip may move, with its joints and their weights.
 const PER_BINDING: u64 = 400;
 
@@ -35,10 +37,12 @@ pub(super) struct OfFace {
     pub is_hole: bool,
 }
 
-/// A cage whose points are the distinct positions of corners; or of corners' vertices, if clips move them apart.
+/// A cage whose points are the distinct positions of corners; or their vertices, where the format has such.
 #[derive(Default)]
 pub(super) struct CageFaces {
-    subdivision: Subdivision,
+    pub subdivision: Subdivision,
+    /// Whether vertices at one position are points of their own, as in modelling programs.
+    by_vertex: bool,
     /// Whether clips may move it.
     moves: bool,
     numbers: HashMap<([u32; 3], u32), u32>,
@@ -50,18 +54,23 @@ pub(super) struct CageFaces {
     creases: Vec<([u32; 2], f32)>,
     sharp_points: Vec<(u32, f32)>,
     holes: Vec<u32>,
-    /// Whether refined corners get the normals of the limit surface.
-    has_normals: bool,
+    /// How many creases and sharp points are where no face is.
+    lone_creases: usize,
     held: u64,
 }
 
 impl CageFaces {
-    pub(super) fn new(subdivision: Subdivision, import: &Import, moves: bool) -> Self {
-        Self { subdivision, moves, has_normals: !import.makes_normals(), starts: vec![0], ..Self::default() }
+    pub(super) fn new(subdivision: Subdivision) -> Self {
+        Self { subdivision, starts: vec![0], ..Self::default() }
     }
 
-    /// Adds a face of three or more corners. Loop's scheme gets its triangles. Returns how many faces have a point twice: these are left
-    /// out.
+    /// The same with vertices as points, which clips may move.
+    pub(super) fn of_vertices(self, moves: bool) -> Self {
+        Self { by_vertex: true, moves, ..self }
+    }
+
+    /// Adds a face of three or more corners. Schemes for triangles get its triangles. Returns how many faces have a point twice:
+    /// these are left out.
     ///
     /// # Errors
     /// [`MemoryRefused`].
@@ -75,7 +84,7 @@ impl CageFaces {
         let whole: Vec<usize> = (0..corners.len()).collect();
         let parts: Vec<&[usize]> = match self.subdivision.scheme {
             Scheme::CatmullClark => vec![&whole],
-            Scheme::Loop => triangles.iter().map(|triangle| &triangle[..]).collect(),
+            Scheme::Loop | Scheme::Butterfly => triangles.iter().map(|triangle| &triangle[..]).collect(),
         };
         let bytes = PER_CORNER * parts.iter().map(|part| part.len() as u64).sum::<u64>();
         budget.hold(bytes)?;
@@ -101,21 +110,23 @@ impl CageFaces {
         Ok(left_out)
     }
 
-    /// Makes the edge between two positions, with the vertices there, a crease.
-    pub(super) fn crease(&mut self, ends: [(Vec3, u32); 2], sharpness: f32) {
-        let ends = ends.map(|(position, vertex)| self.point(position, vertex));
-        self.creases.extend((ends[0] != ends[1]).then_some((ends, sharpness)));
+    /// Makes the edge between two positions, with the vertices there, a crease; or the point sharp, if they are the same vertex.
+    pub(super) fn sharpen(&mut self, ends: [(Vec3, u32); 2], sharpness: f32) {
+        let [(first, a), (second, b)] = ends;
+        match [self.key(first, a), self.key(second, b)].map(|key| self.numbers.get(&key).copied()) {
+            [Some(point), Some(_)] if a == b => self.sharp_points.push((point, sharpness)),
+            [Some(a), Some(b)] => self.creases.extend((a != b).then_some(([a, b], sharpness))),
+            [None, _] | [_, None] => self.lone_creases += 1,
+        }
     }
 
-    /// Makes a point sharp.
-    pub(super) fn sharpen(&mut self, (position, vertex): (Vec3, u32), sharpness: f32) {
-        let point = self.point(position, vertex);
-        self.sharp_points.push((point, sharpness));
+    fn key(&self, position: Vec3, vertex: u32) -> ([u32; 3], u32) {
+        let place = position.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
+        (place, if self.by_vertex { vertex } else { 0 })
     }
 
     fn point(&mut self, position: Vec3, vertex: u32) -> u32 {
-        let place = position.to_array().map(|coordinate| (coordinate + 0.0).to_bits());
-        *self.numbers.entry((place, if self.moves { vertex } else { 0 })).or_insert_with(|| {
+        *self.numbers.entry(self.key(position, vertex)).or_insert_with(|| {
             self.positions.push(position);
             to_u32(self.positions.len() - 1)
         })
@@ -123,7 +134,7 @@ impl CageFaces {
 
     /// Refines the cage, and gives the corners of each refined face to `add`, with points and normals of the limit surface. `details` are
     /// those that corners have by their numbers; what clips move is bound to `rig`. A cage that can't be refined stays as it is, and
-    /// the reason is returned.
+    /// the reason is returned; otherwise, how many creases and sharp points aren't in faces.
     ///
     /// # Errors
     /// Those of `add`, [`MemoryRefused`] and [`Cancelled`].
@@ -133,8 +144,8 @@ impl CageFaces {
         details: Option<&mut DetailTable>,
         rig: Option<&mut RigBuilder>,
         mut add: impl FnMut(&mut Vec<NumberedCorner>, OfFace) -> Result<(), E>,
-    ) -> Result<Option<String>, E> {
-        let Subdivision { scheme, levels, boundary } = self.subdivision;
+    ) -> Result<Result<usize, String>, E> {
+        let Subdivision { scheme, levels, boundary, face_varying } = self.subdivision;
         let cage = Cage {
             points: self.positions.len(),
             starts: &self.starts,
@@ -147,27 +158,33 @@ impl CageFaces {
         };
         let size = cage.size_at_most(levels);
         let memory = self.memory(size, details.is_some());
-        let most = if scheme == Scheme::Loop { MAX_TRIANGLES } else { MAX_TRIANGLES / 2 };
-        let meanwhile = memory.saturating_add(size.points.saturating_mul(PER_POINT_MEANWHILE));
+        let most = if scheme == Scheme::CatmullClark { MAX_TRIANGLES / 2 } else { MAX_TRIANGLES };
+        let mut meanwhile = memory.saturating_add(size.points.saturating_mul(PER_POINT_MEANWHILE));
+        if face_varying != FaceVarying::Linear && (details.is_some() || self.has_uvs()) {
+            // The values are the points of another cage.
+            let values = Cage { points: self.points.len(), ..cage }.size_at_most(levels);
+            let lists = values.bytes().saturating_mul(4) / 3;
+            meanwhile = meanwhile.saturating_add(lists).saturating_add(values.points.saturating_mul(PER_VALUE));
+        }
         let refinement = match budget.check(meanwhile).and_then(|()| budget.hold(memory)) {
             Ok(()) => Refinement::new(&cage, levels, most).map_err(|error| (error.to_string(), memory)),
             Err(refused) => Err((format!("refined, it {refused}"), 0)),
         };
-        let (why_not, held) = match refinement {
+        let (refined, held) = match refinement {
             Ok(refinement) => {
                 self.refined(&refinement, details, rig, (budget, progress), add)?;
-                (None, memory)
+                (Ok(refinement.lone_creases + self.lone_creases), memory)
             }
             Err((why_not, held)) => {
                 for (own, ends) in self.faces.iter().zip(self.starts.array_windows()).filter(|(own, _)| !own.is_hole) {
                     let [start, end] = ends.map(|end| end as usize);
                     add(&mut self.corners[start..end].to_vec(), *own)?;
                 }
-                (Some(why_not), held)
+                (Err(why_not), held)
             }
         };
         budget.release(self.held.saturating_add(held));
-        Ok(why_not)
+        Ok(refined)
     }
 
     /// How much memory refining takes at most, in bytes.
@@ -197,15 +214,16 @@ impl CageFaces {
         let refined = refinement.refine(&self.positions.iter().map(|position| position.as_dvec3()).collect::<Vec<_>>());
         let limit = refinement.limit(&refined);
         let (places, normals) = (limit.values(), limit.normals());
-        let at_corners = |has: bool, value: &dyn Fn(&NumberedCorner) -> DVec4| {
+        let at_corners = |has: bool, rule: FaceVarying, value: &dyn Fn(&NumberedCorner) -> DVec4| {
             let values: Vec<DVec4> = self.corners.iter().filter(|_| has).map(value).collect();
-            if has { refinement.refine_corners(&values) } else { values }
+            if has { refinement.refine_face_varying(&values, rule) } else { values }
         };
-        let uvs = at_corners(self.has_uvs(), &|at| at.corner.uv.as_dvec2().extend(0.0).extend(0.0));
+        let rule = self.subdivision.face_varying;
+        let uvs = at_corners(self.has_uvs(), rule, &|at| at.corner.uv.as_dvec2().extend(0.0).extend(0.0));
         let detail =
             |at: &NumberedCorner| details.as_ref().map_or_else(CornerDetail::default, |all| all.detail(at.number));
-        let colors = at_corners(details.is_some(), &|at| detail(at).color.as_dvec4());
-        let more_uvs = at_corners(details.is_some(), &|at| {
+        let colors = at_corners(details.is_some(), FaceVarying::Linear, &|at| detail(at).color.as_dvec4());
+        let more_uvs = at_corners(details.is_some(), rule, &|at| {
             let [a, b] = detail(at).uvs.map(Vec2::as_dvec2);
             DVec4::new(a.x, a.y, b.x, b.y)
         });
@@ -228,7 +246,7 @@ impl CageFaces {
                     None => binding,
                 };
                 let position = places[point].as_vec3();
-                let normal = Some(normals[k]).filter(|_| self.has_normals);
+                let normal = Some(normals[k]);
                 let uv = uvs.get(k).map_or(Vec2::ZERO, |uv| uv.xy().as_vec2());
                 corners.push(NumberedCorner { corner: InputCorner { position, normal, uv }, number, vertex: None });
             }

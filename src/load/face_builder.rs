@@ -8,7 +8,7 @@ use super::import::Import;
 use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::{Budget, edge_bytes};
 use super::model_file::ModelFile;
-use super::notes::{Notes, counts};
+use super::notes::{Notes, counted, counts};
 use super::parts::Parts;
 use super::read_error::{FilePosition, ReadError};
 pub(super) use super::recent_corners::NumberedCorner;
@@ -23,7 +23,7 @@ use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
 use geometry::mesh::mipmap::SRGB_TABLE;
 use geometry::mesh::polygon::{self, CutQuality, triangulate};
 use geometry::mesh::rig::LARGEST_COORDINATE;
-use geometry::mesh::{CornerDetail, Material, Slot};
+use geometry::mesh::{CornerDetail, Material, PartStyle, Slot};
 use geometry::progress::Progress;
 
 /// The greatest number of materials. A file with more is refused, since each takes memory and a draw call.
@@ -111,7 +111,7 @@ impl<'a> FaceBuilder<'a> {
             unplaced: (0, None),
             misnumbered: (0, None),
             cut: Vec::new(),
-            cage: import.subdivision().map(|own| CageFaces::new(own, &import, false)),
+            cage: import.subdivision().map(CageFaces::new),
             is_refined: None,
             is_hole: false,
         }
@@ -130,18 +130,24 @@ impl<'a> FaceBuilder<'a> {
     ) -> Result<(), ReadError> {
         let Some(cage) = self.cage.take() else { return Ok(()) };
         let mut own = self.colors.take();
-        let why_not = cage.refine(
+        let refined = cage.refine(
             (self.memory, progress),
             details.or(own.as_mut()),
             rig,
             |corners, OfFace { material, part, .. }| {
                 progress.check()?;
                 self.builder.enter_part(part);
+                if self.import.makes_normals_of(self.parts.style(part, self.builder.material_mut(material).style)) {
+                    corners.iter_mut().for_each(|at| at.corner.normal = None);
+                }
                 self.store(material, corners, false)
             },
         )?;
         self.colors = own;
-        self.is_refined = self.is_refined.map(|all| all && why_not.is_none()).or(Some(why_not.is_none()));
+        self.is_refined = Some(self.is_refined.unwrap_or(true) && refined.is_ok());
+        let lone_creases = *refined.as_ref().unwrap_or(&0);
+        self.notes.extend(counted([(lone_creases, "creases and sharp points that no face has, left out")]));
+        let why_not = refined.err();
         self.notes.extend(why_not.map(|why| format!("A subdivision surface is shown as its control cage: {why}.")));
         Ok(())
     }
@@ -165,12 +171,18 @@ impl<'a> FaceBuilder<'a> {
     ///
     /// # Errors
     /// [`ReadError::TooMany`].
-    pub(super) fn material(&mut self, material: Material) -> Result<usize, ReadError> {
+    pub(super) fn material(&mut self, mut material: Material) -> Result<usize, ReadError> {
         self.materials += 1;
         if self.materials > MAX_MATERIALS {
             return Err(ReadError::TooMany { limit: MAX_MATERIALS as u64, what: "materials" });
         }
+        self.parts.give_style(&mut material);
         Ok(self.builder.material(material))
+    }
+
+    /// What the next faces of a material have in place of what is said for all.
+    pub(super) fn style(&mut self, material: usize) -> PartStyle {
+        self.parts.style(self.parts.current(), self.builder.material_mut(material).style)
     }
 
     /// Returns how much more memory the mesh takes until it has its edges, in bytes, if no more faces are added.
@@ -232,9 +244,9 @@ impl<'a> FaceBuilder<'a> {
             self.unplaced.1.get_or_insert(place);
             return Ok(());
         }
-        let bad_uvs = self.found.bad_uvs;
+        let (bad_uvs, own) = (self.found.bad_uvs, self.style(material));
         for NumberedCorner { corner, .. } in corners.iter_mut() {
-            if self.import.makes_normals() {
+            if self.import.makes_normals_of(own) {
                 corner.normal = None;
             }
             if !corner.uv.is_finite() {
@@ -268,8 +280,8 @@ impl<'a> FaceBuilder<'a> {
         if is_left_out {
             return Ok(());
         }
-        // Repairs are counted again wherever their vertices are used.
-        self.store(material, corners, bad_uvs == self.found.bad_uvs)
+        // Repairs are counted again wherever their vertices are used, and other faces may have their vertices' own normals.
+        self.store(material, corners, bad_uvs == self.found.bad_uvs && own.normals.is_none())
     }
 
     /// Stores a face as triangles, if there is room for them.

@@ -1,6 +1,6 @@
-//! Reads FBX, binary and text: the polygons of all meshes that the file shows, in their rest pose, with materials, skins, blend
-//! shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres, unless another axis or unit was
-//! chosen: then its coordinates are taken as they are.
+//! Reads FBX, binary and text: the polygons of all meshes and NURBS surfaces that the file shows, in their rest pose, with
+//! materials, skins, blend shapes and animations. Axes are turned so that Y points up, and the file's unit becomes metres, unless
+//! another axis or unit was chosen: then its coordinates are taken as they are.
 //!
 //! FBX has no public specification. The library ufbx parses the file, with limits on its memory; what it returns is checked like
 //! the file itself, since its lists hold what the file says. It runs in this process, on a thread of its own, so that the stack is the
@@ -14,6 +14,7 @@ mod looks;
 mod materials;
 mod morphs;
 mod nodes;
+mod nurbs;
 mod parse;
 mod skin;
 mod smoothing;
@@ -30,6 +31,7 @@ use super::rig_builder::{RigBuilder, bones};
 use super::uri::Files;
 
 use nodes::Placed;
+use nurbs::Meshes;
 use surfaces::Surfaces;
 
 /// The stack of the thread that reads, in bytes. ufbx needs less than 128 KiB, since it hardly recurses; decoders of images, and
@@ -61,14 +63,15 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     drop(bytes);
     let mut notes = Notes::default();
     left_out::warn(&scene, &mut notes);
-    let mut placed = Placed::new(&scene, file, &budget, &mut notes)?;
+    let meshes = Meshes::new(&scene, &budget, progress, &mut notes)?;
+    let mut placed = Placed::new(&meshes, file, &budget, &mut notes)?;
     let clips = clips::read(&scene, &placed, &file.selected, &budget, &progress.part(0.3, 0.4), &mut notes)?;
     placed.grow(&clips);
     let mut warnings = Vec::new();
     let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);
     notes.extend(warnings);
     let files = Files::new(file.folder, &file.limits, &budget, progress);
-    let mut surfaces = Surfaces::new(&scene, &placed, file, &files, binder)?;
+    let mut surfaces = Surfaces::new(&meshes, &placed, file, &files, binder)?;
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.4 + 0.4 * i as f32 / placed.shown.len() as f32);
         surfaces.add(node, &file.selected, progress)?;
@@ -78,9 +81,10 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let (joints, own) = (nodes::joints(&scene, &placed.shown), &placed.scene);
     let bones = bones(joints, &own.order, &own.parents, &placed.global, binder.as_ref());
     faces.notes = notes;
-    budget.release(scene.metadata.result_memory_used as u64);
+    budget.release(scene.metadata.result_memory_used as u64 + meshes.memory);
     let morph_targets = morphs::file_weights(&scene);
     drop(placed);
+    drop(meshes);
     drop(scene);
     progress.set(0.8);
     let (mut loaded, numbers, mut notes) = faces.finish_numbered(file.name, holds, &progress.part(0.8, 1.0))?;

@@ -75,6 +75,7 @@ use accessor::Accessors;
 use buffers::Buffers;
 use extensions::InstancingExtension;
 use materials::Materials;
+use node_parts::NodeParts;
 use nodes::Placed;
 use primitive::PrimitiveReader;
 use scene_size::SceneNeeds;
@@ -118,7 +119,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let mut scene = Scene {
         document,
         global: grown.as_deref().unwrap_or(&placed.global),
-        parts: &parsed.parts.of_node,
+        parts: &parsed.parts,
         instances: &extensions.instances,
         accessors: &accessors,
         materials,
@@ -185,12 +186,11 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
 }
 
 /// The scene that is being read, and the mesh that is being built from it.
-struct Scene<'a> {
+struct Scene<'a, 'p> {
     document: &'a Document,
     /// The transform from each node's own space to the scene's, in which the meshes are built.
     global: &'a [DMat4],
-    /// The part of each node that has a mesh.
-    parts: &'a HashMap<usize, u32>,
+    parts: &'p NodeParts,
     /// By node, the instances of its mesh.
     instances: &'a HashMap<usize, InstancingExtension>,
     accessors: &'a Accessors<'a>,
@@ -203,7 +203,7 @@ struct Scene<'a> {
     details: Option<DetailTable>,
 }
 
-impl<'a> Scene<'a> {
+impl Scene<'_, '_> {
     /// Adds the triangles of a node's mesh, if it has one: once, or once for each of its instances.
     fn add(&mut self, node: usize, progress: &Progress) -> Result<(), GltfError> {
         let Some(node) = self.document.nodes().nth(node) else { return Ok(()) };
@@ -211,7 +211,7 @@ impl<'a> Scene<'a> {
         let _scope = Borrowed::from(self.accessors.budget);
         let skin = node.skin().map(|skin| skin::read(&skin, self.accessors)).transpose()?;
         let joints = skin.as_ref().map_or_else(Vec::new, |skin| skin.matrices(self.global));
-        self.builder.enter_part(self.parts.get(&node.index()).copied());
+        self.builder.enter_part(self.parts.of_node.get(&node.index()).copied());
         let mut own = self.instances.get(&node.index());
         if own.is_some() && skin.is_some() {
             // Vertices of a skin don't move with their node.
@@ -250,11 +250,15 @@ impl<'a> Scene<'a> {
                 continue;
             }
             let material = self.materials.resolve(&primitive.material(), scale, &mut self.builder);
+            let own = self.builder.material_mut(material.index);
+            self.parts.list.give_style(own);
+            let style = self.parts.list.style(self.parts.of_node.get(&node.index()).copied(), own.style);
             let pose = primitive::NodePose { global, instance, joints, weights: weights(node) };
             let job = primitive::Job {
                 mesh,
                 primitive: &primitive,
                 pose: &pose,
+                style,
                 material,
                 accessors: self.accessors,
                 builder: &mut self.builder,

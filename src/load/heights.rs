@@ -15,12 +15,12 @@ use super::memory_budget::Budget;
 use super::uri::Files;
 use super::warnings::untextured_warning;
 use geometry::mesh::build_limits::{MemoryRefused, borrowing};
-use geometry::mesh::heights::{HeightMap, Heights, MAX_MAPS, bytes_beside_maps};
-use geometry::mesh::{HeightAmount, Material, Mesh};
+use geometry::mesh::heights::{HeightMap, Heights, MAX_MAPS, MOST_BYTES, bytes_beside_maps, bytes_of_maps};
+use geometry::mesh::{HeightAmount, Material, Mesh, Wrap};
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
-use reading::{map_of_bytes, map_of_px, read_map};
+use reading::{ImageFile, map_of_px, read_map};
 
 /// Why heights could not be loaded.
 #[derive(Debug, thiserror::Error)]
@@ -38,8 +38,8 @@ pub enum HeightError {
     )]
     NoImage { name: String, why: String },
     /// The materials have more different images than can be used.
-    #[error("{name} has {count} images to displace by, but at most {MAX_MAPS} can be used; name one height image")]
-    TooMany { name: String, count: usize },
+    #[error("{name} has more than {MAX_MAPS} images to displace by, the most that are used; name one height image")]
+    TooMany { name: String },
     /// The materials' images would take too much memory together.
     #[error("the heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
     TooMuchOfMaterials { name: String, count: usize, reason: String },
@@ -73,15 +73,15 @@ pub enum HeightSource {
 }
 
 impl HeightSource {
-    /// Loads heights for a mesh, within the memory that a load may take. Sets `progress` from 0 to 1. `warnings` are
-    /// those of loading the mesh: if it has no image because a texture was left out, the error says why.
+    /// Loads heights for a mesh, within the memory that a load may take. Sets `progress` from 0 to 1. `warnings` are those of
+    /// loading the mesh: if it has no image because a texture was left out, the error says why. What is scaled down is added.
     ///
     /// # Errors
     /// [`HeightError`].
     pub fn load(
         &self,
         mesh: &Mesh,
-        warnings: &[String],
+        warnings: &mut Vec<String>,
         budget: &Budget,
         progress: &Progress,
     ) -> Result<Heights, HeightError> {
@@ -93,14 +93,13 @@ impl HeightSource {
             Self::Model | Self::Each(_) => of_model(self.images(), mesh, budget, &images)?,
         };
         let are_of_colors = own.iter().all(Option::is_none);
-        let own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
-        let too_much = |refused| too_much(mesh, own.iter().flatten().count(), refused);
+        let mut own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
+        let count = own.iter().flatten().count();
+        let too_much = |refused| too_much(mesh, count, refused);
+        warnings.extend(fit(mesh, &mut own, budget).map_err(too_much)?);
         budget.hold(bytes_beside_maps(mesh)).map_err(too_much)?;
         let heights = Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))?;
-        let count = heights.maps.len();
-        if count > MAX_MAPS {
-            return Err(HeightError::TooMany { name: mesh.name.clone(), count });
-        }
+        let heights = heights.ok_or_else(|| HeightError::TooMany { name: mesh.name.clone() })?;
         progress.set(1.0);
         Ok(Heights { are_of_colors, ..heights })
     }
@@ -172,15 +171,20 @@ fn of_model(
 ) -> Result<Vec<Option<HeightMap>>, HeightError> {
     let mut own: Vec<_> = mesh.materials.iter().map(|material| material.height.clone()).collect();
     let part = |index: usize| index as f32 / images.len() as f32;
+    let mut known: HashMap<&Path, HeightMap> = HashMap::new();
     for (index, NamedImage { material, path, amount }) in images.iter().enumerate() {
         if mesh.materials.iter().all(|known| known.name != *material) {
             let known: Vec<_> = mesh.materials.iter().map(|known| format!("\"{}\"", shown(&known.name))).collect();
             let (name, known) = (mesh.name.clone(), known.join(", "));
             return Err(HeightError::NoMaterial { name, material: shown(material), known });
         }
-        let map = read_map(path, budget, &progress.part(part(index), part(index + 1)))?.with_amount(*amount);
+        let map = match known.get(&**path) {
+            Some(map) => map.clone(),
+            None => read_map(path, budget, &progress.part(part(index), part(index + 1)))?,
+        };
         let users = mesh.materials.iter().zip(&mut own).filter(|(known, _)| known.name == *material);
-        users.for_each(|(_, own)| *own = Some(map.clone()));
+        users.for_each(|(_, own)| *own = Some(map.with_amount(*amount)));
+        known.insert(path, map);
     }
     Ok(own)
 }
@@ -200,8 +204,8 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         Self { files, known: HashMap::new(), reserved: 0, warnings: Vec::new() }
     }
 
-    /// Returns an image of a material. One that can't be read causes a warning, which names the first material that has it, and so does
-    /// one that is elsewhere than the texture coordinates that corners have themselves.
+    /// Returns an image of a material, with its amount and wrap. One that can't be read causes a warning, which names the first
+    /// material that has it, and so does one that is elsewhere than the texture coordinates that corners have themselves.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -209,13 +213,15 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
         &mut self,
         key: K,
         [image, material]: [&str; 2],
+        (amount, wrap): (Option<HeightAmount>, [Wrap; 2]),
         is_elsewhere: bool,
         bytes: impl FnOnce() -> Result<Cow<'b, [u8]>, String>,
     ) -> Result<Option<HeightMap>, Cancelled> {
         let Files { budget, progress, .. } = self.files;
         let decode = || {
             let bytes = bytes().map_err(|reason| HeightError::Image { path: image.into(), reason })?;
-            map_of_bytes(Path::new(image), &bytes, self.reserved, budget, &progress.quiet())
+            let (path, progress) = (Path::new(image), &progress.quiet());
+            ImageFile { path, reserved: self.reserved, budget, progress }.decode(&bytes)
         };
         let map = match self.known.get(&key) {
             Some(known) => known.clone(),
@@ -228,17 +234,36 @@ impl<'a, K: Eq + Hash> ModelImages<'a, K> {
                 Ok(map) => Some(map),
             },
         };
-        if is_elsewhere {
-            let said = "lies elsewhere than its base colour, whose texture coordinates are used";
-            self.warnings.push(format!("the height image of material \"{material}\" {said}."));
+        let said = "lies elsewhere than its base colour, whose texture coordinates are used";
+        let said = format!("the height image of material \"{material}\" {said}.");
+        if is_elsewhere && !self.warnings.contains(&said) {
+            self.warnings.push(said);
         }
         self.known.insert(key, map.clone());
-        Ok(map)
+        Ok(map.map(|map| map.with_wrap(wrap).with_amount(amount)))
     }
 }
 
 fn too_much(mesh: &Mesh, count: usize, refused: MemoryRefused) -> HeightError {
     HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason: refused.to_string() }
+}
+
+/// Halves the largest images until all fit one texture. Returns a sentence about each, and about each material that has it.
+fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], budget: &Budget) -> Result<Vec<String>, MemoryRefused> {
+    let mut said = Vec::new();
+    while bytes_of_maps(own.iter().flatten()) > MOST_BYTES {
+        let largest = own.iter().flatten().max_by_key(|map| map.heights.len());
+        let Some((heights, half)) = largest.and_then(|map| Some((map.heights.clone(), map.halved()?))) else { break };
+        budget.hold(bytes_of_maps(std::iter::once(&half)))?;
+        for (material, map) in mesh.materials.iter().zip(&mut *own) {
+            let Some(map) = map.as_mut().filter(|map| Arc::ptr_eq(&map.heights, &heights)) else { continue };
+            *map = half.with_amount(map.amount).with_wrap(map.wrap);
+            let ([width, height], name) = (half.size, shown(&material.name));
+            let scaled = format!("is scaled down to {width} x {height} px: all together don't fit one texture");
+            said.push(format!("the height image of material \"{name}\" {scaled}."));
+        }
+    }
+    Ok(said)
 }
 
 /// The brightness of every material's base colour image. Materials that share an image share its pixels.
@@ -256,6 +281,9 @@ fn of_colors(
         let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
     }
+    if count > MAX_MAPS {
+        return Err(HeightError::TooMany { name: mesh.name.clone() });
+    }
     let kept = textures.values().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
     budget.hold(kept).map_err(|refused| too_much(mesh, count, refused))?;
     let mut maps = HashMap::new();
@@ -263,7 +291,8 @@ fn of_colors(
         let progress = progress.part(index as f32 / count as f32, (index + 1) as f32 / count as f32);
         maps.insert(key, map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)?);
     }
-    Ok(mesh.materials.iter().map(|material| maps.get(&of(material)?.0).cloned()).collect())
+    let own = |material: &Material| Some(maps.get(&of(material)?.0)?.with_wrap(material.sampling.wrap));
+    Ok(mesh.materials.iter().map(own).collect())
 }
 
 #[cfg(test)]
@@ -275,7 +304,8 @@ mod tests {
     #[test]
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
-        let of_colors = |mesh: &Mesh| HeightSource::Materials.load(mesh, &[], &Budget::unlimited(), &Progress::new());
+        let of_colors =
+            |mesh: &Mesh| HeightSource::Materials.load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new());
         assert!(matches!(of_colors(&mesh), Err(HeightError::NoImage { .. })));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = geometry::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
@@ -297,7 +327,9 @@ mod tests {
         mesh.materials = vec![named("wall", Some(map.clone())), named("roof", None), named("door", None)];
         let of = |images: &[NamedImage], mesh: &Mesh| {
             let source = HeightSource::Each(images.to_vec());
-            source.load(mesh, &[], &Budget::unlimited(), &Progress::new()).map_err(|error| error.to_string())
+            source
+                .load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new())
+                .map_err(|error| error.to_string())
         };
         let heights = of(&[], &mesh).expect("an image");
         assert_eq!((heights.maps[0].amount, &heights.of_material[..]), (map.amount, &[Some(0), None, None][..]));
@@ -306,12 +338,75 @@ mod tests {
         let heights = of(&[image("roof")], &mesh).expect("two images");
         assert_eq!(heights.of_material, [Some(0), Some(1), None]);
         assert!(heights.follow_settings() && heights.maps[0].size == [2, 2] && !heights.are_of_colors);
+        let heights = of(&[image("roof"), image("door")], &mesh).expect("two images");
+        assert_eq!(heights.of_material, [Some(0), Some(1), Some(1)], "a file is read once");
         let heights = of(&[image("wall")], &mesh).expect("an image");
         assert_eq!((heights.of_material, heights.maps[0].amount), (vec![Some(0), None, None], None));
         let said = of(&[image("floor")], &mesh).expect_err("no such material");
         assert!(said.ends_with("has no material \"floor\" to displace; it has \"wall\", \"roof\", \"door\""), "{said}");
         mesh.materials[0].height = None;
         assert!(of(&[], &mesh).expect_err("no image").contains("no material has a base colour image"));
+    }
+
+    #[test]
+    fn images_that_exceed_one_texture_are_halved_and_named() {
+        let mut mesh = Shape::Torus.build();
+        let named = |name: &str| Material { name: name.to_owned(), ..mesh.materials[0].clone() };
+        mesh.materials = ["a", "b", "c", "d", "e"].map(named).to_vec();
+        let image = || {
+            let mut map = HeightMap::new([1, 1], vec![0.0]);
+            (map.size, map.levels) = ([4096; 2], 13);
+            map.heights = Arc::new(vec![0.0; (0..13).map(|level| (4096_usize >> level).pow(2)).sum()]);
+            map
+        };
+        let [a, b, c, d] = [image(), image(), image(), image()];
+        let amount = HeightAmount::from_factor(2.0, 0.0);
+        let e = a.with_amount(amount);
+        let mut own = [a, b, c, d, e].map(Some);
+        // Three fit.
+        let said = fit(&mesh, &mut own[..3], &Budget::unlimited()).expect("memory");
+        assert_eq!(said, [""; 0]);
+        let said = fit(&mesh, &mut own, &Budget::unlimited()).expect("memory");
+        let [a, b, c, d, e] = own.map(|map| map.expect("an image"));
+        let halved = [&a, &b, &c, &d, &e].map(|map| map.size == [2048; 2] && map.levels == 12);
+        assert_eq!(halved, [true, false, false, true, true], "the first image, which two materials have, and another");
+        assert!(Arc::ptr_eq(&a.heights, &e.heights) && e.amount == amount);
+        let start = |name: &str| format!("the height image of material \"{name}\" is scaled down to 2048 x 2048 px: ");
+        let are_named = said.iter().zip(["a", "e", "d"]).all(|(said, name)| said.starts_with(&start(name)));
+        assert!(said.len() == 3 && are_named, "{said:?}");
+        assert!(bytes_of_maps([a, b, c, d].iter()) <= MOST_BYTES);
+    }
+
+    #[test]
+    fn more_images_than_are_used_are_refused_before_anything_is_made_of_them() {
+        let mut mesh = Shape::Torus.build();
+        let textured = |_| {
+            let texture = Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
+            Material { texture: Some(texture), ..Material::plain("plain", [1.0; 4]) }
+        };
+        mesh.materials = (0..=MAX_MAPS).map(textured).collect();
+        let budget = Budget::unlimited();
+        let load = |source: HeightSource, mesh: &Mesh| source.load(mesh, &mut Vec::new(), &budget, &Progress::new());
+        assert!(matches!(load(HeightSource::Materials, &mesh), Err(HeightError::TooMany { .. })));
+        assert_eq!(budget.held(), 0);
+        for material in &mut mesh.materials {
+            material.height = Some(HeightMap::new([1, 1], vec![0.5]));
+        }
+        assert!(matches!(load(HeightSource::Model, &mesh), Err(HeightError::TooMany { .. })));
+        mesh.materials.pop();
+        assert_eq!(load(HeightSource::Model, &mesh).map(|heights| heights.maps.len()).ok(), Some(MAX_MAPS));
+    }
+
+    #[test]
+    fn base_colours_go_on_beyond_their_border_as_their_samplers_say() {
+        let mut mesh = Shape::Torus.build();
+        mesh.corners.iter_mut().for_each(|corner| corner.uv *= 2.0);
+        mesh.materials[0].texture = Some(Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] }));
+        for wrap in [[Wrap::Clamp, Wrap::Mirror], [Wrap::Repeat; 2]] {
+            mesh.materials[0].sampling.wrap = wrap;
+            let heights = HeightSource::Materials.load(&mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new());
+            assert_eq!(heights.expect("an image").maps[0].wrap, wrap);
+        }
     }
 
     #[test]
@@ -334,7 +429,7 @@ mod tests {
     fn a_file_that_is_not_an_image_is_refused() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
         let source = HeightSource::File(path.to_owned());
-        let error = source.load(&Mesh::default(), &[], &Budget::unlimited(), &Progress::new());
+        let error = source.load(&Mesh::default(), &mut Vec::new(), &Budget::unlimited(), &Progress::new());
         let error = error.expect_err("no image").to_string();
         assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
     }

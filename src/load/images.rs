@@ -1,6 +1,6 @@
 //! Decodes the images of textures, within the memory that a load may take.
 
-use std::io::Cursor;
+use std::io::{BufRead, Cursor, Seek};
 
 use image::{DynamicImage, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
 
@@ -20,7 +20,7 @@ const MAX_METADATA: u64 = 16 << 20;
 
 /// Borrows memory for the parts of a PNG image other than its pixels, and returns it as limits for the decoder. The
 /// colour profile isn't used, but may unpack to a thousand times its size.
-pub(super) fn metadata_limits(budget: &Budget) -> Limits {
+fn metadata_limits(budget: &Budget) -> Limits {
     let mut limits = Limits::default();
     let bytes = (budget.left() / 8).min(MAX_METADATA);
     // While a buffer grows, the old and the new one are both in memory.
@@ -36,7 +36,7 @@ pub(super) fn texture_size(bytes: &[u8]) -> Option<[u32; 2]> {
     }
     let size = match png_header(bytes) {
         Some((size, _)) => size,
-        None => reader(bytes).ok()?.into_dimensions().ok()?.into(),
+        None => decoder(Cursor::new(bytes), bytes, &Budget::unlimited()).ok()?.dimensions().into(),
     };
     check_size("", size).is_ok().then_some(size)
 }
@@ -70,13 +70,25 @@ pub(super) fn decoding_bytes(decoder: &impl ImageDecoder) -> u64 {
     decoder.total_bytes().saturating_add(decoded_bytes(decoder.dimensions().into()))
 }
 
-/// Prepares to decode an image of the format that its first bytes show.
-fn reader(bytes: &[u8]) -> std::io::Result<ImageReader<Cursor<&[u8]>>> {
-    let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format()?;
-    if reader.format().is_none() && may_be_tga(bytes) {
-        reader.set_format(ImageFormat::Tga);
+/// Whether the first bytes of a file are those of an image that is read.
+pub(super) fn is_image(start: &[u8]) -> bool {
+    image::guess_format(start).is_ok() || ktx2::is_ktx2(start) || may_be_tga(start)
+}
+
+/// Prepares to decode an image of the format that its first bytes show, all but KTX2: `source` reads `bytes`. What a PNG has
+/// beside its px is borrowed.
+pub(super) fn decoder<'a, R: BufRead + Seek + 'a>(
+    source: R,
+    bytes: &[u8],
+    budget: &Budget,
+) -> Result<impl ImageDecoder + use<'a, R>, ImageError> {
+    let mut reader = ImageReader::new(source).with_guessed_format()?;
+    match reader.format() {
+        Some(ImageFormat::Png) => reader.limits(metadata_limits(budget)),
+        None if may_be_tga(bytes) => reader.set_format(ImageFormat::Tga),
+        _ => {}
     }
-    Ok(reader)
+    reader.into_decoder()
 }
 
 /// Whether a header can be that of a TGA image, which has no signature: what it says of its colour map, of its kind, and of the bits of a
@@ -91,12 +103,8 @@ fn may_be_tga(bytes: &[u8]) -> bool {
 fn decode_file(bytes: &[u8], halvings: u32, filter: MipFilter, budget: &Budget) -> Result<Texture, String> {
     let undecoded = |error: ImageError| format!("its image can't be decoded: {error}");
     webp::check(bytes, budget.allowed())?;
-    let mut reader = reader(bytes).map_err(|error| error.to_string())?;
     let whole = Borrowed::from(budget);
-    if reader.format() == Some(ImageFormat::Png) {
-        reader.limits(metadata_limits(budget));
-    }
-    let mut decoder = reader.into_decoder().map_err(undecoded)?;
+    let mut decoder = decoder(Cursor::new(bytes), bytes, budget).map_err(undecoded)?;
     let size = decoder.dimensions().into();
     check_size("its image", size)?;
     let has_rows = png_header(bytes).is_some_and(|(_, is_interlaced)| !is_interlaced);

@@ -3,23 +3,10 @@
 use geometry::casts::to_byte;
 use geometry::choice::choices;
 use geometry::defaults::with_defaults;
-use geometry::mesh::normals::CREASE_ANGLE;
+use geometry::mesh::normals::{CREASE_ANGLE, NormalSource};
 use geometry::mesh::orientation::reorient;
-use geometry::mesh::subdivision::{Boundary, Scheme};
-use geometry::mesh::{Mesh, UpAxis};
-
-choices! {
-    /// Whose normals the corners of a mesh have.
-    #[derive(Default, Hash)]
-    pub enum NormalSource {
-        #[default]
-        File => "file", "Of the file",
-            "Corners have the normals of the file. Where it has none, or one without a direction, they are made.";
-        Made => "made", "Made anew",
-            "All normals are made from the triangles around each point, weighted by angle, as if the file had none. Its \
-             smoothing groups and tangents aren't used then.";
-    }
-}
+use geometry::mesh::subdivision::{Boundary, FaceVarying, Scheme};
+use geometry::mesh::{Mesh, PartStyle, UpAxis};
 
 choices! {
     /// Whether polygons are taken as the cage of a subdivision surface.
@@ -32,6 +19,7 @@ choices! {
         CatmullClark => "catmull-clark", "Catmull-Clark",
             "Polygons are the cage of a Catmull-Clark surface. Refined points and their normals are those of its limit.";
         Loop => "loop", "Loop", "Triangles are the cage of a Loop surface. Refined points and their normals are those of its limit.";
+        Butterfly => "butterfly", "Butterfly", "Triangles are the cage of a butterfly surface, which goes through their corners.";
     }
 }
 
@@ -45,6 +33,7 @@ pub(super) struct Subdivision {
     pub scheme: Scheme,
     pub levels: u8,
     pub boundary: Boundary,
+    pub face_varying: FaceVarying,
 }
 
 choices! {
@@ -115,6 +104,8 @@ with_defaults! {
         pub subdivide: Subdivide = Subdivide::File,
         /// How often cages are refined, a whole number up to [`MOST_LEVELS`]; none for as often as the file says, or else twice.
         pub levels: Option<f32> = None,
+        /// How texture coordinates of cages are refined; none for what the file says, or else linearly.
+        pub subdivide_uvs: Option<FaceVarying> = None,
     }
 }
 
@@ -123,10 +114,8 @@ const WHICH_ARE: &str = ", which are ";
 
 /// Whether a warning is that about normals that a file lacks.
 pub fn is_of_lacking_normals(warning: &str) -> bool {
-    let lacking = warning.split_once(WHICH_ARE);
-    lacking.is_some_and(|(what, shown)| {
-        what.contains("without normals") && (shown.starts_with("flat") || shown.starts_with("smoothed below"))
-    })
+    let are = |how: &str| warning.contains(&[WHICH_ARE, how].concat());
+    warning.contains("without normals") && (are("flat") || are("smoothed below"))
 }
 
 impl Import {
@@ -136,8 +125,10 @@ impl Import {
             Subdivide::File | Subdivide::Off => return None,
             Subdivide::CatmullClark => Scheme::CatmullClark,
             Subdivide::Loop => Scheme::Loop,
+            Subdivide::Butterfly => Scheme::Butterfly,
         };
-        Some(Subdivision { scheme, levels: self.levels_or(USUAL_LEVELS), ..Subdivision::default() })
+        let face_varying = self.subdivide_uvs.unwrap_or_default();
+        Some(Subdivision { scheme, levels: self.levels_or(USUAL_LEVELS), face_varying, ..Subdivision::default() })
     }
 
     /// Whether all polygons are refined, whatever the file says.
@@ -151,19 +142,9 @@ impl Import {
         self.levels.map_or(of_file, |levels| to_byte(levels.round())).min(MOST_LEVELS)
     }
 
-    /// Whether all normals are made.
-    pub(super) fn makes_normals(&self) -> bool {
-        self.normals == NormalSource::Made
-    }
-
-    /// Whether the mesh has another place than the file says.
-    pub fn moves(&self) -> bool {
-        self.up.is_some() || self.unit.is_some()
-    }
-
-    /// The same without axis and unit, which are those of one file.
-    pub fn without_placement(self) -> Self {
-        Self { up: None, unit: None, ..self }
+    /// Whether the normals are made of what has this style.
+    pub(super) fn makes_normals_of(self, own: PartStyle) -> bool {
+        own.normals.unwrap_or(self.normals) == NormalSource::Made
     }
 
     /// Axis and unit alone, as another file of the same scene takes them.
@@ -171,15 +152,10 @@ impl Import {
         Self { up: self.up, unit: self.unit, ..Self::default() }
     }
 
-    /// Says how normals are made, as the end of a sentence.
-    pub(super) fn smoothness(&self) -> String {
-        format!("smooth within {} degrees", self.crease_angle)
-    }
-
     /// The warning about `count` parts of a file that lack normals, with what these are and what becomes of them. Where all normals are
     /// made, none is missed.
     pub(super) fn lacking_normals(&self, count: usize, what: &str) -> (usize, String) {
-        let count = if self.makes_normals() { 0 } else { count };
+        let count = if self.normals == NormalSource::Made { 0 } else { count };
         let shown = match self.crease_angle {
             0.0 => "flat".to_owned(),
             angle => format!("smoothed below {angle} degrees"),

@@ -50,6 +50,7 @@ mod watched_bytes;
 mod webp;
 
 pub use crate::files::{FileError, Limits};
+pub use geometry::mesh::normals::NormalSource;
 pub use gltf::{GltfError, material_members};
 pub use heights::HeightError;
 pub use loaded_mesh::{Contents, LoadedMesh};
@@ -60,8 +61,7 @@ pub use uri::percent_decoded;
 
 pub use format::Format;
 pub use heights::HeightSource;
-pub use import::is_of_lacking_normals;
-pub use import::{FileUnit, Import, LengthUnit, NormalSource, UNIT_METRES};
+pub use import::{FileUnit, Import, LengthUnit, UNIT_METRES, is_of_lacking_normals};
 pub use memory_budget::Budget;
 pub use selection::{MorphWeights, ShownParts};
 pub use source::Source;

@@ -8,16 +8,14 @@ use super::content::{self, Content};
 use super::format::{Format, extension_of, known_extensions};
 use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
-use super::loaded_mesh::LoadedMesh;
+use super::loaded_mesh::{Contents, LoadedMesh};
 use super::model_file::ModelFile;
-use super::parts::{Part, ends};
 use super::read_error::ReadError;
-use super::selection::{Names, Selection, ShownParts, choice, is_material, is_part_of};
+use super::selection::{Names, Selection, ShownParts, choice, is_material};
 use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
 use crate::files::{FileError, Limits, Stamp, read_file};
-use geometry::mesh::PartStyle;
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
@@ -74,13 +72,6 @@ pub enum LoadError {
     /// The shape is made in code, where Y is up.
     #[error("{shape} is made in code with Y up, in metres: omit --up and --unit")]
     Shape { shape: String },
-    /// A style was given to a material.
-    #[error(
-        "{}: {} is a material, and only parts and groups have a surface or a detail of their own; name one of them with --part",
-        shown_path(path),
-        shown(name)
-    )]
-    StyledMaterial { path: PathBuf, name: String },
     /// The file doesn't have the "material variant", "scene", "part" or "morph target" of this name, but others. `none` is said
     /// if there are no others.
     #[error("{} has no {what} {}; {}", shown_path(path), shown(name), choice(known, none))]
@@ -126,7 +117,7 @@ pub const NOT_REFINED: &str = "Not all of it is refined as a subdivision surface
 /// Loads a mesh as [`load`] does, with the materials of a variant, or another scene than the default one.
 ///
 /// # Errors
-/// The same, [`LoadError::Absent`] and [`LoadError::StyledMaterial`].
+/// The same, and [`LoadError::Absent`].
 pub fn load_selected(
     path: &Path,
     selected: Selection,
@@ -148,17 +139,16 @@ pub fn load_selected(
         mesh.warnings.push(NOT_REFINED.to_owned());
     }
     before.check(path)?;
-    check_selected(path, selected, &mut mesh)?;
+    check_selected(path, selected, &mesh.contents)?;
     progress.set(1.0);
     Ok(mesh)
 }
 
-/// Checks that a mesh has the variant, scene, parts and morph targets that were named, and gives its parts their styles.
+/// Checks that a mesh has the variant, scene, parts and morph targets that were named.
 ///
 /// # Errors
-/// [`LoadError::Absent`] and [`LoadError::StyledMaterial`].
-pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &mut LoadedMesh) -> Result<(), LoadError> {
-    let known = &loaded.contents;
+/// [`LoadError::Absent`].
+pub(super) fn check_selected(path: &Path, selected: Selection, known: &Contents) -> Result<(), LoadError> {
     let absent = |what, name: &str, known, none| {
         Err(LoadError::Absent { path: path.to_owned(), what, name: name.to_owned(), known, none })
     };
@@ -169,9 +159,6 @@ pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &mut Load
         // The materials of parts that are left out aren't known.
         let is_cut = known.parts.iter().any(|part| part.is_hidden && !is_material(&part.name));
         let may_be = |name: &str| is_cut && is_material(name);
-        if let Some((name, _)) = styles.iter().find(|(name, _)| is_material(name)) {
-            return Err(LoadError::StyledMaterial { path: path.to_owned(), name: name.clone() });
-        }
         let named = || hidden.iter().chain(only).chain(styles.iter().map(|(name, _)| name));
         let names = Names::new(named());
         let meant: HashSet<&String> = known.parts.iter().flat_map(|part| names.meaning(&part.name)).collect();
@@ -182,18 +169,6 @@ pub(super) fn check_selected(path: &Path, selected: Selection, loaded: &mut Load
         if let Some(name) = morphs.keys().find(|name| !known.morph_targets.contains_key(*name)) {
             let known = known.morph_targets.keys().cloned().collect();
             return absent("morph target", name, known, "it has no morph targets, so omit --morph");
-        }
-        if !styles.is_empty() {
-            let style = |part: &Part| {
-                let mut own: Vec<_> = styles.iter().filter(|(name, _)| is_part_of(&part.name, name)).collect();
-                // A style of what lies in a group wins over that of the group, and the last one among equals.
-                own.sort_by_cached_key(|(name, _)| {
-                    let begins = ends(&part.name).position(|end| is_part_of(&part.name[..end], name));
-                    (begins, name.trim_start_matches('/').len())
-                });
-                own.into_iter().fold(PartStyle::default(), |others, (_, style)| style.or(others))
-            };
-            loaded.mesh.part_styles = known.parts.iter().map(style).collect();
         }
     }
     if let Some(variant) = selected.variant.filter(|variant| known.variants.iter().all(|known| known != variant)) {
@@ -465,38 +440,6 @@ mod tests {
         let said = message(path.to_str().expect("it is of letters"));
         assert!(said.contains("isn't a glTF file: it begins neither with \"glTF\" nor with a {;"), "{said}");
         assert!(loaded("empty.gltf", b"").unwrap_err().to_string().ends_with("is empty; export the model again"));
-    }
-
-    fn styled(styles: &[(&str, &str)]) -> Result<Vec<String>, LoadError> {
-        let part = |name: &str| Part { name: name.to_owned(), triangles: 1, is_hidden: false, level: 0 };
-        let mut mesh = LoadedMesh::default();
-        mesh.contents.parts = ["Car", "Car/Wheel", "Hat", "material:Red"].map(part).into();
-        let style = |(name, style): &(&str, &str)| ((*name).to_owned(), style.parse::<PartStyle>().expect("a style"));
-        let parts = ShownParts { styles: styles.iter().map(style).collect(), ..ShownParts::default() };
-        let selected = Selection { parts: Some(&parts), ..Selection::default() };
-        check_selected(Path::new("a.glb"), selected, &mut mesh)?;
-        Ok(mesh.mesh.part_styles.iter().map(ToString::to_string).collect())
-    }
-
-    #[test]
-    fn styles_of_what_lies_in_a_group_win_over_those_of_the_group_each_for_what_it_says() {
-        let own = |styles: &[(&str, &str)]| styled(styles).expect("known parts")[..3].join(" ");
-        let wheel = ("Wheel", "surface=flat");
-        for styles in [[wheel, ("Car", "detail=2,surface=pn")], [("Car", "detail=2,surface=pn"), wheel]] {
-            assert_eq!(own(&styles), "surface=pn,detail=2 surface=flat,detail=2 ");
-        }
-        assert_eq!(own(&[("Car", "detail=2"), ("/Car", "detail=4")]), "detail=4 detail=4 ", "the last");
-        assert_eq!(own(&[("Car/Wheel", "detail=2"), ("Wheel", "detail=4")]), " detail=2 ", "longer");
-        assert_eq!(own(&[("Car/.", "detail=2"), ("Car", "detail=4")]), "detail=2 detail=4 ");
-        assert_eq!(own(&[("Car/Wheel", "detail=1"), ("Car", "detail=4")]), "detail=4 detail=1 ", "1 is said too");
-    }
-
-    #[test]
-    fn a_style_of_a_material_is_refused_in_a_sentence() {
-        let said = styled(&[("material:Red", "detail=2")]).expect_err("a material").to_string();
-        assert!(said.starts_with("a.glb: material:Red is a material, and only parts"), "{said}");
-        let said = styled(&[("Hat", "detail=2"), ("Shoe", "detail=2")]).expect_err("none").to_string();
-        assert!(said.contains("has no part Shoe"), "{said}");
     }
 
     #[test]

@@ -14,6 +14,7 @@ mod materials;
 mod mtl;
 mod pieces;
 mod smoothing;
+mod tags;
 mod textures;
 mod vertices;
 
@@ -29,12 +30,14 @@ use super::read_error::{FilePosition, ReadError};
 use super::recent_corners::VertexNumbers;
 use super::text_lines::{Line, Lines, first_word, in_utf8};
 use super::uri::Files;
+use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::InputCorner;
 
 use faces::{FacePiece, Found, StatementCounts};
 use materials::Materials;
 use pieces::{Piece, in_pieces};
 use smoothing::Smoothing;
+use tags::Tags;
 use vertices::{VertexPiece, Vertices};
 
 /// Builds a mesh from a file's bytes.
@@ -54,29 +57,32 @@ fn gather<'a>(
     let (budget, progress) = (files.budget, files.progress);
     let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
-    let mut materials = Materials::new(files);
+    let mut tags = Tags::default();
+    let mut materials = Materials::default();
     let take = |more: VertexPiece| {
         above.push(vertices.counts());
         vertices.add(&more, budget)?;
-        more.libraries.iter().for_each(|names| materials.add_library(names));
+        more.libraries.iter().for_each(|names| materials.add_library(names, files));
+        more.tags.iter().try_for_each(|tag| tags.take(tag, budget))?;
         more.error.map_or(Ok(()), Err)
     };
     in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, budget, &progress.part(0.0, 0.25))?;
+    tags.holes.sort_unstable();
     let counts = vertices.counts();
     let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
     let held = budget.held();
     let mut smoothing = Smoothing::new(&vertices, budget);
-    let is_smoothed = vertices.is_smoothed && !faces.import.makes_normals();
-    if is_smoothed {
+    if vertices.is_smoothed {
         in_pieces(&pieces, parse, |made| smoothing.take(&made), budget, &progress.part(0.25, 0.3))?;
     }
     let of_smoothing = budget.held() - held;
     let mut reader = Reader {
         vertices: &vertices,
+        holes: &tags.holes,
         faces,
         materials,
         part: Default::default(),
-        smoothing: is_smoothed.then_some(smoothing),
+        smoothing: vertices.is_smoothed.then_some(smoothing),
         corners: Vec::new(),
         found: Counts::default(),
     };
@@ -90,7 +96,8 @@ fn gather<'a>(
     reader.smoothing = None;
     budget.release(of_smoothing);
     let Reader { mut faces, mut materials, found, .. } = reader;
-    materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
+    tags.apply(&mut faces, &vertices.positions, found.faces);
+    materials.read_images(&mut faces, files, bytes.len() as u64 + vertices.bytes())?;
     faces.notes.extend(materials.warnings());
     let lacking = faces.lacking_normals(found.without_normals, "faces without normals, or with some missing");
     faces.notes.extend(counted([lacking]));
@@ -207,8 +214,10 @@ impl Counts {
 /// Reads the faces of a file.
 struct Reader<'v, 'a> {
     vertices: &'v Vertices,
+    /// The faces that are holes of a subdivision surface.
+    holes: &'v [u32],
     faces: FaceBuilder<'a>,
-    materials: Materials<'a>,
+    materials: Materials,
     /// The names of the object and of the group that the next faces belong to.
     part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.
@@ -227,6 +236,7 @@ impl Reader<'_, '_> {
         for found in found {
             match found {
                 Found::Face { line, end } => {
+                    self.faces.is_hole = self.holes.binary_search(&to_u32(self.found.faces)).is_ok();
                     self.found.faces += 1;
                     self.add_face(&corners[start..end as usize], FilePosition::Line(line))?;
                     start = end as usize;
@@ -267,11 +277,14 @@ impl Reader<'_, '_> {
             let (corner, color) = corner_of(self.vertices, vertex);
             corners.push(NumberedCorner { corner, number: self.faces.number(color)?, vertex: Some(vertex) });
         }
-        if corners.iter().any(|at| at.corner.normal.is_none()) {
-            let smoothed = self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(numbers, &mut corners));
-            *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += 1;
-        }
         let material = self.materials.current(&mut self.faces)?;
+        let own = self.faces.style(material);
+        if !self.faces.import.makes_normals_of(own) && corners.iter().any(|at| at.corner.normal.is_none()) {
+            let smoothed = self.smoothing.as_ref().is_some_and(|smoothing| smoothing.complete(numbers, &mut corners));
+            // Where a crease angle was chosen, none is missed.
+            let counts = usize::from(smoothed || own.crease_angle.is_none());
+            *if smoothed { &mut self.found.smoothed } else { &mut self.found.without_normals } += counts;
+        }
         for at in &mut corners {
             let placed = self.materials.placed(material, at.corner.uv);
             // Another material may place them elsewhere.

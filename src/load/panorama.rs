@@ -43,14 +43,15 @@ impl Panorama {
     /// The panorama of so many pixels that shows this radiance from each direction.
     pub fn from_radiance(size: [u32; 2], radiance: impl Fn(Vec3) -> Vec3) -> Self {
         let [width, height] = size.map(|length| length.max(1) as usize);
-        let light = |x: usize, y: usize| {
-            let longitude = ((x as f32 + 0.5) / width as f32 - 0.5) * TAU;
-            let latitude = (0.5 - (y as f32 + 0.5) / height as f32) * PI;
-            let level = latitude.cos();
-            radiance(Vec3::new(longitude.sin() * level, latitude.sin(), -longitude.cos() * level))
-        };
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| light(x, y)).collect();
-        Self { width, height, pixels }
+        Self { width, height, pixels: directions(width, height).map(radiance).collect() }
+    }
+
+    /// The light of its pixels: unit direction, solid angle in sr, and linear RGB.
+    pub fn lights(&self) -> impl Iterator<Item = (Vec3, f32, Vec3)> {
+        let on_equator = 2.0 * (0.5 * PI / self.height as f32).sin() * TAU / self.width as f32;
+        let solid_angle = move |direction: Vec3| on_equator * direction.x.hypot(direction.z);
+        let lights = directions(self.width, self.height).zip(&self.pixels);
+        lights.map(move |(direction, &light)| (direction, solid_angle(direction), light))
     }
 
     /// Width and height in pixels.
@@ -71,14 +72,17 @@ impl Panorama {
         self
     }
 
-    /// The means of 2 x 2 pixels. An odd last row or column counts twice.
+    /// The means of 2 x 2 pixels, by their solid angles. An odd last row or column counts twice.
     fn halved(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let length = |row: usize| ((row.min(self.height - 1) as f32 + 0.5) / self.height as f32 * PI).sin();
+        let lower_part = |y: usize| length(2 * y + 1) / (length(2 * y) + length(2 * y + 1));
+        let lower_parts: Vec<f32> = (0..height).map(lower_part).collect();
         let mean = |x: usize, y: usize| {
-            // A quarter of each, since the sum of four may be beyond the largest number.
-            let quarters =
-                [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(right, down)| 0.25 * self.pixel(2 * x + right, 2 * y + down));
-            quarters.iter().sum::<Vec3>()
+            // A half of each, since their sum may be beyond the largest number.
+            let [upper, lower] =
+                [2 * y, 2 * y + 1].map(|row| 0.5 * self.pixel(2 * x, row) + 0.5 * self.pixel(2 * x + 1, row));
+            upper + (lower - upper) * lower_parts[y]
         };
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| mean(x, y)).collect();
         Self { width, height, pixels }
@@ -99,6 +103,17 @@ impl Panorama {
         let blend = |y| self.pixel(column(left), y).lerp(self.pixel(column(left + 1.0), y), across - left);
         blend(row(top)).lerp(blend(row(top + 1.0)), down - top)
     }
+}
+
+/// The directions of pixels, row by row from the top.
+fn directions(width: usize, height: usize) -> impl Iterator<Item = Vec3> {
+    (0..height).flat_map(move |y| {
+        let (up, level) = ((0.5 - (y as f32 + 0.5) / height as f32) * PI).sin_cos();
+        (0..width).map(move |x| {
+            let (right, front) = (((x as f32 + 0.5) / width as f32 - 0.5) * TAU).sin_cos();
+            Vec3::new(right * level, up, -front * level)
+        })
+    })
 }
 
 fn repair(value: &mut f32, repaired: &mut Repaired) {
@@ -137,6 +152,18 @@ mod tests {
                 assert!(found.distance(0.5 + 0.5 * direction.normalize()) < 0.03, "{direction}: {found}");
             }
         }
+    }
+
+    /// A sun near the zenith, where pixels of two rows differ most.
+    #[test]
+    fn lights_fill_the_sphere_and_a_smaller_copy_has_as_much_light() {
+        let sun = Vec3::new(0.05, 1.0, 0.02).normalize();
+        let whole = Panorama::from_radiance([512, 256], |direction| Vec3::splat((direction.dot(sun) > 0.9995).into()));
+        let sphere: f32 = whole.lights().map(|(_, solid_angle, _)| solid_angle).sum();
+        assert!((sphere / (4.0 * PI) - 1.0).abs() < 1e-3, "{sphere}");
+        let all = |panorama: &Panorama| panorama.lights().map(|(_, angle, light)| angle * light.x).sum::<f32>();
+        let [of_whole, of_reduced] = [all(&whole), all(&whole.clone().reduced(64))];
+        assert!(of_whole > 0.0 && (of_reduced / of_whole - 1.0).abs() < 1e-3, "{of_reduced} {of_whole}");
     }
 
     #[test]

@@ -9,10 +9,10 @@ use serde::Serialize;
 
 use super::memory_budget::Budget;
 use super::notes::{Notes, counted};
-use super::selection::{MATERIAL, Names, Selection, ShownParts, choice, hides, is_material};
+use super::selection::{MATERIAL, Names, Selection, ShownParts, choice, hides, is_material, is_part_of};
 use geometry::casts::to_u32;
 use geometry::mesh::mesh_builder::MeshBuilder;
-use geometry::mesh::{MemoryRefused, Mesh};
+use geometry::mesh::{Material, MemoryRefused, Mesh, PartStyle};
 
 /// The greatest number of parts. The triangles of others belong to none, and are always shown.
 const MAX_PARTS: usize = 1 << 16;
@@ -51,6 +51,8 @@ pub(super) struct Parts {
     selected: ShownParts,
     names: [Names; 2],
     found: Vec<Part>,
+    /// What each has in place of what is said for all; empty if styles weren't selected.
+    styles: Vec<PartStyle>,
     /// The numbers of parts by their paths: of materials, of others, and of what is known to be a further level of detail.
     numbers: [HashMap<Vec<u8>, usize>; 3],
     /// Whether the parts that are entered are materials.
@@ -95,6 +97,7 @@ impl Parts {
         if number == self.found.len() {
             let level = if level > 0 || is_material(&path) { level } else { self.named_level(&path) };
             let is_hidden = hides(&self.names, &path, level);
+            self.styles.extend((!self.selected.styles.is_empty()).then(|| self.style_at(&path)));
             self.found.push(Part { name: path, triangles: 0, is_hidden, level });
         }
         self.current = Some(number);
@@ -115,9 +118,34 @@ impl Parts {
         ends(path).find(is_further).unwrap_or(0)
     }
 
-    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones.
+    /// The style of a path. That of what lies in a group wins over that of the group, and the last one among equals.
+    fn style_at(&self, path: &str) -> PartStyle {
+        let mut own: Vec<_> = self.selected.styles.iter().filter(|(name, _)| is_part_of(path, name)).collect();
+        own.sort_by_cached_key(|(name, _)| {
+            let begins = ends(path).position(|end| is_part_of(&path[..end], name));
+            (begins, name.trim_start_matches('/').len())
+        });
+        own.into_iter().fold(PartStyle::default(), |others, (_, style)| style.or(others))
+    }
+
+    /// The style of faces of a part whose material has this one.
+    pub(super) fn style(&self, part: Option<u32>, of_material: PartStyle) -> PartStyle {
+        part.and_then(|part| self.styles.get(part as usize)).map_or(of_material, |own| own.or(of_material))
+    }
+
+    /// Gives a material its style.
+    pub(super) fn give_style(&self, material: &mut Material) {
+        let mut path = String::new();
+        join(&mut path, &[MATERIAL, &material.name].concat(), DEFAULT_PART);
+        material.style = self.style_at(&path);
+    }
+
+    /// Enters the materials as parts, if there are several or some are selected, and leaves out triangles of hidden ones. Gives
+    /// the builder the styles of the other parts.
     pub(super) fn enter_materials(&mut self, builder: &mut MeshBuilder, budget: &Budget) -> Result<(), MemoryRefused> {
-        let mut selected = self.selected.hidden.iter().chain(&self.selected.only);
+        builder.part_styles.clone_from(&self.styles);
+        let ShownParts { hidden, only, styles, morphs: _ } = &self.selected;
+        let mut selected = hidden.iter().chain(only).chain(styles.iter().map(|(name, _)| name));
         if builder.used_materials() < 2 && !selected.any(|name| is_material(name)) {
             return Ok(());
         }
@@ -155,6 +183,8 @@ impl Parts {
         });
         let places: Vec<u32> = places.collect();
         mesh.part_ranges.iter_mut().for_each(|range| range.part = places[range.part as usize]);
+        let styles = self.styles.into_iter().zip(&self.found).filter(|(_, part)| part.triangles > 0);
+        mesh.part_styles = styles.map(|(own, _)| own).collect();
         self.found.retain(|part| part.triangles > 0);
         let is_level = |part: &&Part| part.level > 0 && part.is_hidden && self.selected.only.is_empty();
         notes.extend(counted([
@@ -231,7 +261,6 @@ pub(super) fn ends(path: &str) -> impl Iterator<Item = usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::selection::is_part_of;
     use geometry::mesh::PartRange;
 
     fn entered(parts: &mut Parts, name: &str, triangles: usize) -> bool {
@@ -321,6 +350,64 @@ mod tests {
         assert_eq!(meant("Arm/Hand"), [false, false, true, false, false, false]);
         assert_eq!(meant("material:Arm"), [false, false, false, false, false, true]);
         assert_eq!(meant("arm"), [false; 6]);
+    }
+
+    fn parsed(styles: &[(&str, &str)]) -> ShownParts {
+        let style = |(name, style): &(&str, &str)| ((*name).to_owned(), style.parse().expect("a style"));
+        ShownParts { styles: styles.iter().map(style).collect(), ..ShownParts::default() }
+    }
+
+    /// The styles of three parts, in the order of the file, and of a material.
+    fn styled(styles: &[(&str, &str)]) -> (String, String) {
+        let shown = parsed(styles);
+        let mut parts = Parts::new(&Selection { parts: Some(&shown), ..Selection::default() });
+        for name in ["Car", "empty", "Car/Wheel", "Hat"] {
+            entered(&mut parts, name, usize::from(name != "empty"));
+        }
+        let mut red = Material::plain("Red", [1.0; 4]);
+        parts.give_style(&mut red);
+        let mut mesh = Mesh::default();
+        parts.finish(&mut mesh, &mut Notes::default());
+        (mesh.part_styles.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "), red.style.to_string())
+    }
+
+    #[test]
+    fn styles_of_what_lies_in_a_group_win_over_those_of_the_group_each_for_what_it_says() {
+        let own = |styles: &[(&str, &str)]| styled(styles).0;
+        let wheel = ("Wheel", "surface=flat,crease=30");
+        for styles in [[wheel, ("Car", "detail=2,surface=pn")], [("Car", "detail=2,surface=pn"), wheel]] {
+            assert_eq!(own(&styles), "surface=pn,detail=2 surface=flat,detail=2,crease=30 ");
+        }
+        assert_eq!(own(&[("Car", "detail=2"), ("/Car", "detail=4")]), "detail=4 detail=4 ", "the last");
+        assert_eq!(
+            own(&[("Car", "detail=2"), ("Car", "normals=made")]),
+            "detail=2,normals=made detail=2,normals=made "
+        );
+        assert_eq!(own(&[("Car/Wheel", "detail=2"), ("Wheel", "detail=4")]), " detail=2 ", "longer");
+        assert_eq!(own(&[("Car/.", "detail=2"), ("Car", "detail=4")]), "detail=2 detail=4 ");
+        assert_eq!(own(&[("Car/Wheel", "detail=1"), ("Car", "detail=4")]), "detail=4 detail=1 ", "1 is said too");
+        assert_eq!(own(&[("material:Red", "detail=2")]), "  ", "no part has one");
+        assert_eq!(own(&[]), "");
+    }
+
+    #[test]
+    fn materials_have_styles_where_their_parts_say_nothing() {
+        let red = ("material:Red", "surface=flat,normals=made");
+        assert_eq!(styled(&[red, ("Red", "detail=2")]).1, "surface=flat,normals=made");
+        let shown = parsed(&[red, ("Hat", "normals=file"), ("Car", "detail=2")]);
+        let mut parts = Parts::new(&Selection { parts: Some(&shown), ..Selection::default() });
+        let mut material = Material::plain("Red", [1.0; 4]);
+        parts.give_style(&mut material);
+        let style = |parts: &Parts| parts.style(parts.current(), material.style).to_string();
+        assert_eq!(style(&parts), "surface=flat,normals=made", "in no part");
+        for (name, expected) in [
+            ("Car", "surface=flat,detail=2,normals=made"),
+            ("Hat", "surface=flat,normals=file"),
+            ("Tie", "surface=flat,normals=made"),
+        ] {
+            entered(&mut parts, name, 1);
+            assert_eq!(style(&parts), expected, "{name}");
+        }
     }
 
     #[test]

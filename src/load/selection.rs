@@ -37,7 +37,7 @@ pub struct ShownParts {
     pub hidden: Vec<String>,
     /// The names of parts and groups that alone are read; all parts if there are none.
     pub only: Vec<String>,
-    /// What parts have in place of what the tessellation says for all, by their names.
+    /// What parts, groups and materials have in place of what is said for all, by their names.
     pub styles: Vec<(String, PartStyle)>,
     /// The weights of morph targets that take the place of the file's at rest, and in clips that don't move them.
     pub morphs: MorphWeights,
@@ -49,10 +49,15 @@ impl ShownParts {
         (self.hidden, self.only) = (Vec::new(), names);
     }
 
-    /// What a part has in place of what the tessellation says for all.
+    /// What a part has in place of what is said for all.
     pub fn style(&self, name: &str) -> PartStyle {
         let own = self.styles.iter().filter(|(other, _)| other == name);
         own.fold(PartStyle::default(), |others, (_, style)| style.or(others))
+    }
+
+    /// What parts have in place of what is said for all, as the command line has it.
+    pub fn style_texts(&self) -> impl Iterator<Item = String> {
+        self.styles.iter().map(|(name, style)| format!("{name}:{style}"))
     }
 
     /// Whether a part has a surface of its own that is Phong's, which has a strength.

@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::format::Format;
-use super::import::{Import, NormalSource};
+use super::import::Import;
 use super::loaded_mesh::LoadedMesh;
 use super::mesh_file::{LoadError, check_selected, load_selected, read};
 use super::selection::Selection;
 use crate::files::Limits;
 use geometry::mesh::Mesh;
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::normals::NormalSource;
 use geometry::mesh::shapes::{MAX_LEVEL, Shape, ShapeError};
 use geometry::progress::{Cancelled, Progress};
 
@@ -53,17 +54,13 @@ impl Source {
         limits: &Limits,
         progress: &Progress,
     ) -> Result<LoadedMesh, LoadError> {
-        let mut loaded = match self {
+        let loaded = match self {
             Self::Shape(shape) => self.made(shape.build(), selected.import, progress),
             Self::FineShape(shape, level) => self.made(shape.build_at(*level), selected.import, progress),
-            Self::Vase => {
-                let bytes = assets::VASE.to_vec();
-                let selected = Selection { import: selected.import, ..Selection::default() };
-                read(Format::Gltf, bytes, Path::new("vase.glb"), selected, limits, progress)
-            }
+            Self::Vase => read(Format::Gltf, assets::VASE.to_vec(), Path::new("vase.glb"), selected, limits, progress),
             Self::File(path) => return load_selected(path, selected, limits, progress),
         }?;
-        check_selected(self.to_string().as_ref(), selected, &mut loaded)?;
+        check_selected(self.to_string().as_ref(), selected, &loaded.contents)?;
         Ok(loaded)
     }
 
@@ -72,7 +69,7 @@ impl Source {
     /// # Errors
     /// [`LoadError::Shape`] if another place was asked for, since its exact surface doesn't move, and [`LoadError::Cancelled`].
     fn made(&self, mesh: Mesh, import: Import, progress: &Progress) -> Result<LoadedMesh, LoadError> {
-        if import.moves() {
+        if import.up.is_some() || import.unit.is_some() {
             return Err(LoadError::Shape { shape: self.to_string() });
         }
         let mesh =

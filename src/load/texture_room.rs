@@ -93,8 +93,10 @@ impl TextureRoom {
 
     /// Halves the largest of these sizes, in px, until all textures fit, the first of several of one size first.
     fn scalings(&self, sizes: &[[u32; 2]]) -> Vec<Scaling> {
-        let mut halvings: Vec<u32> = sizes.iter().map(|size| within_most_side(*size)).collect();
-        let too_wide = halvings.clone();
+        let fits = |size: &[u32; 2], halvings: u32| level_size(*size, halvings).iter().all(|side| *side <= MOST_SIDE);
+        let within = |size: &[u32; 2]| (0..u32::BITS).find(|halvings| fits(size, *halvings)).unwrap_or(0);
+        let too_wide: Vec<u32> = sizes.iter().map(within).collect();
+        let mut halvings = too_wide.clone();
         let [mut host, mut device] = [0_u64; 2];
         for (size, halvings) in sizes.iter().zip(&halvings) {
             host += decoded_bytes(level_size(*size, *halvings));
@@ -102,7 +104,7 @@ impl TextureRoom {
         }
         let reason = self.refused(host, device);
         let largest =
-            |(index, size): (usize, &[u32; 2])| (pixels(level_size(*size, too_wide[index])), usize::MAX - index);
+            |(index, size): (usize, &[u32; 2])| (decoded_bytes(level_size(*size, too_wide[index])), usize::MAX - index);
         let mut largest: BinaryHeap<_> = sizes.iter().enumerate().map(largest).collect();
         while host > self.host || device > self.device {
             let Some((_, inverse)) = largest.pop() else { break };
@@ -115,7 +117,7 @@ impl TextureRoom {
             halvings[index] += 1;
             host = host - decoded_bytes(before) + decoded_bytes(after);
             device = device - device_bytes(before) + device_bytes(after);
-            largest.push((pixels(after), inverse));
+            largest.push((decoded_bytes(after), inverse));
         }
         let scaling = |(halvings, too_wide): (u32, u32)| match (halvings, &reason) {
             (0, _) => Scaling::default(),
@@ -135,16 +137,6 @@ impl TextureRoom {
         let refused = MemoryRefused { needed: device, allowed };
         (device > allowed).then(|| format!("on the graphics card, all textures with their mip levels {refused}"))
     }
-}
-
-/// How often a texture of a size in px is halved, so that no side has more than [`MOST_SIDE`] px.
-fn within_most_side(size: [u32; 2]) -> u32 {
-    let fits = |halvings: &u32| level_size(size, *halvings).iter().all(|side| *side <= MOST_SIDE);
-    (0..u32::BITS).find(fits).unwrap_or(0)
-}
-
-fn pixels([width, height]: [u32; 2]) -> u64 {
-    u64::from(width) * u64::from(height)
 }
 
 /// The size of a texture with all its mip levels, in bytes.

@@ -8,7 +8,8 @@ use geometry::mesh::{Heights, Mesh, Repairs};
 /// Returns warnings about corners that were repaired. Normals that were missing don't cause one here, since files may
 /// leave them out on purpose.
 pub(super) fn repair_warnings(repairs: &Repairs, import: &Import) -> Vec<String> {
-    let replaced = format!("normals without a direction, replaced by ones that are {}", import.smoothness());
+    let within = import.crease_angle;
+    let replaced = format!("normals without a direction, replaced by ones that are smooth within {within} degrees");
     let sentences = [
         (repairs.normals_replaced, replaced.as_str()),
         (repairs.normals_rescaled, "normals whose length wasn't 1, scaled to it"),
@@ -35,15 +36,12 @@ pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
 /// Returns a warning about triangles whose corners all have the same texture coordinates: displacement moves such a
 /// triangle as a whole.
 pub(super) fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
-    let mut count = 0;
-    for (material, _) in mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some()) {
-        let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
-        let is_point = |triangle: &&[u32; 3]| {
-            let [a, b, c] = triangle.map(|corner| mesh.corners[corner as usize].uv);
-            a == b && b == c
-        };
-        count += triangles.iter().filter(is_point).count();
-    }
+    let displaced = mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some());
+    let is_point = |triangle: &u32| {
+        let [a, b, c] = mesh.triangles[*triangle as usize].map(|corner| mesh.corners[corner as usize].uv);
+        a == b && b == c
+    };
+    let count = displaced.flat_map(|(material, _)| material.triangles.clone()).filter(is_point).count();
     (count > 0).then(|| format!("triangles without texture coordinates, which heights move as a whole: {count}."))
 }
 

@@ -33,6 +33,46 @@ fn stats_of_a_pose_name_it_and_count_no_cracks() {
 }
 
 #[test]
+fn the_left_half_of_a_split_may_have_a_pose_of_its_own() {
+    let folder = Folder::new();
+    let (file, out) = (file(&folder), folder.path("picture.png"));
+    let draw = |options: &[&str]| {
+        let view = ["--camera", "30,20,3", "--target", "0,0,0", "--size", "160x120", "--factor", "3", "-o", &*out];
+        output(&[&["render", &*file], &view[..], options].concat());
+        image::open(&out).expect("a picture").to_rgba8()
+    };
+    let [early, late] = ["0.2", "0.6"].map(|time| ["--animation", "All", "--time", time]);
+    let split = [&late[..], &["--split", "0.5", "--split-left", "pn-aen"]].concat();
+    let [left, right] = [draw(&early), draw(&late)];
+    let both = draw(&[&split[..], &["--split-time", "0.2"]].concat());
+    assert!(left != right);
+    // But for the last column: the software driver lets a sample of the right half in there.
+    for (x, y, pixel) in both.enumerate_pixels().filter(|(x, ..)| *x != 79) {
+        let expected = if x < 80 { left.get_pixel(x, y) } else { right.get_pixel(x, y) };
+        assert_eq!(pixel, expected, "{x}, {y}");
+    }
+    let same = draw(&split);
+    assert!(same != both && same == draw(&[&split[..], &["--split-time", "0.6"]].concat()));
+    let stats = |own: &[&str]| crate::stats(&[&[&*file], &split[..], own].concat());
+    let other = stats(&["--split-animation", "Bend", "--split-time", "0.5"]);
+    assert_eq!(other["animation"], json!({ "name": "All", "time": 0.6 }));
+    assert_eq!(other["left"]["animation"], json!({ "name": "Bend", "time": 0.5 }));
+    assert_eq!(stats(&[])["left"]["animation"], json!({ "name": "All", "time": 0.6 }), "without options the same");
+    assert!(stats(&["--split-animation", "rest"])["left"]["animation"].is_null());
+    let command = |mesh: &'static str, own: &[&'static str]| [&["render", mesh, "-o", "a.png"], own].concat();
+    let own = ["--split", "0.5", "--split-animation", "Bend"];
+    sentence(&command("shape:torus", &own), &["has no animation \"Bend\"", "it has none"]);
+    let unknown = ["render", &*file, "-o", &*out, "--split", "0.5", "--split-animation", "Walk"];
+    sentence(&unknown, &["has no animation \"Walk\"", "Bend, Swell, Fly, All"]);
+    for bad in ["nan", "-1", "soon"] {
+        failure(&command("shape:torus", &[&own[..], &["--split-time", bad]].concat()), 2);
+    }
+    let said = failure(&command("shape:torus", &["--split", "0.5", "--split-time", "1"]), 2);
+    assert!(said.contains("--split-time needs --split-animation"), "{said}");
+    assert!(failure(&command("shape:torus", &own[2..]), 2).contains("--split"));
+}
+
+#[test]
 fn both_devices_write_the_pose() {
     let folder = Folder::new();
     let file = file(&folder);
@@ -196,7 +236,16 @@ fn bones_are_drawn_over_a_skin_and_change_no_picture_without_one() {
         assert!((50..5000).contains(&changed), "{changed} px");
         assert!(!errors.contains("bones"), "{errors}");
     }
-    let [(plain, _), (with, errors)] = [picture("shape:torus", &[]), picture("shape:torus", &bones)];
-    assert_eq!(plain, with);
-    assert!(errors.contains("--overlay bones has no effect: no skin moves the mesh"), "{errors}");
+    let (split, left_bones) = (["--split", "0.9"], ["--split", "0.9", "--split-looks", "bones"]);
+    let [(plain, _), (left, _)] = [picture(&file, &split), picture(&file, &left_bones)];
+    let changed = plain.enumerate_pixels().filter(|(x, y, own)| *own != left.get_pixel(*x, *y));
+    let columns: Vec<u32> = changed.map(|(x, ..)| x).collect();
+    // The left half ends with column 143.
+    assert!(columns.len() > 50 && columns.iter().all(|x| *x < 144), "{columns:?}");
+    for own in [&bones[..], &left_bones] {
+        let without = &own[..own.len() - 2];
+        let [(plain, _), (with, errors)] = [picture("shape:torus", without), picture("shape:torus", own)];
+        assert_eq!(plain, with);
+        assert!(errors.contains("--overlay bones has no effect: no skin moves the mesh"), "{errors}");
+    }
 }

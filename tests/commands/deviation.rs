@@ -162,9 +162,49 @@ fn either_half_of_a_split_is_what_its_options_draw_alone() {
     }
     let refused = ["render", "shape:torus", "-o", "a.png", "--split", "0.5", "--split-left"];
     for (left, said) in
-        [("nowhere", "expected flat, pn"), ("pn,lod=none", "as lod"), ("pn,size=1", "expected a surface")]
+        [("nowhere", "expected flat, pn"), ("pn,lod=none", "as lod"), ("pn,size=1", "expected a value of surface")]
     {
         assert!(failure(&[&refused[..], &[left]].concat(), 2).contains(said), "{left}");
+    }
+}
+
+#[test]
+fn the_left_half_of_a_split_may_look_otherwise() {
+    let folder = Folder::new();
+    let draw = |options: &[&str]| {
+        let path = folder.path("picture.png");
+        let usual = ["render", "shape:cube-smooth", "--factor", "5", "--size", "160x120", "-o", &*path];
+        output(&[&usual[..], options].concat());
+        image::open(&path).expect("a picture").to_rgba8()
+    };
+    let split = ["--overlay", "wireframe", "--split", "0.5", "--split-left", "pn-aen"];
+    let (right, same) = (draw(&split[..2]), draw(&split));
+    let alone: [(&str, &[&str]); 4] = [
+        ("zebra,wireframe,zebra-stripes=40", &["--overlay", "zebra,wireframe", "--zebra-stripes", "40"]),
+        ("factors,grid", &["--overlay", "factors,grid"]),
+        ("overlay=", &[]),
+        ("overlay=,lighting=camera", &["--lighting", "camera"]),
+    ];
+    for (looks, alone) in alone {
+        let (both, left) = (draw(&[&split[..], &["--split-looks", looks]].concat()), draw(alone));
+        assert!(both != same, "{looks}");
+        // But for the last column: the software driver lets a sample of the right half in there.
+        for (x, y, pixel) in both.enumerate_pixels().filter(|(x, ..)| *x != 79) {
+            let expected = if x < 80 { left.get_pixel(x, y) } else { right.get_pixel(x, y) };
+            assert_eq!(pixel, expected, "{looks}: {x}, {y}");
+        }
+    }
+    assert_eq!(same, draw(&[&split[..], &["--split-looks", "wireframe"]].concat()));
+    let difference = [&split[..], &["--split-view", "difference"]].concat();
+    assert!(draw(&difference) != draw(&[&difference[..], &["--split-looks", "clay"]].concat()));
+    let refused = ["render", "shape:torus", "-o", "a.png", "--split", "0.5", "--split-looks"];
+    for (looks, said) in [
+        ("odd", "expected wireframe, patches"),
+        ("zebra,clay", "each of these colours the whole surface"),
+        ("zebra,size=1", "expected a value of overlay"),
+        ("", "expected a value of overlay"),
+    ] {
+        assert!(failure(&[&refused[..], &[looks]].concat(), 2).contains(said), "{looks}");
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::io::Write;
 use std::process::Stdio;
 
-use crate::{Folder, command, failure, output, sentence};
+use crate::{Folder, assert_says, command, failure, output, sentence};
 
 #[test]
 fn both_devices_print_the_same_domain() {
@@ -135,4 +135,63 @@ fn each_kind_takes_its_own_number_of_factors() {
         let said = failure(&[&isolines[..], options].concat(), 2);
         assert!(said.contains("quads and isolines"), "{said}");
     }
+}
+
+#[test]
+fn a_pattern_of_each_kind_is_drawn_with_its_factors() {
+    let folder = Folder::new();
+    let file = folder.path("pattern.svg");
+    for (kind, factors, [points, joined], texts) in [
+        ("tri", "1,2.5,1,2", [6, 5], &["u = 0: 1<", "v = 0: 2.5<", "w = 0: 1<", "inside: 2<"][..]),
+        ("quad", "1,1,1,1,1,2", [5, 4], &["u = 0: 1<", "v = 1: 1<", "inside along u: 1<", "inside along v: 2<"][..]),
+        ("isoline", "2,3", [8, 6], &["u = 0, isolines: 2<", "v = 0, segments: 3<"][..]),
+        ("tri", "nan,1,1,1", [0, 0], &["u = 0: NaN<"][..]),
+    ] {
+        let pattern = ["domain", "--kind", kind, "--partitioning", "integer", "--factors", factors, "-o", &file];
+        let device = if kind == "tri" { &["--device", "cpu"][..] } else { &[] };
+        assert_eq!(output(&[&pattern[..], device].concat()), "", "the picture takes the numbers' place");
+        let drawn = std::fs::read_to_string(&file).expect("a picture");
+        let of = |element: &str| drawn.matches(element).count();
+        assert_eq!([of("<circle "), of("<polygon ")], [points, joined], "{kind} {factors}");
+        assert!(drawn.starts_with("<svg ") && drawn.ends_with("</svg>\n"), "{drawn}");
+        assert_says(&drawn, texts);
+    }
+}
+
+#[test]
+fn a_triangle_is_drawn_with_equal_sides_and_a_quad_as_a_square() {
+    let folder = Folder::new();
+    let file = folder.path("pattern.svg");
+    for (kind, factors, sides) in [("tri", "1,1,1,1", [480.0; 3]), ("quad", "1,1,1,1,1,1", [480.0, 480.0, 678.8])] {
+        let pattern = ["domain", "--kind", kind, "--partitioning", "integer", "--factors", factors, "-o", &file];
+        let device = if kind == "tri" { &["--device", "cpu"][..] } else { &[] };
+        output(&[&pattern[..], device].concat());
+        let drawn = std::fs::read_to_string(&file).expect("a picture");
+        let (_, rest) = drawn.split_once("<polygon points=\"").expect("a triangle");
+        let (corners, _) = rest.split_once('"').expect("its end");
+        let corner = |text: &str| {
+            let (x, y) = text.split_once(',').expect("two numbers");
+            [x, y].map(|number| number.parse::<f64>().expect("a number"))
+        };
+        let corners: Vec<_> = corners.split(' ').map(corner).collect();
+        let side = |i: usize, k: usize| (corners[i][0] - corners[k][0]).hypot(corners[i][1] - corners[k][1]);
+        let mut drawn = [side(0, 1), side(1, 2), side(2, 0)];
+        drawn.sort_by(f64::total_cmp);
+        assert!(drawn.iter().zip(sides).all(|(drawn, side)| (drawn - side).abs() < 0.1), "{kind}: {drawn:?}");
+    }
+}
+
+#[test]
+fn a_diagram_that_cannot_be_written_says_why() {
+    let folder = Folder::new();
+    let pattern = ["domain", "--kind", "quad", "--partitioning", "integer"];
+    let factors = ["--factors", "1,1,1,1,1,2"];
+    let said = failure(&[&pattern[..], &factors, &["-o", "pattern.png"]].concat(), 2);
+    assert!(said.contains("name it .svg"), "{said}");
+    let nowhere = folder.path("nowhere/pattern.svg");
+    sentence(&[&pattern[..], &factors, &["-o", &nowhere]].concat(), &["pattern.svg", "nowhere"]);
+    let sets = folder.path("sets.txt");
+    std::fs::write(&sets, "1 1 1 1 1 2\n").expect("a writable folder");
+    let said = failure(&[&pattern[..], &["--input", &sets, "-o", "pattern.svg"]].concat(), 2);
+    assert!(said.contains("cannot be used with"), "{said}");
 }

@@ -47,6 +47,57 @@ fn styles_of_parts_that_have_no_effect_are_said() {
     assert!(said(&shaded, "surface=flat") && !said(&shaded, "detail=2"));
 }
 
+/// A floor and a wall that meet in an edge at a right angle, without normals. The wall has two materials.
+const BENT: &str = "v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nv 0 1 0\nv 2 1 0\no floor\nusemtl red\nf 1 4 3 2\n\
+                    o wall\nf 1 2 6\nusemtl blue\nf 1 6 5\n";
+
+#[test]
+fn parts_have_normals_and_crease_angles_of_their_own() {
+    let folder = Folder::new();
+    let bent = folder.write("bent.obj", BENT);
+    let corners = |arguments: &[&str]| number(&info(&[&[&*bent], arguments].concat()), "/corners");
+    assert_eq!(corners(&[]), 8.0, "both are flat");
+    assert_eq!(corners(&["--crease-angle", "180"]), 6.0);
+    assert_eq!(corners(&["--part", "wall:crease=180"]), 8.0, "only the wall is bent there");
+    assert_eq!(corners(&["--part", "wall:crease=180", "--part", "floor:crease=90"]), 6.0);
+    // A part may be named twice.
+    let twice = ["--part", "wall:crease=0", "--part", "floor:crease=180", "--part", "wall:normals=made,crease=180"];
+    assert_eq!(corners(&twice), 6.0);
+    assert_eq!(corners(&["--crease-angle", "180", "--part", "wall:crease=0"]), 8.0);
+    let said = both(&["info", &bent, "--part", "wall:crease=180"]).1;
+    assert!(!said.contains("no effect"), "{said}");
+    // What they share is still computed once.
+    let smooth = ["--part", "wall:normals=made,crease=180", "--part", "material:blue:surface=flat", "--factor", "5"];
+    let stats = stats(&[&[&*bent], &smooth[..]].concat());
+    assert_eq!(number(&stats, "/cracks/different_bits"), 0.0, "{stats}");
+    assert_eq!(number(&stats, "/edges/split"), 1.0, "{stats}");
+    assert_eq!(stats["parts"], serde_json::json!(["wall:normals=made,crease=180", "material:blue:surface=flat"]));
+    for text in ["wall:normals=smooth", "wall:normals", "wall:crease=nan", "wall:crease=-1", "wall:crease=181"] {
+        let errors = failure(&["info", &bent, "--part", text], 2);
+        assert!(errors.contains("choose one of file, made") || errors.contains("from 0 to 180"), "{errors}");
+    }
+}
+
+#[test]
+fn a_material_has_a_style_whatever_parts_it_lies_in() {
+    let folder = Folder::new();
+    let bent = folder.write("bent.obj", BENT);
+    let triangles = |arguments: &[&str]| {
+        let uniform = ["--factor", "4", "--partitioning", "integer"];
+        number(&stats(&[&[&*bent], &uniform[..], arguments].concat()), "/triangles_out")
+    };
+    let usual = triangles(&[]);
+    let of_red = triangles(&["--part", "material:red:detail=2"]);
+    let of_wall = triangles(&["--part", "wall:detail=2"]);
+    assert!(
+        usual < of_wall && of_wall < of_red,
+        "{usual}, {of_wall}, {of_red}: three triangles are red, two of the wall"
+    );
+    let both = triangles(&["--part", "material:red:detail=2", "--part", "floor:detail=1"]);
+    assert!(usual < both && both < of_red, "{both}: what the floor has counts before what its material has");
+    sentence(&["info", &bent, "--part", "material:green:detail=2"], &["no part material:green", "material:red"]);
+}
+
 #[test]
 fn parts_are_listed_and_left_out() {
     let folder = Folder::new();

@@ -195,3 +195,27 @@ fn colours_and_texture_coordinates_are_refined_with_their_faces() {
     let distinct = reds.iter().collect::<std::collections::BTreeSet<_>>().len();
     assert!(distinct > 16 && reds.is_sorted(), "{reds:?}");
 }
+
+#[test]
+fn a_butterfly_surface_goes_through_the_corners_of_its_cage_and_is_a_reference() {
+    let folder = Folder::new();
+    let file = cube(&folder);
+    let options = ["--subdivide", "butterfly", "--levels", "3"];
+    let points = positions(&folder, &file, &options);
+    assert_eq!(points.iter().filter(|point| point.iter().all(|x| x.abs() == 1.0)).count(), 8);
+    let said = stats(&[&[&*file][..], &options].concat());
+    assert_eq!(said["triangles_in"].as_u64(), Some(12 * 64), "squares are cut first");
+    assert_eq!((said["edges"]["boundary"].as_u64(), said["cracks"]["edges"].as_u64()), (Some(0), Some(0)));
+    let compared = |options: &[&str]| {
+        let own = ["--surface", "flat", "--factor", "1", "--reference-subdivide", "butterfly"];
+        stats(&[&[&*file][..], &own, options].concat())["accuracy"].clone()
+    };
+    let cage = compared(&[]);
+    assert_eq!(cage["reference_surface"], format!("{file} (butterfly)"));
+    let step = number(&cage, "/reference_step");
+    let missing = number(&compared(&["--subdivide", "butterfly", "--levels", "6"]), "/to_reference/max/at_least");
+    assert!(step > 1e-4 && step < 0.05, "{step}");
+    assert!(missing > step / 10.0 && missing < step, "{missing} after a step of {step}");
+    // The surface bulges beyond the flat faces of the cage.
+    assert!(number(&cage, "/to_reference/max/at_least") < 1.0 && points.iter().flatten().any(|x| x.abs() > 1.05));
+}

@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
-use geometry::mesh::{Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture};
+use geometry::mesh::{Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Wrap};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Tessellation, Vertex,
@@ -346,7 +346,7 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
     };
     mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
     mesh.heights = Some(Arc::new(
-        HeightSource::Materials.load(&mesh, &[], &Budget::unlimited(), &Progress::new()).expect("images"),
+        HeightSource::Materials.load(&mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new()).expect("images"),
     ));
     on_device(Shape::Torus, mesh)
 }
@@ -357,7 +357,8 @@ fn halves_under(own: &[Option<HeightMap>; 2]) -> (Loaded, Scene) {
     let count = mesh.triangles.len() as u32;
     let half = |triangles| Material { triangles, ..mesh.materials[0].clone() };
     mesh.materials = vec![half(0..count / 2), half(count / 2..count)];
-    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, own, &Progress::new()).expect("not cancelled")));
+    let heights = Heights::of_materials(&mesh, own, &Progress::new()).expect("not cancelled").expect("few maps");
+    mesh.heights = Some(Arc::new(heights));
     on_device(Shape::Torus, mesh)
 }
 
@@ -421,6 +422,62 @@ fn an_amount_of_an_image_counts_as_that_of_the_settings_does() {
         assert!(expected.patch_factors == made.patch_factors, "{lod:?}");
         let bits = |vertex: &Vertex| vertex.position.map(f32::to_bits);
         assert!(expected.vertices.iter().map(bits).eq(made.vertices.iter().map(bits)), "{lod:?}");
+    }
+}
+
+#[test]
+fn images_go_on_beyond_their_border_on_the_device_as_on_the_cpu() {
+    let mut all = Vec::new();
+    for wrap in [[Wrap::Clamp; 2], [Wrap::Mirror; 2], [Wrap::Repeat, Wrap::Clamp], [Wrap::Mirror, Wrap::Repeat]] {
+        let mut mesh = Shape::Saddle.build();
+        mesh.corners.iter_mut().for_each(|corner| corner.uv = corner.uv * 3.0 - 1.0);
+        // Opposite borders differ.
+        let ramp = HeightMap::new([16; 2], (0..256).map(|i| (i % 16 + 2 * (i / 16)) as f32 / 48.0).collect());
+        mesh.heights = Some(Arc::new(Heights::everywhere(&mesh, ramp.with_wrap(wrap))));
+        let (loaded, mut scene) = on_device(Shape::Saddle, mesh);
+        let own =
+            Tessellation { displacement: Displacement::On, height_scale: 0.1, factor: 7.0, ..Tessellation::default() };
+        let inputs = inputs(&loaded, &Settings::from(own));
+        let gpu = on_gpu(&mut scene, &inputs);
+        let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+        assert_eq!(gpu.vertices.len(), cpu.vertices.len());
+        for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
+            let [p, q] = [a.position, b.position].map(glam::Vec3::from);
+            assert!(p.distance(q) <= 1e-5 * loaded.mesh.bounds().radius(), "{wrap:?}: {p} {q}");
+        }
+        all.push(gpu.vertices.iter().map(|vertex| vertex.position.map(f32::to_bits)).collect::<Vec<_>>());
+    }
+    assert!((0..4).all(|i| all[i + 1..].iter().all(|other| *other != all[i])), "each is another surface");
+}
+
+#[test]
+fn maps_that_share_heights_are_on_the_device_once() {
+    let own = waves(128);
+    let bytes = |other: HeightMap| halves_under(&[Some(own.clone()), Some(other)]).1.tessellator.work_bytes();
+    let one = bytes(own.clone());
+    assert_eq!(bytes(own.with_amount(HeightAmount::from_factor(2.0, 0.0))), one);
+    assert!(bytes(waves(128)) >= one + 4 * own.heights.len() as u64, "the same heights in two lists");
+}
+
+#[test]
+fn lod_by_error_takes_the_amount_of_each_image() {
+    let [deep, low] = [0.3, 0.02].map(|scale| waves(64).with_amount(HeightAmount::from_factor(scale, 0.0)));
+    for own in [[&deep, &low], [&low, &deep]] {
+        let (loaded, mut scene) = halves_under(&own.map(|map| Some(map.clone())));
+        let settings = Settings::from(Tessellation {
+            displacement: Displacement::On,
+            lod: Lod::Error,
+            tolerance: 2.0,
+            ..Tessellation::default()
+        });
+        let inputs = inputs(&loaded, &settings);
+        let device = on_gpu(&mut scene, &inputs);
+        let host = tessellate(&loaded.mesh, &loaded.topology, &inputs, None);
+        assert!(device.patch_factors == host.patch_factors, "CPU and GPU disagree");
+        let halves = host.patch_factors.split_at(host.patch_factors.len() / 2);
+        let [first, second] = [halves.0, halves.1]
+            .map(|half: &[PatchFactors]| half.iter().map(|&own| u64::from(triangle_count(own))).sum::<u64>());
+        assert_eq!(first > second, own[0] == &deep, "{first} and {second} triangles");
     }
 }
 

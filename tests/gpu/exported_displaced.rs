@@ -115,7 +115,16 @@ impl Passes {
         let view = view.with_reach(displacement_reach(mesh, &inputs));
         let scale = usual_amount(heights, &inputs).scale.to_bits();
         let [width, height] = map.size;
-        let height_constants = [width, height, map.levels, u32::from(map.repeats), scale, own.midlevel.to_bits(), 0, 0];
+        let height_constants = [
+            width,
+            height,
+            map.levels,
+            map.wrap[0] as u32 + 4 * map.wrap[1] as u32,
+            scale,
+            own.midlevel.to_bits(),
+            0,
+            0,
+        ];
         let corners = exported_corners(mesh, topology);
         let relief = displaced_corners(mesh, topology).expect("one image everywhere");
         let indices = Layout::Eighteen.indices(topology);

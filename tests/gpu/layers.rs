@@ -254,9 +254,9 @@ fn a_transparent_picture_is_covered_by_as_much_as_its_layers_cover() {
     assert!(filtered.get_pixel(SIDE / 3, SIDE / 2).0[3].abs_diff(128) <= 1, "{:?}", filtered.get_pixel(20, 30));
 }
 
-/// A matte material that lets a part of the light through.
+/// A smooth material that lets a part of the light through and mirrors none.
 fn glass([r, g, b]: [f32; 3], transmission: f32) -> Material {
-    let look = Look { transmission, specular: 0.0, ..Look::default() };
+    let look = Look { transmission, specular: 0.0, roughness: 0.0, ..Look::default() };
     Material { look, double_sided: true, ..Material::plain("glass", [r, g, b, 1.0]) }
 }
 
@@ -392,6 +392,34 @@ fn a_body_bends_light_to_where_it_leaves_it() {
     let [r, g, _] = linear(before_two_walls(rough(1.5), 0.0, &[[0.46, 0.45]])[0]);
     assert!(r > 0.2 && g > 0.2, "{r} {g}");
     assert_eq!(before_two_walls(rough(1.0), 0.0, &[[0.46, 0.45]]), [red]);
+}
+
+/// A thin surface blurs as a body does, of any thickness along the normal. What is opaque is seen through it, and no layers.
+#[test]
+fn a_rough_thin_surface_blurs_what_is_behind_it() {
+    let pane = |thickness, roughness, ior| {
+        let own = glass([1.0; 3], 1.0);
+        Material { look: Look { thickness, roughness, ior, ..own.look }, ..own }
+    };
+    let places = [[0.46, 0.45], [0.3, 0.45], [0.7, 0.45]];
+    let [thin, body] = [0.0, 1e-4].map(|thickness| before_two_walls(pane(thickness, 0.7, 1.5), 0.0, &places));
+    (0..places.len()).for_each(|place| assert_near(thin[place], body[place], 1, "a body without a way through it"));
+    let [r, g, _] = linear(thin[0]);
+    assert!(r > 0.2 && g > 0.2, "{r} {g}");
+    for sharp in [pane(0.0, 0.0, 1.5), pane(0.0, 0.7, 1.0)] {
+        assert_eq!(before_two_walls(sharp, 0.0, &places), [[255, 0, 0], [255, 0, 0], [0, 255, 0]]);
+    }
+    let wall = [0.9, 0.5, 0.7];
+    // Lines on the wall would be blurred, too.
+    for settings in every_way(studio()).into_iter().filter(|settings| !settings.overlays.adjacency) {
+        for roughness in [0.05, 0.5, 1.0] {
+            let color = |mesh: &Mesh| at(&drawn(mesh, &settings), PLACES[0]);
+            let tinted = Material { base_color: [0.8, 0.4, 0.1, 1.0], ..pane(0.0, roughness, 1.5) };
+            let both = [(0.4, tinted.clone()), (0.0, tinted), (-0.4, painted(wall))];
+            let expected = std::array::from_fn(|k| srgb([0.8, 0.4, 0.1][k] * wall[k]));
+            assert_near(color(&sheets_of(both)), expected, ROUNDING, &format!("{roughness} with {settings:?}"));
+        }
+    }
 }
 
 /// Its thickness stands for the wall behind: only the nearer one is drawn, and nothing is behind it in a transparent picture.

@@ -8,7 +8,7 @@ use gpu::Timing;
 use image::RgbaImage;
 use inspect::render::layout::{CRACK_COLOR, T_JUNCTION_COLOR, linear};
 use inspect::render::{
-    Camera, Scene, Target, bone_lines, crack_lines, legend_side, lod_camera_lines, t_junction_lines,
+    Camera, LeftPose, Scene, Target, bone_lines, crack_lines, legend_side, lod_camera_lines, t_junction_lines,
 };
 use inspect::settings::{ARENA_BYTES, Overlay, Overlays, Settings, SplitSide, SplitView};
 use inspect::shot::compare;
@@ -217,6 +217,12 @@ fn bones_of_a_pose_are_drawn_where_its_joints_are_seen_and_nowhere_else() {
         }
         assert!(changed > 200, "{changed} px");
     }
+    let bent = bone_lines(&scene);
+    engine().split(&mut scene, &Settings { split: Some(0.5), ..flat(1.0, None) }, None).expect("a small mesh");
+    scene.set_left_pose(LeftPose::Own(Some(Moment { clip: 0, time: 0.5 }))).expect("a small rig");
+    scene.set_moment(None).expect("a small rig");
+    assert_eq!(scene.half(SplitSide::Left).map(bone_lines).as_ref(), Some(&bent), "the left half keeps its own pose");
+    assert_ne!(bone_lines(&scene), bent);
     let (_, torus) = self::scene(Shape::Torus);
     assert_eq!(bone_lines(&torus), []);
 }

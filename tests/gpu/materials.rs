@@ -457,8 +457,11 @@ fn a_normal_map_is_left_out_where_its_own_image_displaces_the_surface() {
     let leaning = map(image([1, 1], &[[200, 90, 220, 255]]), MapUv::Own);
     let gray = image([2, 2], &[[128, 128, 128, 255]; 4]);
     type Made<'a> = &'a dyn Fn(&Mesh) -> Heights;
-    let of_colors: Made =
-        &|mesh| HeightSource::Materials.load(mesh, &[], &Budget::unlimited(), &Progress::default()).expect("an image");
+    let of_colors: Made = &|mesh| {
+        HeightSource::Materials
+            .load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::default())
+            .expect("an image")
+    };
     let of_file: Made = &|mesh| Heights::everywhere(mesh, HeightMap::new([2, 2], vec![0.5; 4]));
     let square_with = |look: Look, heights: Made| {
         let own = Material { texture: Some(gray.clone()), ..material([0.8; 3], look) };

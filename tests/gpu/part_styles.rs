@@ -29,7 +29,7 @@ fn parts(shape: Shape, ends: [u32; 4], styles: [PartStyle; 2]) -> Loaded {
 }
 
 fn style(surface: Surface, detail: f32) -> PartStyle {
-    PartStyle { surface: Some(surface), detail: Some(detail) }
+    PartStyle { surface: Some(surface), detail: Some(detail), ..PartStyle::default() }
 }
 
 fn triangles_of(loaded: &Loaded, part: u32, out: &geometry::tessellate::Tessellated) -> usize {
@@ -128,7 +128,7 @@ fn sides_of_a_tearing_surface_share_what_borders_another_part() {
 
 #[test]
 fn details_scale_the_tolerance_and_edges_as_published_keep_each_patch_its_own() {
-    let styles = |detail| [PartStyle { surface: None, detail: Some(detail) }, PartStyle::default()];
+    let styles = |detail| [PartStyle { detail: Some(detail), ..PartStyle::default() }, PartStyle::default()];
     let own = Tessellation { tolerance: 0.5, ..Tessellation::default() }.by_error(0.5);
     let made = [0.25, 1.0, 4.0].map(|detail| {
         let loaded = three_parts(Shape::Torus, styles(detail));
@@ -160,7 +160,8 @@ fn parts_with_details_are_displaced_by_the_images_of_their_materials() {
         HeightMap::new([side; 2], (0..side * side).map(height).collect())
     };
     let own = [Some(image(16).with_amount(HeightAmount::from_factor(0.2, -0.1))), Some(image(32))];
-    mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled")));
+    mesh.heights =
+        Some(Arc::new(Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps")));
     let loaded = loaded_mesh(Source::Shape(Shape::Torus), mesh);
     let (size, patches) = (loaded.mesh.bounds().radius(), loaded.topology.patches.len());
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
@@ -204,7 +205,7 @@ fn the_mesh_as_it_is_has_no_styles() {
 
 #[test]
 fn a_part_may_be_as_far_off_as_its_detail_allows() {
-    let loaded = three_parts(Shape::Torus, [PartStyle { surface: None, detail: Some(0.25) }; 2]);
+    let loaded = three_parts(Shape::Torus, [PartStyle { detail: Some(0.25), ..PartStyle::default() }; 2]);
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("a small mesh");
     let inputs = inputs(&loaded, &Settings::from(Tessellation::default().by_error(0.5)));
     on_gpu(&mut scene, &inputs);

@@ -193,7 +193,7 @@ impl<'a> Subject<'a> {
     fn height_constants(&self, own: &Tessellation, map: &HeightMap) -> [u32; 8] {
         let [width, height] = map.size;
         let (scale, midlevel) = (self.height_scale(own).to_bits(), own.midlevel.to_bits());
-        [width, height, map.levels, u32::from(map.repeats), scale, midlevel, 0, 0]
+        [width, height, map.levels, map.wrap[0] as u32 + 4 * map.wrap[1] as u32, scale, midlevel, 0, 0]
     }
 
     /// The constant buffer, laid out as the exported files say.

@@ -9,7 +9,7 @@ use load::Source;
 use pnaen::app::App;
 use tempfile::TempDir;
 
-use crate::editing::press_with;
+use crate::editing::{assert_draws, copied, press_with};
 use crate::{choose, click, open_list, press, settle, switch, uniform, window};
 use documents::moving::{CLIPS, moving};
 
@@ -73,6 +73,49 @@ fn a_clip_is_chosen_and_scrubbed() {
     assert!(near.distance < rest.distance);
     choose(&mut harness, "Clip", CLIPS[2]);
     assert_eq!(*harness.state().camera(), near);
+}
+
+#[test]
+fn the_left_half_keeps_a_pose_that_is_copied_exchanged_and_undone() {
+    let (mut harness, _folder) = moving_window();
+    let show = |harness: &mut Harness<App>, time: f64| {
+        harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(time);
+        settle(harness);
+    };
+    assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Left pose").count(), 0, "nothing is left");
+    press(&mut harness, Key::S);
+    choose(&mut harness, "Clip", CLIPS[0]);
+    show(&mut harness, 0.5);
+    choose(&mut harness, "Left pose", "This moment");
+    harness.get_by_label_contains("Left: Bend at 0.5 s, untessellated");
+    let kept = harness.state().read_picture().expect("a device").expect("a picture");
+    show(&mut harness, 0.25);
+    harness.get_by_label_contains("Left: Bend at 0.5 s, untessellated");
+    harness.get_by_label_contains("Right: Bend at 0.25 s, PN-AEN");
+    let shown = harness.state().read_picture().expect("a device").expect("a picture");
+    let left = |picture: &image::RgbaImage| {
+        image::imageops::crop_imm(picture, 0, 0, picture.width() / 2 - 2, picture.height()).to_image()
+    };
+    assert!(shown != kept && left(&shown) == left(&kept), "only the right half moves");
+    let command = copied(&mut harness);
+    assert!(command.contains(" --split-animation Bend --split-time 0.5"), "{command}");
+    assert_draws(&harness, &command, "moving-view");
+    click(&mut harness, "Swap");
+    harness.get_by_label_contains("Left: Bend at 0.25 s, PN-AEN");
+    harness.get_by_label_contains("Right: Bend at 0.5 s, Flat");
+    assert_eq!(time(&harness), 0.5);
+    click(&mut harness, "Swap");
+    assert_eq!(time(&harness), 0.25);
+    let context = harness.ctx.clone();
+    choose(&mut harness, "Clip", "Rest pose");
+    choose(&mut harness, "Left pose", "This moment");
+    harness.get_by_label_contains("Left: at rest, untessellated");
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    harness.get_by_label_contains("Left: Bend at 0.5 s, untessellated");
+    harness.state_mut().open(&context, Source::Shape(Shape::Torus));
+    settle(&mut harness);
+    assert_eq!(harness.query_all_by_label_contains("Bend at").count(), 0, "another mesh has no such pose");
 }
 
 #[test]

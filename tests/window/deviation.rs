@@ -319,6 +319,33 @@ fn either_half_of_a_split_is_a_whole_tessellation_that_is_edited_and_exchanged()
 }
 
 #[test]
+fn either_half_of_a_split_looks_as_its_own_settings_say() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Left looks", "Its own");
+    click(&mut harness, "Edit left (A)");
+    choose(&mut harness, "Colours", "Zebra");
+    let colors = |harness: &Harness<App>| {
+        SplitSide::BOTH.map(|half| harness.state().settings().half(half).expect("it is split").overlays.colors)
+    };
+    assert_eq!(colors(&harness), [Colors::Zebra, Colors::Material]);
+    harness.get_by_label_contains("Left: untessellated\nOverlays zebra");
+    harness.get_by_label_contains("Right: PN-AEN\nOverlays none");
+    let command = copied(&mut harness);
+    assert!(command.contains(" --split-looks overlay=zebra"), "{command}");
+    assert_draws(&harness, &command, "cube-split-view");
+    click(&mut harness, "Swap");
+    assert_eq!(colors(&harness), [Colors::Material, Colors::Zebra]);
+    let context = harness.ctx.clone();
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert_eq!(colors(&harness), [Colors::Zebra, Colors::Material]);
+    click(&mut harness, "Edit right (B)");
+    choose(&mut harness, "Colours", "Clay");
+    assert_eq!(colors(&harness), [Colors::Zebra, Colors::Clay]);
+}
+
+#[test]
 fn halves_side_by_side_show_the_same_place_in_their_middles_and_are_framed_in_half_the_width() {
     let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
     press(&mut harness, egui::Key::F);

@@ -6,7 +6,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use geometry::mesh::PartStyle;
 use geometry::tessellate::Surface;
-use load::ShownParts;
+use load::{NormalSource, ShownParts};
 use pnaen::app::App;
 
 use crate::editing::copied;
@@ -64,7 +64,7 @@ fn a_part_gets_a_surface_and_a_detail_of_its_own() {
         click(&mut harness, menu);
         click(&mut harness, entry);
     }
-    let style = PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.5) };
+    let style = PartStyle { surface: Some(Surface::PhongAen), detail: Some(0.5), ..PartStyle::default() };
     let styles = |harness: &Harness<App>| harness.state().loaded().expect("a mesh").preparation.parts.styles.clone();
     assert!(matches!(&styles(&harness)[..], [(name, own)] if name.ends_with("Part7") && *own == style));
     assert_eq!(harness.state().loaded().expect("a mesh").mesh.part_styles[7], style);
@@ -77,6 +77,34 @@ fn a_part_gets_a_surface_and_a_detail_of_its_own() {
     press(&mut harness, egui::Key::Escape);
     click(&mut harness, "Show only Part7");
     assert_eq!(styles(&harness).len(), 1, "what is shown doesn't change it");
+}
+
+#[test]
+fn a_part_gets_normals_and_a_crease_angle_of_its_own_while_the_view_stays() {
+    let bent = "v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nv 0 1 0\nv 2 1 0\no floor\nf 1 4 3 2\no wall\nf 1 2 6 5\n";
+    let (_folder, mut harness) = uniform_of("bent.obj", bent);
+    harness.get_by_label("Missing normals: smoothed below 60\u{b0}");
+    press(&mut harness, egui::Key::ArrowLeft);
+    let before = *harness.state().camera();
+    for (menu, entry) in [("Its normals", "Made anew"), ("Its crease angle", "180\u{b0}")] {
+        harness.get_by_role_and_label(Role::CheckBox, "wall").scroll_to_me();
+        settle(&mut harness);
+        harness.get_by_role_and_label(Role::CheckBox, "wall").click_secondary();
+        settle(&mut harness);
+        click(&mut harness, menu);
+        click(&mut harness, entry);
+    }
+    assert_eq!(*harness.state().camera(), before);
+    assert!(harness.query_by_label_contains("Missing normals").is_none(), "somebody asked for them");
+    let loaded = harness.state().loaded().expect("a mesh");
+    let style = PartStyle { normals: Some(NormalSource::Made), crease_angle: Some(180.0), ..PartStyle::default() };
+    assert_eq!(loaded.preparation.parts.style("wall"), style);
+    let bent = loaded.mesh.corners.iter().filter(|corner| corner.normal.y > 0.1 && corner.normal.z > 0.1).count();
+    assert_eq!((loaded.mesh.corners.len(), bent), (8, 2), "the floor stays flat");
+    harness.get_by_label("normals=made,crease=180");
+    scroll_to(&mut harness, "Styles of parts");
+    let command = copied(&mut harness);
+    assert!(command.contains("--part wall:normals=made,crease=180"), "{command}");
 }
 
 #[test]

@@ -135,5 +135,5 @@ fn a_height_image_can_be_chosen_from_the_file_menu() {
     entry.hover();
     // Hover texts appear after a delay.
     harness.run_steps(60);
-    harness.get_by_label_contains("PNG, JPEG, WebP, TIFF or EXR image");
+    harness.get_by_label_contains("PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image");
 }

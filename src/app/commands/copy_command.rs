@@ -5,9 +5,9 @@ use std::path::Path;
 use crate::app::App;
 use crate::app::jobs::companion_files::absolute_path;
 use crate::app::jobs::picture_job::PictureChoices;
-use inspect::render::Camera;
-use inspect::settings::Settings;
-use inspect::shot::{CopiedCommand, Turn};
+use inspect::render::{Camera, LeftPose};
+use inspect::settings::{Settings, SplitSide};
+use inspect::shot::{AT_REST, CopiedCommand, ShotView, Turn};
 use load::{HeightSource, Source};
 
 const DRAWS_IT: &str = "This command draws it without a window:";
@@ -51,8 +51,7 @@ impl App {
         turn: Option<(Turn, bool)>,
     ) -> Option<String> {
         let document = self.document.as_ref()?;
-        let moment = self.moment().zip(document.loaded.mesh.rig.as_deref());
-        let animation = moment.map(|(moment, rig)| (rig.clip_name(moment.clip), moment.time));
+        let animation = document.scene.clip_and_time();
         let source = absolute_source(&document.loaded.source);
         let reference_shape = self.reference_shape().map(absolute_source);
         let left_mesh = self.left_mesh.as_ref().and_then(|left| left.from.as_ref()).map(absolute_source);
@@ -63,17 +62,17 @@ impl App {
         preparation.heights.iter_mut().for_each(HeightSource::make_absolute);
         let settings = self.saved_settings_of(theme, choices);
         let settings = Settings { split: settings.split.filter(|_| !self.shows_before()), ..settings };
-        let px = |size: glam::Vec2| size.to_array().map(|side| side as u32);
-        let frozen = self.viewport.frozen.as_ref();
+        let left = document.scene.half(SplitSide::Left).filter(|_| settings.split.is_some());
+        let left = left.filter(|_| document.scene.left_pose() != LeftPose::Same);
+        let left_animation = left.map(|left| left.clip_and_time().unwrap_or((AT_REST.to_owned(), 0.0)));
         let shown = CopiedCommand {
             source: &source,
             preparation: &preparation,
             settings: &settings,
-            camera,
-            lod_camera: frozen.map(|frozen| (&frozen.camera, px(frozen.viewport))),
+            view: ShotView { camera: *camera, ..self.shot_view(choices) },
             radius: document.scene.bounds.radius(),
-            size: self.saved_size(choices),
             animation: animation.as_ref().map(|(name, time)| (&**name, *time)),
+            left_animation: left_animation.as_ref().map(|(name, time)| (&**name, *time)),
             reference_shape: reference_shape.as_ref(),
             reference_subdivide: self.has_own_limit().then(|| self.own_scheme()),
             left_mesh: left_mesh.as_ref(),
@@ -83,8 +82,6 @@ impl App {
             matcap_image: self.matcap_image(),
             environment: self.environment_file(),
             triangle: self.selected_triangle().filter(|_| choices.overlays),
-            transparent: choices.transparent,
-            legend: choices.legend,
             output,
             turn,
         };

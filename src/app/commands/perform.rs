@@ -6,10 +6,10 @@ use crate::app::App;
 use crate::app::dialogs::Forgetting;
 use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::panels::destinations::{Destination, Step};
-use crate::commands::{Action, Availability, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
+use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
-use inspect::settings::{ColorSource, Declaration, Settings, options};
+use inspect::settings::{Declaration, Settings, SplitSide, options};
 use load::format::Format;
 use load::{HeightSource, Import, Source};
 
@@ -24,6 +24,8 @@ impl App {
         let (bookmarks, clips) = (self.viewport.bookmarks.len(), self.clip_names());
         let has_cage =
             matches!(self.source(), Some(Source::File(path)) if Format::from_name(path) != Some(Format::Gltf));
+        let scenes = SplitSide::BOTH.into_iter().filter_map(|half| document?.scene.half(half));
+        let has_bones = scenes.map(|own| own.tessellator.mesh()).any(|mesh| !mesh.bones.is_empty());
         let needs = [
             (Need::Document, document.is_some()),
             (Need::File, self.source().is_some_and(|source| source.shape().is_none())),
@@ -49,14 +51,14 @@ impl App {
             (Need::SelectedPatch, self.selected_patch().is_some()),
             (Need::Heights, self.has_heights()),
             (Need::TextureCoordinates, document.is_some_and(|document| document.has_texture_coordinates)),
-            (Need::Bones, document.is_some_and(|document| !document.loaded.mesh.bones.is_empty())),
+            (Need::Bones, has_bones),
             (Need::NormalsAt, has_effect(&options::NORMALS_AT)),
             (Need::Factor, has_effect(&options::FACTOR) && lets_lod),
             (Need::Lod, has_effect(&options::LOD) && lets_lod),
             (Need::Culling, self.can_cull_back_faces()),
             (Need::Split, self.settings.split.is_some()),
             (Need::Frozen, self.viewport.frozen.is_some()),
-            (Need::Deviation, self.settings.overlays.colors.source() == ColorSource::ReferenceSurface),
+            (Need::Deviation, self.shows_deviation()),
             (Need::MeasurableChart, self.can_measure_chart()),
             (Need::Chart, !self.chart_rows().is_empty()),
             (Need::Clips, !clips.is_empty()),
@@ -81,6 +83,7 @@ impl App {
         match action {
             Action::File(action) => self.perform_on_files(context, action),
             Action::Camera(action) => self.move_camera_by(context, *action),
+            Action::Setting(Change::SwapHalves) => self.swap_halves(),
             Action::Setting(change) => change.apply(&mut self.settings),
             Action::Prepare(preparing) => self.prepare_as(context, *preparing),
             Action::Undo => self.undo(context),

@@ -3,7 +3,7 @@
 use egui::Theme;
 
 use crate::app::App;
-use crate::app::widgets::swatch;
+use crate::app::widgets::{control_row, swatch};
 use inspect::settings::{LIGHT_BACKGROUND, Settings, options};
 
 impl App {
@@ -40,11 +40,8 @@ impl App {
             let mut color = self.settings_in(ui.ctx().theme()).background_color();
             egui::Grid::new("background").num_columns(2).show(ui, |ui| {
                 for (name, channel) in ["Red", "Green", "Blue"].into_iter().zip(&mut color) {
-                    let label = ui.label(name).on_hover_text("sRGB, 0 to 255.");
-                    if ui.add(egui::Slider::new(channel, 0..=255)).labelled_by(label.id).changed() {
-                        is_chosen = true;
-                    }
-                    ui.end_row();
+                    let slider = egui::Slider::new(channel, 0..=255);
+                    is_chosen |= control_row(ui, name, "sRGB, 0 to 255.", slider).changed();
                 }
             });
             swatch(ui, color);

@@ -4,6 +4,7 @@ use egui::{DragValue, Grid, Ui};
 
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
+use crate::app::widgets::control_row;
 use crate::commands::{Purpose, Written};
 use inspect::render::{Usual, legend_of};
 
@@ -84,10 +85,8 @@ impl App {
         let (mut size, mut is_changed) = (self.saved_size(choices), false);
         for (name, side) in ["Width", "Height"].into_iter().zip(&mut size) {
             let hover = format!("In px, {} to {} (--size).", SIDES.start(), SIDES.end());
-            let label = ui.label(name).on_hover_text(&hover);
-            let drag = ui.add(DragValue::new(side).range(SIDES).suffix(" px")).labelled_by(label.id);
-            is_changed |= drag.on_hover_text(hover).changed();
-            ui.end_row();
+            let drag = DragValue::new(side).range(SIDES).suffix(" px");
+            is_changed |= control_row(ui, name, &hover, drag).changed();
         }
         if is_changed {
             choices.size = Some(size);

@@ -24,19 +24,14 @@ pub(super) struct AskedFile {
 
 impl AskedFile {
     pub(super) fn new(purpose: Purpose) -> Self {
-        let of = |title, takes: &str, kinds: &[(&'static str, &[&'static str])], ending| Self {
-            title,
-            takes: takes.to_owned(),
-            kinds: kinds.iter().map(|(name, endings)| (*name, endings.to_vec())).collect(),
-            ending,
-        };
-        let beside = |title, takes: &str, kind, endings: &[&'static str]| of(title, takes, &[(kind, endings)], "");
-        // A mesh is told by its content, so it may have any name.
-        let meshes = || vec![("Meshes", extensions()), ("All files", vec!["*"])];
-        let mesh = |title, more: &str| Self {
-            takes: format!("A {} file, {more}", known_extensions()),
-            kinds: meshes(),
-            ..of(title, "", &[], "")
+        let of = |title, takes: &str, kinds: Vec<Kind>, ending| Self { title, takes: takes.to_owned(), kinds, ending };
+        let only = |(name, ending)| (name, vec![ending]);
+        let beside =
+            |title, takes: &str, kind, endings: &[&'static str]| of(title, takes, vec![(kind, endings.to_vec())], "");
+        let mesh = |title, more: &str| {
+            // A mesh is told by its content, so it may have any name.
+            let kinds = vec![("Meshes", extensions()), ("All files", vec!["*"])];
+            of(title, &format!("A {} file, {more}", known_extensions()), kinds, "")
         };
         let images: &[_] = &["png", "jpg", "jpeg", "webp"];
         match purpose {
@@ -47,8 +42,8 @@ impl AskedFile {
             Purpose::CompanionFile(CompanionFile::ReferenceShape) => mesh("Reference surface path", "or shape:NAME"),
             Purpose::CompanionFile(CompanionFile::LeftMesh) => mesh("Left mesh path", "or shape:NAME"),
             Purpose::Heights => {
-                let images = [images, &["tif", "tiff", "exr"]].concat();
-                beside("Height image path", "A .png, .jpg, .webp, .tif or .exr image", "Images", &images)
+                let images = [images, &["tga", "bmp", "ktx2", "tif", "tiff", "exr"]].concat();
+                beside("Height image path", "A .png, .jpg, .webp, .tga, .ktx2, .tif or .exr image", "Images", &images)
             }
             Purpose::CompanionFile(CompanionFile::Matcap) => {
                 beside("Matcap path", "A .png, .jpg or .webp image", "Images", images)
@@ -66,30 +61,29 @@ impl AskedFile {
                 beside("Environment path", "A .hdr or .exr panorama", "Panoramas of light", &ENVIRONMENT_EXTENSIONS)
             }
             Purpose::Write(Written::Chart) => {
-                let kinds: &[(_, &[_])] =
-                    &[("SVG picture", &["svg"]), ("PNG picture", &["png"]), ("CSV table", &["csv"])];
+                let kinds = [("SVG picture", "svg"), ("PNG picture", "png"), ("CSV table", "csv")].map(only).to_vec();
                 of("Save chart", "A new .svg, .png or .csv file", kinds, "")
             }
             Purpose::Write(Written::Picture) => {
-                let kinds: &[(_, &[_])] = &[("PNG picture", &["png"]), ("Report as a page", &["html"])];
+                let kinds = [("PNG picture", "png"), ("Report as a page", "html")].map(only).to_vec();
                 of("Save picture", "A new .png file, or .html for a report on the picture", kinds, "-view.png")
             }
-            Purpose::Write(Written::Folder) => of("Save turntable", "A new folder", &[], "-turntable"),
+            Purpose::Write(Written::Folder) => of("Save turntable", "A new folder", Vec::new(), "-turntable"),
             Purpose::Write(Written::Gif) => {
-                of("Save turntable", "A new .gif file", &[("Animated GIF", &["gif"])], "-turntable.gif")
+                of("Save turntable", "A new .gif file", vec![("Animated GIF", vec!["gif"])], "-turntable.gif")
             }
             Purpose::Write(Written::Factors) => {
-                of("Save factors", "A new .csv file", &[("CSV table", &["csv"])], "-factors.csv")
+                of("Save factors", "A new .csv file", vec![("CSV table", vec!["csv"])], "-factors.csv")
             }
             Purpose::Write(Written::Adjacency) => {
-                let kinds: &[(_, &[_])] = &[("JSON", &["json"]), ("Bare indices", &["bin"])];
+                let kinds = [("JSON", "json"), ("Bare indices", "bin")].map(only).to_vec();
                 of("Save adjacency", "A new .json or .bin file", kinds, "-adjacency.json")
             }
             Purpose::Write(Written::Stats) => {
-                of("Save stats", "A new .json file", &[("JSON", &["json"])], "-stats.json")
+                of("Save stats", "A new .json file", vec![("JSON", vec!["json"])], "-stats.json")
             }
             Purpose::Write(Written::Mesh) => {
-                let kinds: &[(_, &[_])] = &[("glTF binary", &["glb"]), ("Wavefront OBJ", &["obj"])];
+                let kinds = [("glTF binary", "glb"), ("Wavefront OBJ", "obj")].map(only).to_vec();
                 of("Export mesh", "A new .glb or .obj file", kinds, "-tessellated.glb")
             }
         }

@@ -5,6 +5,7 @@ use egui::{DragValue, Grid, Ui};
 use super::picture_window::LABELS;
 use crate::app::App;
 use crate::app::jobs::picture_job::PictureChoices;
+use crate::app::widgets::control_row;
 use crate::commands::{Purpose, Written};
 use inspect::shot::{FPS, FRAMES, Turn};
 
@@ -47,13 +48,9 @@ impl App {
 
 /// The rows about the number of pictures, and what they are written as.
 fn turn_rows(ui: &mut Ui, own: &mut TurntableWindow) {
-    let number = |ui: &mut Ui, name: &str, value: &mut u32, range: std::ops::RangeInclusive<u32>, hover: &str| {
-        let label = ui.label(name).on_hover_text(hover);
-        ui.add(DragValue::new(value).range(range)).labelled_by(label.id).on_hover_text(hover);
-        ui.end_row();
-    };
     Grid::new("turn").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
-        number(ui, "Pictures", &mut own.turn.frames, FRAMES, "The number of pictures in one turn (--frames).");
+        let frames = DragValue::new(&mut own.turn.frames).range(FRAMES);
+        control_row(ui, "Pictures", "The number of pictures in one turn (--frames).", frames);
         ui.label("Written as").on_hover_text("A folder of pictures, or one file.");
         ui.horizontal(|ui| {
             let hover = "Numbered PNG files in a new folder.";
@@ -63,7 +60,8 @@ fn turn_rows(ui: &mut Ui, own: &mut TurntableWindow) {
         });
         ui.end_row();
         if own.is_gif {
-            number(ui, "Pictures a second", &mut own.turn.fps, FPS, "How fast the GIF plays (--fps).");
+            let fps = DragValue::new(&mut own.turn.fps).range(FPS);
+            control_row(ui, "Pictures a second", "How fast the GIF plays (--fps).", fps);
         }
     });
 }

@@ -63,7 +63,9 @@ impl App {
         Some(match what {
             Written::Chart => {
                 let subject = self.panels.chart.charted()?.subject.clone();
-                without_warnings(move |path, _| save(path, &subject).map_err(|error| error.to_string()))
+                without_warnings(move |path, _| {
+                    save(path, std::slice::from_ref(&subject)).map_err(|error| error.to_string())
+                })
             }
             Written::Picture => {
                 let (choices, name) = (self.dialogs.picture.choices, path.file_name().map(Path::new));

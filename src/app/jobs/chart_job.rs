@@ -105,8 +105,7 @@ impl ChartJob {
         let run = move |wanted: &Progress, say: &dyn Fn(ChartMessage) -> bool| {
             // If the last run failed, it has reported that itself.
             let _ = last.map(JoinHandle::join);
-            let worker = Worker { say, wanted, held: &held };
-            let failed = match caught(|| worker.run(job, engine)) {
+            let failed = match caught(|| measure(job, engine, wanted, &held, say)) {
                 Ok(run) => run.err().map(|error| format!("The chart could not be measured: {error}")),
                 Err(stopped) => Some(format!("Measuring the chart {stopped}")),
             };
@@ -158,54 +157,47 @@ impl App {
     }
 }
 
-struct Worker<'a> {
-    say: &'a dyn Fn(ChartMessage) -> bool,
-    wanted: &'a Progress,
-    held: &'a AtomicBool,
-}
-
-impl Worker<'_> {
-    fn say(&self, found: ChartMessage) {
-        // Nobody wants it if the run was cancelled.
-        let _ = (self.say)(found);
-    }
-
-    /// Waits while the run is held, and returns whether to go on.
-    fn goes_on(&self) -> bool {
-        while self.held.load(Ordering::Relaxed) && self.wanted.check().is_ok() {
+/// Measures all settings of a run, and says what it finds, which nobody wants if the run was cancelled.
+fn measure(
+    job: Job,
+    engine: Option<Engine>,
+    wanted: &Progress,
+    held: &AtomicBool,
+    say: &dyn Fn(ChartMessage) -> bool,
+) -> Result<(), GpuError> {
+    // Waits while the run is held, and returns whether to go on.
+    let goes_on = || {
+        while held.load(Ordering::Relaxed) && wanted.check().is_ok() {
             std::thread::sleep(Duration::from_millis(10));
         }
-        self.wanted.check().is_ok()
+        wanted.check().is_ok()
+    };
+    let engine = match engine {
+        Some(engine) => engine,
+        None => Engine::new(Gpu::on(&job.adapter)?),
+    };
+    say(ChartMessage::Engine(Box::new(engine.clone())));
+    let ChartBasis { moment, camera, size, base, .. } = job.of;
+    // Enough for the largest number of triangles that is measured, in one chunk.
+    let mut scene = engine.scene(&job.loaded, ARENA_BYTES / 4)?;
+    scene.frame_clip(moment.map(|moment| moment.clip));
+    scene.set_moment(moment)?;
+    let target = Target::new(&engine.gpu, size)?;
+    let (mesh, reference_shape) = (job.loaded.source.to_string(), job.reference_shape.as_deref());
+    let mut bench =
+        Bench { engine: &engine, mesh, scene, target: &target, camera, reference_shape, base, effort: job.effort };
+    if let Some(settings) = job.current.filter(|_| goes_on()) {
+        let probe = bench.probe(&settings)?;
+        engine.gpu.check()?;
+        say(ChartMessage::Current(Box::new(settings), probe));
     }
-
-    fn run(&self, job: Job, engine: Option<Engine>) -> Result<(), GpuError> {
-        let engine = match engine {
-            Some(engine) => engine,
-            None => Engine::new(Gpu::on(&job.adapter)?),
-        };
-        self.say(ChartMessage::Engine(Box::new(engine.clone())));
-        let ChartBasis { moment, camera, size, base, .. } = job.of;
-        // Enough for the largest number of triangles that is measured, in one chunk.
-        let mut scene = engine.scene(&job.loaded, ARENA_BYTES / 4)?;
-        scene.frame_clip(moment.map(|moment| moment.clip));
-        scene.set_moment(moment)?;
-        let target = Target::new(&engine.gpu, size)?;
-        let (mesh, reference_shape) = (job.loaded.source.to_string(), job.reference_shape.as_deref());
-        let mut bench =
-            Bench { engine: &engine, mesh, scene, target: &target, camera, reference_shape, base, effort: job.effort };
-        if let Some(settings) = job.current.filter(|_| self.goes_on()) {
-            let probe = bench.probe(&settings)?;
-            engine.gpu.check()?;
-            self.say(ChartMessage::Current(Box::new(settings), probe));
+    for setting in job.settings {
+        if !goes_on() {
+            break;
         }
-        for setting in job.settings {
-            if !self.goes_on() {
-                break;
-            }
-            let row = bench.measure(&setting)?;
-            engine.gpu.check()?;
-            self.say(row.map_or(ChartMessage::LeftOut(setting), |row| ChartMessage::Row(Box::new(row))));
-        }
-        Ok(())
+        let row = bench.measure(&setting)?;
+        engine.gpu.check()?;
+        say(row.map_or(ChartMessage::LeftOut(setting), |row| ChartMessage::Row(Box::new(row))));
     }
+    Ok(())
 }

@@ -14,6 +14,7 @@ use geometry::progress::Progress;
 use gpu::{LodShader, SurfaceShader};
 use inspect::engine::{self, Loaded, Preparation};
 use inspect::reference_shape::ReferenceShape;
+use inspect::render::LeftPose;
 use inspect::render::environment::Environment;
 use inspect::settings::{Colors, Lighting};
 use load::environment_file::EnvironmentFile;
@@ -208,9 +209,9 @@ impl App {
     /// is always the limit surface, and an exact surface isn't used for a displaced mesh.
     pub(in crate::app) fn yardstick(&self) -> (u64, Option<Arc<ReferenceShape>>, String) {
         let limit = || (0, None, "limit surface".to_owned());
-        let Some(document) = self.document.as_ref().filter(|_| self.viewport.playback.moment().is_none()) else {
-            return limit();
-        };
+        let playback = self.viewport.playback;
+        let at_rest = playback.moment().is_none() && playback.left == LeftPose::Same;
+        let Some(document) = self.document.as_ref().filter(|_| at_rest) else { return limit() };
         if let Some(chosen) = &self.reference_shape {
             let name = chosen.from.as_ref().map_or_else(|| "subdivision limit".to_owned(), Source::title);
             return (chosen.generation, Some(chosen.content.clone()), name);
@@ -321,8 +322,12 @@ impl App {
     /// Stops reading a file. The light before it stays.
     pub(in crate::app) fn cancel_environment(&mut self) {
         self.jobs.stop(Work::Companion(CompanionFile::Environment));
-        if self.environment.is_none() && self.settings.lighting == Lighting::Environment {
-            self.settings.lighting = Lighting::Studio;
+        if self.environment.is_none() {
+            self.settings.change_looks(|own| {
+                if own.lighting == Lighting::Environment {
+                    own.lighting = Lighting::Studio;
+                }
+            });
         }
     }
 }

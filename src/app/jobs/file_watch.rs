@@ -77,16 +77,10 @@ impl App {
         }
         let watch = move |wanted: &Progress, changed: &dyn Fn(()) -> bool| watch(files, wanted, || changed(()));
         self.jobs.follow(context, Work::MeshFiles, watch, |app, context, change| {
-            if change.is_some() {
-                app.follow_files(context);
+            if change.is_some() && app.jobs.load().is_none_or(|load| load.keep_view) {
+                app.reload(context);
+                app.jobs.last_load.iter_mut().for_each(|load| load.has_changed = true);
             }
         });
-    }
-
-    fn follow_files(&mut self, context: &egui::Context) {
-        if self.jobs.load().is_none_or(|load| load.keep_view) {
-            self.reload(context);
-            self.jobs.last_load.iter_mut().for_each(|load| load.has_changed = true);
-        }
     }
 }

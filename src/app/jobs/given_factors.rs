@@ -7,7 +7,6 @@ use super::companion_files::{OpenFile, absolute_path};
 use super::job_list::Work;
 use crate::app::App;
 use crate::commands::CompanionFile;
-use geometry::mesh::Topology;
 use geometry::names::shown_path;
 use geometry::tessellate::{Convention, HullFactors, Lod, Partitioning};
 use gpu::LodShader;
@@ -19,22 +18,10 @@ use inspect::shot::read_factors;
 pub(crate) struct GivenFactors {
     pub(super) factors: Arc<Vec<HullFactors>>,
     partitioning: Partitioning,
-    /// Where they disagree; none while they are compared under another convention than before.
-    pub compared: Option<ComparedFactors>,
+    /// Where they disagree under a convention; none while they are compared under another one than before.
+    pub compared: Option<(Convention, Agreement)>,
     /// The LOD before.
     pub lod: Lod,
-}
-
-/// Where factors of a file disagree under a convention.
-pub(crate) struct ComparedFactors {
-    convention: Convention,
-    pub agreement: Agreement,
-}
-
-impl ComparedFactors {
-    fn new(topology: &Topology, factors: &[HullFactors], convention: Convention) -> Self {
-        Self { convention, agreement: Agreement::new(topology, factors, convention) }
-    }
 }
 
 /// Whether the columns of a file that was read for one partitioning say the same under another.
@@ -54,8 +41,8 @@ impl App {
         let (wanted, partitioning) = (path.clone(), own.partitioning);
         let read = move |_: &_| {
             let factors = read_factors(&wanted, &mesh, &topology, partitioning).map_err(|error| error.to_string())?;
-            let compared = ComparedFactors::new(&topology, &factors, own.convention);
-            Ok((Arc::new(factors), compared))
+            let agreement = Agreement::new(&topology, &factors, own.convention);
+            Ok((Arc::new(factors), (own.convention, agreement)))
         };
         let what = shown_path(&path);
         let take = move |app: &mut Self, (factors, compared)| {
@@ -109,12 +96,12 @@ impl App {
             self.forget_factors();
             return self.open_factors(context, path);
         }
-        if given.content.compared.as_ref().is_none_or(|compared| compared.convention == own.convention) {
+        if given.content.compared.as_ref().is_none_or(|(of, _)| *of == own.convention) {
             return;
         }
         given.content.compared = None;
         let (factors, topology) = (given.content.factors.clone(), document.loaded.topology.clone());
-        let compare = move |_: &_| Ok(ComparedFactors::new(&topology, &factors, own.convention));
+        let compare = move |_: &_| Ok((own.convention, Agreement::new(&topology, &factors, own.convention)));
         let take = |app: &mut Self, compared| {
             if let Some(given) = &mut app.given {
                 given.content.compared = Some(compared);

@@ -136,7 +136,8 @@ impl Jobs {
             let landing: Landing = Box::new(move |app, context| land(app, context, ended));
             Some(landing)
         };
-        self.add(work, title, progress, false, Box::new(poll));
+        let (since, poll) = (Instant::now(), Box::new(poll));
+        self.add(Job { work, title, progress, since, poll, goes_on: false, has_landed: false });
     }
 
     /// Starts a job that goes on after it has found something, on a thread of its own. It says each thing that it finds, which returns
@@ -162,7 +163,8 @@ impl Jobs {
             };
             is_there.then(|| Box::new(landing) as Landing)
         };
-        self.add(work, String::new(), progress, true, Box::new(poll));
+        let (title, since, poll) = (String::new(), Instant::now(), Box::new(poll));
+        self.add(Job { work, title, progress, since, poll, goes_on: true, has_landed: false });
         spawn(move || {
             job(&wanted, &|found| {
                 let is_wanted = sender.send(found).is_ok();
@@ -174,16 +176,9 @@ impl Jobs {
         })
     }
 
-    fn add(
-        &mut self,
-        work: Work,
-        title: String,
-        progress: Progress,
-        goes_on: bool,
-        poll: Box<dyn FnMut() -> Option<Landing>>,
-    ) {
-        self.stop(work);
-        self.jobs.push(Job { work, title, progress, since: Instant::now(), poll, goes_on, has_landed: false });
+    fn add(&mut self, job: Job) {
+        self.stop(job.work);
+        self.jobs.push(job);
     }
 
     pub(crate) fn get(&self, work: Work) -> Option<&Job> {

@@ -92,18 +92,11 @@ struct Surveyed {
 struct ReadFactors {
     /// This many bytes of the patches' factors come first.
     patch_bytes: usize,
-    asked: FactorSource,
+    /// Whether LOD gave the others for every edge or for every side. None: an LOD shader gave a [`HullFactors`] for every patch.
+    of_lod: Option<Edges>,
     convention: Convention,
     /// Factors that a file gave in place of those of LOD.
     given: Option<RequestedFactors>,
-}
-
-/// What gave the factors that were asked for.
-enum FactorSource {
-    /// LOD, for every edge or every side.
-    Lod(Edges),
-    /// An LOD shader, a [`HullFactors`] for every patch.
-    Shader,
 }
 
 impl MeasureJob {
@@ -203,11 +196,11 @@ fn read_factors(gpu: &Gpu, scene: &Scene) -> (ReadFactors, Readback) {
     let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
     let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes.end).sum();
     let sizes = scene.tessellator.buffers();
-    let (asked, buffer, requested_bytes) = match scene.tessellator.user_factors() {
-        Some(own) => (FactorSource::Shader, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
+    let (of_lod, buffer, requested_bytes) = match scene.tessellator.user_factors() {
+        Some(own) => (None, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
         None => {
-            let (of_lod, edges) = scene.tessellator.edge_factors();
-            (FactorSource::Lod(edges), of_lod, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
+            let (factors, edges) = scene.tessellator.edge_factors();
+            (Some(edges), factors, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
         }
     };
     let readback = Readback::start(gpu, buffers.chain([(buffer, 0..requested_bytes)]));
@@ -216,22 +209,19 @@ fn read_factors(gpu: &Gpu, scene: &Scene) -> (ReadFactors, Readback) {
         Some(Given::Factors(given)) => Some(RequestedFactors::given(convention, given)),
         _ => None,
     };
-    (ReadFactors { patch_bytes: patch_bytes as usize, asked, convention, given }, readback)
+    (ReadFactors { patch_bytes: patch_bytes as usize, of_lod, convention, given }, readback)
 }
 
 /// Surveys everything that is emitted. Returns `None` if the result is no longer wanted, or the device was lost.
 fn survey(parts: &Parts, posed: &PosedMesh, factors: ReadFactors, view: ScreenView) -> Option<Surveyed> {
     let (mesh, topology) = posed.deformed();
-    let ReadFactors { patch_bytes, asked, convention, given } = factors;
+    let ReadFactors { patch_bytes, of_lod, convention, given } = factors;
     let bytes = parts.first()?;
     let (factors, read) = bytes.split_at(patch_bytes);
-    let own: Vec<HullFactors> = match asked {
-        FactorSource::Shader => bytemuck::pod_collect_to_vec(read),
-        FactorSource::Lod(_) => Vec::new(),
-    };
-    let asked = given.unwrap_or_else(|| match asked {
-        FactorSource::Shader => RequestedFactors::given(convention, &own),
-        FactorSource::Lod(edges) => RequestedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
+    let own: Vec<HullFactors> = if of_lod.is_none() { bytemuck::pod_collect_to_vec(read) } else { Vec::new() };
+    let asked = given.unwrap_or_else(|| match of_lod {
+        None => RequestedFactors::given(convention, &own),
+        Some(edges) => RequestedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
     });
     // Where the sides of edges got different factors from a shader is told as it is of a file.
     let agreement = (!own.is_empty()).then(|| Agreement::new(&topology, &own, convention));

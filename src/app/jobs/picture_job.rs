@@ -173,8 +173,22 @@ impl App {
     }
 
     pub(in crate::app) fn saved_settings_of(&self, theme: egui::Theme, choices: &PictureChoices) -> Settings {
-        let settings = self.settings_in(theme);
-        if choices.overlays { settings } else { Settings { overlays: Overlays::default(), ..settings } }
+        let mut settings = self.settings_in(theme);
+        if !choices.overlays {
+            settings.change_looks(|own| own.overlays = Overlays::default());
+        }
+        settings
+    }
+
+    /// From where a picture with these choices is seen.
+    pub(in crate::app) fn shot_view(&self, choices: &PictureChoices) -> ShotView {
+        ShotView {
+            camera: self.viewport.camera,
+            lod_camera: self.viewport.frozen.map(|frozen| (frozen.camera, frozen.viewport)),
+            size: self.saved_size(choices),
+            transparent: choices.transparent,
+            legend: choices.legend,
+        }
     }
 
     /// What a picture with these choices is drawn from; none without a mesh. `command` draws the same.
@@ -184,14 +198,15 @@ impl App {
         let topology = document.shown().1;
         let lines = |half| {
             let hit = if half == SplitSide::Right { self.hit_lines() } else { Vec::new() };
-            let is_of_mesh = half == SplitSide::Right || self.left_mesh.is_none();
-            let selected = if is_of_mesh { self.selection_lines(&topology, half) } else { Vec::new() };
+            let selected =
+                if document.scene.shares_pose(half) { self.selection_lines(&topology, half) } else { Vec::new() };
             [self.ruler_lines(), selected, hit].concat()
         };
         let subject = Subject {
             loaded: document.loaded.clone(),
             left: self.left_mesh.as_ref().map(|left| left.content.clone()),
             moment: document.moment,
+            left_pose: document.scene.left_pose(),
             given: document.scene.tessellator.given().cloned(),
             surface_shader: document.scene.tessellator.surface_shader().cloned(),
             matcap: self.matcap.as_ref().map(|chosen| chosen.content.clone()),
@@ -203,20 +218,13 @@ impl App {
             more_lines: if choices.overlays { SplitSide::BOTH.map(lines) } else { Default::default() },
             arena_bytes: arena_bytes(&self.engine),
         };
-        let view = ShotView {
-            camera: self.viewport.camera,
-            lod_camera: self.viewport.frozen.map(|frozen| (frozen.camera, frozen.viewport)),
-            size: self.saved_size(choices),
-            transparent: choices.transparent,
-            legend: choices.legend,
-        };
         let make = Box::new(document.scene.sibling(subject.arena_bytes));
-        Some(ShotParts { engine: self.engine.clone(), make, subject, view })
+        Some(ShotParts { engine: self.engine.clone(), make, subject, view: self.shot_view(choices) })
     }
 
     /// What commands compare with, and its name: the chosen surface; and while the overlay is on, an exact one.
     fn reference_surface(&self, settings: &Settings) -> Option<(String, Arc<ReferenceShape>)> {
-        let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
+        let is_shown = settings.halves().any(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface);
         let (own, reference_shape) = (self.source()?.to_string(), self.yardstick().1?);
         let name = match self.reference_shape.as_ref().map(|chosen| &chosen.from) {
             Some(Some(source)) => source.to_string(),

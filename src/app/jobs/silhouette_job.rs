@@ -82,7 +82,7 @@ impl MeasuredOutlines {
 
 impl App {
     fn shows_silhouette(&self) -> bool {
-        self.settings.overlays.colors.source() == ColorSource::Outlines
+        self.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::Outlines)
     }
 
     /// Goes on comparing outlines, once all else that is shown was measured. Without the overlay nothing of it is kept.

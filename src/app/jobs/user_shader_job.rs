@@ -219,7 +219,6 @@ impl App {
 
     /// Takes a new version of the file; none if its watch has ended.
     fn take_version<S: UserShaderSlot>(&mut self, version: Option<Read<S>>) {
-        let own = *S::setting(&mut self.settings.tessellation);
         let Some(open) = S::slot(self) else { return };
         let was_used = open.is_used();
         match version {
@@ -236,10 +235,9 @@ impl App {
                 return;
             }
         }
-        if open.is_used() && !was_used {
-            // It may have been set while the file was read.
-            open.replaced = own;
-            *S::setting(&mut self.settings.tessellation) = S::PLACEHOLDER;
+        if !was_used {
+            // The setting may have been set while the file was read.
+            self.replace_again::<S>();
         }
     }
 

@@ -6,7 +6,8 @@ use crate::app::App;
 use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
 use geometry::tessellate::Tessellation;
 use inspect::settings::Settings;
-use lab::chart::{Cost, Effort, Plan, Probe, Row, SaveError, Setting, Subject, coarse_first, save, whole};
+use inspect::shot::ShotError;
+use lab::chart::{Cost, Effort, Plan, Probe, Row, Setting, Subject, coarse_first, save, whole};
 use load::Source;
 
 #[derive(Default)]
@@ -56,8 +57,8 @@ impl App {
     ///
     /// # Errors
     /// The path has another ending, or can't be written. Without a chart nothing is written.
-    pub fn save_chart(&self, path: &Path) -> Result<(), SaveError> {
-        self.panels.chart.charted().map_or(Ok(()), |charted| save(path, &charted.subject))
+    pub fn save_chart(&self, path: &Path) -> Result<(), ShotError> {
+        self.panels.chart.charted().map_or(Ok(()), |charted| save(path, std::slice::from_ref(&charted.subject)))
     }
 
     /// What a chart that is measured now would be about.

@@ -5,6 +5,7 @@ use egui_plot::{GridInput, GridMark, Plot, PlotPoint, PlotTransform};
 
 use crate::app::jobs::chart_job::Charted;
 use inspect::plot::INK;
+use inspect::settings::Settings;
 use lab::chart::{Axis, Cost, Fill, Method, MethodStyle, Probe, RADIUS, Row, Setting, Shape, Tick, method_styles};
 
 pub(super) struct Diagram<'a> {
@@ -19,7 +20,7 @@ pub(super) struct Diagram<'a> {
 pub(super) enum Spot<'a> {
     Row(&'a Row),
     /// The window's settings, measured beside the list.
-    Current,
+    Current(&'a Settings, &'a Probe),
 }
 
 /// How far around a point the pointer finds it, in points.
@@ -78,7 +79,8 @@ impl<'a> Diagram<'a> {
     fn spots(&self) -> Vec<(Spot<'a>, [f64; 2])> {
         let subject = &self.charted.subject;
         let at = |probe: &Probe| Some([self.cost.of(probe), subject.error(probe)? * subject.unit()]);
-        let current = self.charted.current.and_then(|(_, probe)| Some((Spot::Current, at(&probe?)?)));
+        let current = self.charted.current.as_ref().and_then(|(settings, probe)| Some((settings, probe.as_ref()?)));
+        let current = current.and_then(|(settings, probe)| Some((Spot::Current(settings, probe), at(probe)?)));
         let of_rows = subject.rows.iter().filter_map(|row| Some((Spot::Row(row), at(&row.probe)?)));
         of_rows.chain(current).collect()
     }
@@ -112,8 +114,7 @@ impl<'a> Diagram<'a> {
             match spot {
                 Spot::Row(row) if Some(row.setting) == self.own => self.ring(ui, canvas, place),
                 Spot::Row(_) => {}
-                Spot::Current => {
-                    let Some((settings, _)) = &self.charted.current else { continue };
+                Spot::Current(settings, _) => {
                     marker(&canvas.painter, place, &MethodStyle::from_surface(settings.tessellation.surface), &inks);
                     self.ring(ui, canvas, place);
                 }

@@ -181,10 +181,7 @@ fn picked(ui: &mut egui::Ui, diagram: &Diagram) -> Option<Setting> {
     let (spot, is_clicked) = diagram.show(ui)?;
     let text = match spot {
         Spot::Row(row) => format!("{}\n{}", named(&row.setting), facts(diagram.charted, &row.probe)),
-        Spot::Current => {
-            let measured = diagram.charted.current.and_then(|(_, probe)| probe)?;
-            format!("The window's settings\n{}", facts(diagram.charted, &measured))
-        }
+        Spot::Current(_, probe) => format!("The window's settings\n{}", facts(diagram.charted, probe)),
     };
     let (layer, id) = (ui.layer_id(), ui.scope_id().with("point"));
     egui::Tooltip::always_open(ui.ctx().clone(), layer, id, egui::PopupAnchor::Pointer).show(|ui| ui.label(text));
@@ -225,24 +222,21 @@ fn facts(charted: &Charted, probe: &Probe) -> String {
 /// The legend of points and lines, for what is measured and for what a plan adds to it.
 fn legend(ui: &mut egui::Ui, charted: &Charted, plan: Option<&Plan>, is_stale: bool) {
     let inks = Inks::new(ui, is_stale);
-    let methods: Vec<_> = method_styles(&charted.subject).into_iter().map(|(method, _)| method).collect();
-    let has_surface = |surface: Surface| {
-        let is_planned = plan.is_some_and(|plan| plan.surfaces.contains(&surface));
-        is_planned || methods.iter().any(|method| method.surface == surface)
-    };
-    let has_lod = |lod: LodKind| {
-        let is_planned = plan.is_some_and(|plan| plan.lods.contains(&lod));
-        is_planned || methods.iter().any(|method| method.lod == lod)
-    };
+    let methods = method_styles(&charted.subject).into_iter().map(|(method, _)| (method.surface, method.lod));
+    let (mut surfaces, mut lods): (Vec<_>, Vec<_>) = methods.unzip();
+    if let Some(plan) = plan {
+        surfaces.extend(&plan.surfaces);
+        lods.extend(&plan.lods);
+    }
     ui.horizontal_wrapped(|ui| {
-        for surface in Surface::ALL.into_iter().filter(|surface| has_surface(*surface)) {
+        for surface in Surface::ALL.into_iter().filter(|surface| surfaces.contains(surface)) {
             let place = legend_entry(ui, 10.0, surface.label(), surface.text());
             marker(ui.painter(), place.center(), &MethodStyle::from_surface(surface), &inks);
         }
         let sample = |ui: &egui::Ui, place: egui::Rect, stroke: egui::Stroke, dash: Option<[f64; 2]>| {
             line(ui.painter(), &[place.left_center(), place.right_center()], stroke, dash);
         };
-        for lod in LodKind::ALL.into_iter().filter(|lod| has_lod(*lod)) {
+        for lod in LodKind::ALL.into_iter().filter(|lod| lods.contains(lod)) {
             let place = legend_entry(ui, 30.0, lod.label(), "The dashes of lines between settings with this LOD.");
             sample(ui, place, egui::Stroke::new(1.4, inks.text), dash(lod));
         }

@@ -68,10 +68,8 @@ impl App {
         ui.horizontal(|ui| {
             ui.label(RichText::new(format!("Edge {edge}")).strong());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                closed = ui
-                    .small_button("Deselect")
-                    .on_hover_text(with_key("Closes this section.", &Action::Cancel))
-                    .clicked();
+                let hover = with_key("Closes this section.", &Action::Cancel);
+                closed = ui.small_button("Deselect").on_hover_text(hover).clicked();
             });
         });
         ui.separator();

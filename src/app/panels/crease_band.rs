@@ -2,6 +2,7 @@
 
 use crate::app::App;
 use crate::app::text::short;
+use crate::app::widgets::control_row;
 use geometry::mesh::crease_band::WIDEST;
 
 impl App {
@@ -20,11 +21,9 @@ impl App {
                 creases => format!(" Here it is {wide} object units wide, along {creases} creases."),
             }
         );
-        let label = ui.label("Crease band").on_hover_text(&hover);
         let drag =
             egui::DragValue::new(&mut percent).range(0.0..=100.0 * WIDEST).speed(0.02).max_decimals(3).suffix(" %");
-        let response = ui.add(drag.update_while_editing(false)).labelled_by(label.id).on_hover_text(&hover);
-        ui.end_row();
+        let response = control_row(ui, "Crease band", &hover, drag.update_while_editing(false));
         if response.changed() {
             self.panels.dragged_crease_band = Some(percent / 100.0);
         }

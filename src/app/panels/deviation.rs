@@ -11,7 +11,7 @@ use crate::app::text::{grouped, short, shortened};
 use crate::app::widgets::{fact, marked, number};
 use geometry::tessellate::Inputs;
 use geometry::view::project;
-use inspect::gates::Spot;
+use inspect::gates::{PatchSpot, Spot};
 use inspect::measure::{DeviationTarget, MOST_TRIANGLES};
 use inspect::render::layout::WORST_COLOR;
 use inspect::render::{Distances, LineSegment, Scale, deviation_scale, worst_lines};
@@ -37,8 +37,13 @@ impl App {
         self.uses_surface_shader() && self.yardstick().1.is_none()
     }
 
-    fn shows_deviation(&self) -> bool {
-        self.settings.overlays.colors.source() == ColorSource::ReferenceSurface
+    pub(in crate::app) fn shows_deviation(&self) -> bool {
+        SplitSide::BOTH.into_iter().any(|half| self.deviates(half))
+    }
+
+    /// Whether a half shows its deviation.
+    fn deviates(&self, half: SplitSide) -> bool {
+        self.settings.half(half).is_some_and(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface)
     }
 
     /// Counts changes of the deviation that the picture shows; 0 without the overlay.
@@ -75,9 +80,12 @@ impl App {
             return Ok(());
         }
         for half in SplitSide::BOTH {
-            let Some(of) = self.deviation_of(half).filter(|_| self.settings.half(half).is_some()) else { continue };
-            let reference_shape = self.yardstick().1;
+            let (of, reference_shape) = (self.deviation_of(half).filter(|_| self.deviates(half)), self.yardstick().1);
             let Some(document) = self.document.as_mut() else { continue };
+            let Some(of) = of else {
+                document.halves[half as usize].deviation.stop();
+                continue;
+            };
             let is_posed = document.moment == self.viewport.playback.moment();
             let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
             let Some(scene) = scene else { continue };
@@ -94,7 +102,7 @@ impl App {
     /// The colour scale in object units, for the larger of the halves' last known deviations.
     fn deviation_scale(&self) -> Option<Scale> {
         let scene = &self.document.as_ref()?.scene;
-        let shown = SplitSide::BOTH.into_iter().filter(|half| self.settings.half(*half).is_some());
+        let shown = SplitSide::BOTH.into_iter().filter(|half| self.deviates(*half));
         let largest = shown
             .filter_map(|half| self.deviating(half)?.found.as_ref())
             .map(|found| found.largest.at_least)
@@ -113,14 +121,14 @@ impl App {
 
     /// The lines that mark the point of a half that is farthest from the reference surface.
     pub(in crate::app) fn worst_mark(&self, half: SplitSide) -> Vec<LineSegment> {
-        let shown = self.known_deviation(half).filter(|_| self.shows_deviation());
+        let shown = self.known_deviation(half).filter(|_| self.deviates(half));
         let worst = shown.and_then(|found| found.worst);
         worst.map_or_else(Vec::new, |worst| worst_lines(worst.emitted.as_vec3(), worst.reference_shape.as_vec3()))
     }
 
     /// The number of the result that each half's mark shows; 0 for no mark.
     pub(in crate::app) fn worst_marked(&self) -> [u64; 2] {
-        let is_marked = |half| self.shows_deviation() && self.known_deviation(half).is_some();
+        let is_marked = |half| self.deviates(half) && self.known_deviation(half).is_some();
         let marked = |half| self.deviating(half).filter(|_| is_marked(half));
         SplitSide::BOTH.map(|half| marked(half).map_or(0, |job| job.generation))
     }
@@ -135,10 +143,8 @@ impl App {
 
     /// The largest distance of a half, in the overlay's unit; none without the overlay. Until it is known, it is an ellipsis.
     pub(in crate::app) fn largest_text(&self, half: SplitSide) -> Option<String> {
-        if !self.shows_deviation() {
-            return None;
-        }
-        let (number, unit) = match self.settings.deviation_in {
+        let settings = self.settings.half(half).filter(|_| self.deviates(half))?;
+        let (number, unit) = match settings.deviation_in {
             SurfaceUnit::Units => (self.known_deviation(half).map(|found| found.largest.at_least), "units"),
             SurfaceUnit::Px => (self.deviation_px(half), "px"),
         };
@@ -171,7 +177,7 @@ impl App {
                 fact(ui, "Last refinement", &format!("{} units", short(step)), hover);
             }
             option_row(ui, &options::DEVIATION_IN, &mut self.settings, "");
-            for half in SplitSide::BOTH {
+            for half in SplitSide::BOTH.into_iter().filter(|half| self.deviates(*half)) {
                 let surface = self.surface_title(half);
                 let place = if half == SplitSide::Left { "Left" } else { "Right" };
                 if is_split {
@@ -241,6 +247,6 @@ impl App {
         let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
         let Some(document) = &self.document else { return };
         let corners = document.patch_positions(half, worst.patch);
-        self.show_place(half, &Spot::patch(corners, worst.emitted.as_vec3()), None);
+        self.show_place(half, &Spot::Patch(PatchSpot::new(corners, worst.emitted.as_vec3())), None);
     }
 }

@@ -1,6 +1,6 @@
 //! The rows for displacement: choosing a height map, which loads the mesh again, and its options.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::option_rows::{option_hover, option_row, option_row_with};
 use crate::app::App;
@@ -14,18 +14,15 @@ use inspect::settings::options;
 use load::environment_file::is_environment;
 use load::{HeightSource, Source};
 
-/// Whether a path names an image rather than a mesh.
-fn is_image(path: &Path) -> bool {
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    matches!(extension.as_deref(), Some("png" | "jpg" | "jpeg" | "webp" | "tif" | "tiff"))
-}
-
 impl App {
     /// Opens a mesh. An image displaces the mesh that is open instead, and a panorama lights it.
     pub fn open_path(&mut self, context: &egui::Context, path: PathBuf) {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        let images = ["png", "jpg", "jpeg", "webp", "tga", "bmp", "ktx2", "tif", "tiff"];
+        let is_image = extension.is_some_and(|extension| images.contains(&&*extension));
         if is_environment(&path) {
             self.open_environment(context, path);
-        } else if is_image(&path) && self.document.is_some() {
+        } else if is_image && self.document.is_some() {
             self.displace(context, Some(HeightSource::File(path)));
         } else {
             self.open(context, Source::File(path));

@@ -11,30 +11,17 @@ use inspect::measure::Agreement;
 use inspect::settings::Choice;
 
 impl App {
-    /// The section about a file of factors, if one is open.
+    /// The section about factors of a file or of an LOD shader, if those that are shown come from one.
     pub(in crate::app) fn given_section(&mut self, ui: &mut egui::Ui) {
-        let Some(given) = &self.given else { return };
-        if !self.panels.open.title(ui, Section::Factors) {
-            return;
-        }
-        let Some(compared) = &given.content.compared else {
-            ui.weak("The factors are being compared\u{2026}");
-            return;
-        };
-        agreement_rows(ui, &compared.agreement);
-        self.convention_advice(ui);
-        self.disagreements(ui);
-    }
-
-    /// The section about factors of an LOD shader, if it gives those that are shown.
-    pub(in crate::app) fn lod_shader_section(&mut self, ui: &mut egui::Ui) {
-        if !self.uses_lod_shader() || !self.panels.open.title(ui, Section::LodShader) {
+        let section = if self.uses_lod_shader() { Section::LodShader } else { Section::Factors };
+        if (self.given.is_none() && section == Section::Factors) || !self.panels.open.title(ui, section) {
             return;
         }
         match self.agreement() {
             Some(agreement) => agreement_rows(ui, agreement),
             None => return drop(ui.weak("The factors are being compared\u{2026}")),
         }
+        self.convention_advice(ui);
         if let Some(said) = self.not_numbers_said() {
             ui.add(egui::Label::new(RichText::new(said).color(ui.visuals().warn_fg_color)).wrap());
         }
@@ -45,15 +32,15 @@ impl App {
     pub(super) fn agreement(&self) -> Option<&Agreement> {
         match self.uses_lod_shader() {
             true => self.results()?.agreement.as_ref(),
-            false => Some(&self.given.as_ref()?.content.compared.as_ref()?.agreement),
+            false => Some(&self.given.as_ref()?.content.compared.as_ref()?.1),
         }
     }
 
-    /// Says which convention fits, if edges differ under the one that is set, and offers it.
+    /// Says which convention fits a file, if edges differ under the one that is set, and offers it.
     fn convention_advice(&mut self, ui: &mut egui::Ui) {
-        let Some(compared) = self.given.as_ref().and_then(|given| given.content.compared.as_ref()) else { return };
-        let Some((nearest, different)) = compared.agreement.nearest() else { return };
-        let own = compared.agreement.edges.len() as u64;
+        let Some(agreement) = self.agreement().filter(|_| self.given.is_some()) else { return };
+        let Some((nearest, different)) = agreement.nearest() else { return };
+        let own = agreement.edges.len() as u64;
         if different >= own {
             let text = "No other convention makes more sides agree.";
             return if own > 0 {

@@ -38,6 +38,7 @@ impl App {
             option_row(ui, &options::SUBDIVIDE, &mut self.settings, "");
             if self.settings.import.subdivide != Subdivide::Off {
                 option_row(ui, &options::LEVELS, &mut self.settings, "");
+                option_row(ui, &options::SUBDIVIDE_UVS, &mut self.settings, "");
             }
         }
     }

@@ -49,12 +49,6 @@ pub(super) fn option_hover(option: &Declaration, key: &str) -> String {
     with_note(option.text, &if key.is_empty() { name } else { format!("{key}; {name}") })
 }
 
-/// Returns by how much the button of a number is wider than usual, in points.
-fn beyond(ui: &egui::Ui, number: &str) -> f32 {
-    let spacing = ui.spacing();
-    (text_width(ui, number) + 2.0 * spacing.button_padding.x - spacing.interact_size.x).max(0.0)
-}
-
 /// A row with a slider for the number of an option. The row's name is given with the option.
 fn number_row(
     ui: &mut egui::Ui,
@@ -79,8 +73,9 @@ fn number_row(
         .update_while_editing(false);
     let idle = (option.no_effect)(settings);
     // A long number takes its room from the track, so that the row stays as wide as the others.
-    let track = ui.spacing().slider_width;
-    ui.spacing_mut().slider_width = (track - beyond(ui, &shown)).max(LEAST_TRACK);
+    let (track, usual) = (ui.spacing().slider_width, ui.spacing().interact_size.x);
+    let beyond = (text_width(ui, &shown) + 2.0 * ui.spacing().button_padding.x - usual).max(0.0);
+    ui.spacing_mut().slider_width = (track - beyond).max(LEAST_TRACK);
     let response = ui.add_enabled(idle.is_none(), slider).labelled_by(label.id).on_hover_text(hover);
     ui.spacing_mut().slider_width = track;
     if response.on_disabled_hover_text(idle.unwrap_or_default()).changed() {

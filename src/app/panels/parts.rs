@@ -14,9 +14,10 @@ use geometry::mesh::PartStyle;
 use geometry::names::{shortened, shown};
 use geometry::tessellate::Surface;
 use inspect::render::framed_size;
-use load::ShownParts;
+use inspect::settings::options;
 use load::part_tree::{Branch, end, leaves};
-use load::selection::{MATERIAL, is_material, is_part_of};
+use load::selection::{MATERIAL, is_part_of};
+use load::{NormalSource, ShownParts};
 
 /// The greatest length of a name in a list, in characters.
 pub(super) const LONGEST: usize = 40;
@@ -37,7 +38,7 @@ enum PartAction {
     Solo(usize),
     Frame(usize),
     CopyName(usize),
-    /// Gives it a surface and a detail of its own.
+    /// Gives it a style of its own.
     Style(usize, PartStyle),
     ShowAll,
 }
@@ -247,36 +248,40 @@ fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize, selected: &ShownP
         ui.add_enabled(is_possible, egui::Button::new(label)).clicked().then_some(action)
     };
     let mut chosen = entries.into_iter().filter_map(chosen).last();
-    if !is_material(&branch.path) {
-        let style = style_entries(ui, selected.style(&branch.name));
-        chosen = style.map(|style| PartAction::Style(at, style)).or(chosen);
-    }
+    let style = style_entries(ui, selected.style(&branch.name));
+    chosen = style.map(|style| PartAction::Style(at, style)).or(chosen);
     if chosen.is_some() {
         ui.close();
     }
     chosen
 }
 
-/// The surfaces and details that a part may have of its own. Returns its style, if another is chosen.
+/// What a part may have of its own. Returns its style, if another is chosen.
 fn style_entries(ui: &mut egui::Ui, style: PartStyle) -> Option<PartStyle> {
     let mut chosen = None;
-    let mut entry = |ui: &mut egui::Ui, own: PartStyle, label: &str, hover: &str| {
-        if ui.radio(own == style, label).on_hover_text(hover).clicked() {
-            chosen = Some(own);
-        }
+    let mut menu = |title: &str, unset: (PartStyle, &'static str), own: Vec<(PartStyle, String, &'static str)>| {
+        ui.menu_button(title, |ui| {
+            let unset = (unset.0, "As set for all".to_owned(), unset.1);
+            for (own, label, hover) in std::iter::once(unset).chain(own) {
+                if ui.radio(own == style, label).on_hover_text(hover).clicked() {
+                    chosen = Some(own);
+                }
+            }
+        });
     };
-    ui.menu_button("Its surface", |ui| {
-        entry(ui, PartStyle { surface: None, ..style }, "As set for all", "The surface that the settings choose.");
-        for surface in Surface::ALL {
-            entry(ui, PartStyle { surface: Some(surface), ..style }, surface.label(), surface.text());
-        }
-    });
-    ui.menu_button("Its detail", |ui| {
-        entry(ui, PartStyle { detail: None, ..style }, "As set for all", "As fine as LOD makes the rest.");
-        for (detail, label) in DETAILS.map(|(detail, label)| (Some(detail), label)) {
-            let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
-            entry(ui, PartStyle { detail, ..style }, label, hover);
-        }
-    });
+    let own = |own: Surface| (PartStyle { surface: Some(own), ..style }, own.label().to_owned(), own.text());
+    let unset = (PartStyle { surface: None, ..style }, "The surface that the settings choose.");
+    menu("Its surface", unset, Surface::ALL.map(own).to_vec());
+    let hover = "How many times as fine as the rest LOD makes it; an edge between parts gets the finest.";
+    let own = |(own, label): (f32, &str)| (PartStyle { detail: Some(own), ..style }, label.to_owned(), hover);
+    let unset = (PartStyle { detail: None, ..style }, "As fine as LOD makes the rest.");
+    menu("Its detail", unset, DETAILS.map(own).to_vec());
+    let own = |own: NormalSource| (PartStyle { normals: Some(own), ..style }, own.label().to_owned(), own.text());
+    let unset = (PartStyle { normals: None, ..style }, "The normals that the settings choose.");
+    menu("Its normals", unset, NormalSource::ALL.map(own).to_vec());
+    let hover = options::CREASE_ANGLE.text;
+    let own = |own: f32| (PartStyle { crease_angle: Some(own), ..style }, format!("{own}\u{b0}"), hover);
+    let unset = (PartStyle { crease_angle: None, ..style }, hover);
+    menu("Its crease angle", unset, [0.0, 30.0, 60.0, 90.0, 180.0].map(own).to_vec());
     chosen
 }

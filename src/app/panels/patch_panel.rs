@@ -14,19 +14,14 @@ use geometry::names;
 use geometry::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
 use geometry::tessellate::{
     Convention, ExplainedPatch, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh,
-    Vertex, domain_plan, domain_side, domain_triangle, factor_side, inside_cut, point_count, segments, triangle_count,
-    weight_corner,
+    Vertex, domain_side, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
 };
 use inspect::measure::EdgeSide;
 use inspect::render::layout::FACTOR_COLORS;
 use inspect::settings::Choice;
 
-enum Wish {
-    Select(Option<u32>),
-    Edge(u32),
-    Frame,
-    Deselect,
-}
+/// What is to be done once the rows are shown.
+type Wish = Box<dyn FnOnce(&mut App)>;
 
 /// The selected triangle, its patch, and what is known about them.
 pub(super) struct SelectedPatch<'a> {
@@ -103,13 +98,7 @@ impl App {
                 }
             }
         }
-        match wish {
-            None => {}
-            Some(Wish::Select(triangle)) => self.select_triangle(triangle),
-            Some(Wish::Edge(edge)) => self.select_only_edge(Some(edge)),
-            Some(Wish::Frame) => self.frame_patch(),
-            Some(Wish::Deselect) => self.deselect(),
-        }
+        wish.into_iter().for_each(|wish| wish(self));
     }
 
     /// What the selected patch's explanation is about: how the patch was emitted, and the mesh in its pose. None until that is
@@ -131,7 +120,7 @@ const NOT_EXPLAINED: &str =
 
 /// The number of the selected triangle, which can be dragged and typed, and the buttons beside it.
 fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Option<u32>) -> Option<Wish> {
-    let mut wish = None;
+    let mut wish: Option<Wish> = None;
     ui.horizontal(|ui| {
         let hover = "Number in the mesh, from 0. A file's triangles are grouped by material.";
         let label = ui.label("Triangle").on_hover_text(hover);
@@ -146,17 +135,17 @@ fn chosen_triangle(ui: &mut Ui, mesh: &Mesh, topology: &Topology, selected: Opti
             });
         let response = ui.add_sized([64.0, ui.spacing().interact_size.y], drag).labelled_by(label.id);
         if response.on_hover_text(hover).changed() {
-            wish = Some(Wish::Select(u32::try_from(number).ok()));
+            wish = Some(Box::new(move |app| app.select_triangle(u32::try_from(number).ok())));
         }
         let patch = selected.and_then(|triangle| topology.patch_of(triangle));
         let frame = ui.add_enabled(patch.is_some(), egui::Button::new("Frame").small());
         if frame.on_hover_text("Puts the patch in the middle of the view, seen from its front (Shift+F).").clicked() {
-            wish = Some(Wish::Frame);
+            wish = Some(Box::new(App::frame_patch));
         }
         let deselect = ui.add_enabled(selected.is_some(), egui::Button::new("Deselect").small());
         deselect.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, selected.is_some(), "Deselect patch"));
         if deselect.on_hover_text(with_key("Clears the selection.", &Action::Cancel)).clicked() {
-            wish = Some(Wish::Deselect);
+            wish = Some(Box::new(App::deselect));
         }
     });
     wish
@@ -224,11 +213,8 @@ impl SelectedPatch<'_> {
             None => "… points, … triangles".to_owned(),
             Some(factors) => format!("{} points, {} triangles", point_count(factors), triangle_count(factors)),
         };
-        title(
-            ui,
-            &format!("Pattern: {pattern}"),
-            "The domain points and triangles that the tessellator makes from these factors.",
-        );
+        let hover = "The domain points and triangles that the tessellator makes from these factors.";
+        title(ui, &format!("Pattern: {pattern}"), hover);
         let letters = [0, 1, 2].map(|i| format!("{} {}", weight_corner(self.convention, i), LETTERS[i as usize]));
         let empty = match self.factors {
             None if self.app.is_playing() => "measured when paused",
@@ -253,20 +239,20 @@ impl SelectedPatch<'_> {
             for i in 0..3 {
                 let k = domain_side(self.convention, i);
                 let side = &self.topology.sides[self.topology.patches[self.patch as usize].sides[k as usize] as usize];
-                let edge = &self.topology.edges[side.edge as usize];
+                let (number, edge) = (side.edge, &self.topology.edges[side.edge as usize]);
                 swatch(ui, FACTOR_COLORS[i as usize]);
                 let text = dense(ends_text(k));
-                let response = ui.selectable_label(self.app.selected_edge() == Some(side.edge), text);
+                let response = ui.selectable_label(self.app.selected_edge() == Some(number), text);
                 let named = format!("Edge {} of the patch", ends_text(k));
                 response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &named));
-                if response.on_hover_text(format!("Selects the edge, number {}.", side.edge)).clicked() {
-                    *wish = Some(Wish::Edge(side.edge));
+                if response.on_hover_text(format!("Selects the edge, number {number}.")).clicked() {
+                    *wish = Some(Box::new(move |app| app.select_only_edge(Some(number))));
                 }
                 ui.label(edge.kind.label()).on_hover_text(edge.kind.text());
                 let others = self.topology.edge_sides(edge).iter().map(|side| side.patch());
                 let others: Vec<_> = others.filter(|&patch| patch != self.patch).collect();
                 if let Some(triangle) = neighbours(ui, self.topology, &others) {
-                    *wish = Some(Wish::Select(Some(triangle)));
+                    *wish = Some(Box::new(move |app| app.select_triangle(Some(triangle))));
                 }
                 ui.end_row();
             }
@@ -275,11 +261,9 @@ impl SelectedPatch<'_> {
 
     /// Position, normal and uv of every corner.
     fn corner_rows(&self, ui: &mut Ui) {
-        title(
-            ui,
-            "Corners",
-            "Position in object units, unit normal and texture coordinates, as loaded. Hover texts have the exact numbers.",
-        );
+        let hover = "Position in object units, unit normal and texture coordinates, as loaded. Hover texts have the exact \
+                     numbers.";
+        title(ui, "Corners", hover);
         for (k, corner) in (0..).zip(self.topology.patch_corners(self.patch)) {
             let point = self.topology.corner_points[corner as usize];
             let (at, letter) = (&self.mesh.corners[corner as usize], letter(self.convention, k));
@@ -325,8 +309,7 @@ impl SelectedPatch<'_> {
         title(ui, &format!("Emitted triangle {}", hit.number), hover);
         ui.label(dense(format!("{:<5}{:>9}{:>9}{:>9}", "point", "u", "v", "w")).weak());
         // The points' numbers are known once the tessellation is measured.
-        let points = self.factors.filter(|&factors| hit.number < triangle_count(factors));
-        let points = points.map(|factors| domain_triangle(&domain_plan(factors), hit.number));
+        let points = self.factors.and_then(|factors| factors.triangles().get(hit.number as usize).copied());
         for (k, vertex) in hit.vertices.iter().enumerate() {
             let point = points.map_or_else(|| "…".into(), |points| points[k].to_string());
             let [fixed, decimals] = weights_text(self.convention.domain_weights(Vertex::domain(vertex)));

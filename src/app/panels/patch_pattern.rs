@@ -3,9 +3,8 @@
 use egui::{Color32, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 use crate::app::widgets::rgb;
-use geometry::tessellate::{
-    FIXED_ONE, PatchFactors, domain_plan, domain_point, domain_triangle, point_count, triangle_count,
-};
+use geometry::casts::to_f32;
+use geometry::tessellate::{DomainKind, FIXED_ONE, PatchFactors};
 use inspect::render::layout::FACTOR_COLORS;
 
 /// Width and height of the plot, in points.
@@ -13,7 +12,7 @@ const SIZE: Vec2 = vec2(250.0, 244.0);
 /// Points around the triangle, for the letters of its corners.
 const MARGIN: Vec2 = vec2(14.0, 26.0);
 /// The greatest number of points that are numbered; more numbers would overlap.
-const NUMBERED: u32 = 60;
+const NUMBERED: usize = 60;
 /// How close the pointer must be to a domain point to show its weights, in points of the screen.
 const REACH: f32 = 8.0;
 
@@ -34,49 +33,37 @@ pub(super) fn pattern_plot(
     empty: &str,
 ) -> Response {
     let (rect, response) = ui.allocate_exact_size(SIZE, Sense::hover());
-    let points: Vec<Pos2> = factors.map_or_else(Vec::new, |factors| {
-        let plan = domain_plan(factors);
-        (0..point_count(factors)).map(|i| place(rect, domain_point(&plan, i))).collect()
-    });
-    if let Some(factors) = factors {
-        draw_triangles(ui, factors, &points, hit.filter(|&hit| hit < triangle_count(factors)));
-    }
+    let (points, triangles) = factors.map(|own| (own.points(), own.triangles())).unwrap_or_default();
+    let places: Vec<Pos2> = points.iter().map(|&point| place(rect, point)).collect();
+    draw_triangles(ui, &triangles, &places, hit);
     draw_outline(ui, rect, letters);
     let named = match factors {
         None => "Domain pattern, measuring".to_owned(),
         Some(_) if points.is_empty() => format!("Domain pattern, {empty}"),
-        Some(factors) => format!("Domain pattern, {} points, {} triangles", points.len(), triangle_count(factors)),
+        Some(_) => format!("Domain pattern, {} points, {} triangles", points.len(), triangles.len()),
     };
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &named));
-    let (Some(factors), false) = (factors, points.is_empty()) else {
+    if points.is_empty() {
         text(ui, rect.center(), empty, ui.visuals().weak_text_color());
         return response;
-    };
-    draw_points(ui, &points);
-    hover(ui, response, factors, &points)
+    }
+    draw_points(ui, &places);
+    hover(ui, response, &points, &places)
 }
 
 /// The position of a domain point in the plot: u is 1 at the top, v at the left and w at the right.
-fn place(rect: Rect, [u, v]: [u32; 2]) -> Pos2 {
-    let [u, v] = [u, v].map(|weight| weight as f32 / FIXED_ONE as f32);
-    let inner = rect.shrink2(MARGIN);
-    let [top, left, right] = [inner.center_top(), inner.left_bottom(), inner.right_bottom()].map(Pos2::to_vec2);
-    (top * u + left * v + right * (1.0 - u - v)).to_pos2()
+fn place(rect: Rect, point: [u32; 2]) -> Pos2 {
+    rect.shrink2(MARGIN).lerp_inside(Vec2::from(DomainKind::Tri.place(point).map(to_f32)))
 }
 
-fn draw_triangles(ui: &Ui, factors: PatchFactors, points: &[Pos2], hit: Option<u32>) {
+fn draw_triangles(ui: &Ui, triangles: &[[u32; 3]], points: &[Pos2], hit: Option<u32>) {
     let painter = ui.painter();
-    let plan = domain_plan(factors);
     let at = |i: u32| points[i as usize];
-    if let Some(hit) = hit {
-        let corners = domain_triangle(&plan, hit).map(at).to_vec();
-        painter.add(Shape::convex_polygon(corners, ui.visuals().selection.bg_fill, Stroke::NONE));
+    if let Some(hit) = hit.and_then(|hit| triangles.get(hit as usize)) {
+        painter.add(Shape::convex_polygon(hit.map(at).to_vec(), ui.visuals().selection.bg_fill, Stroke::NONE));
     }
     let stroke = Stroke::new(if points.len() > 600 { 0.5 } else { 1.0 }, ui.visuals().weak_text_color());
-    let edges = (0..triangle_count(factors)).flat_map(|t| {
-        let [a, b, c] = domain_triangle(&plan, t);
-        [(a, b), (b, c), (c, a)]
-    });
+    let edges = triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
     // Two triangles share each inner edge in opposite directions, so each is drawn once. The outline is drawn separately.
     let lines = edges.filter(|(a, b)| a < b).map(|(a, b)| Shape::line_segment([at(a), at(b)], stroke));
     painter.extend(lines);
@@ -96,7 +83,7 @@ fn draw_outline(ui: &Ui, rect: Rect, letters: [String; 3]) {
 }
 
 fn draw_points(ui: &Ui, points: &[Pos2]) {
-    if points.len() as u32 > NUMBERED {
+    if points.len() > NUMBERED {
         return;
     }
     let (font, color) = (egui::FontId::proportional(9.5), ui.visuals().strong_text_color());
@@ -108,15 +95,15 @@ fn draw_points(ui: &Ui, points: &[Pos2]) {
 }
 
 /// Shows the number and the weights of the point under the pointer.
-fn hover(ui: &Ui, response: Response, factors: PatchFactors, points: &[Pos2]) -> Response {
+fn hover(ui: &Ui, response: Response, points: &[[u32; 2]], places: &[Pos2]) -> Response {
     let Some(pointer) = response.hover_pos() else { return response };
-    let near = (0..).zip(points).map(|(i, point)| (i, point.distance(pointer)));
+    let near = places.iter().enumerate().map(|(i, place)| (i, place.distance(pointer)));
     let Some((i, distance)) = near.min_by(|a, b| a.1.total_cmp(&b.1)) else { return response };
     if distance > REACH {
         return response;
     }
-    ui.painter().circle_stroke(points[i as usize], 4.0, ui.visuals().selection.stroke);
-    let [fixed, decimals] = weights_text(domain_point(&domain_plan(factors), i));
+    ui.painter().circle_stroke(places[i], 4.0, ui.visuals().selection.stroke);
+    let [fixed, decimals] = weights_text(points[i]);
     response.on_hover_ui_at_pointer(|ui| {
         ui.label(format!("Point {i}"));
         for text in [format!("{:>9}{:>9}{:>9}", "u", "v", "w"), fixed, decimals] {

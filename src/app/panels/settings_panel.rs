@@ -11,7 +11,9 @@ use crate::commands::{
     Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
 };
 use geometry::tessellate::{Lod, Surface, Tessellation};
-use inspect::settings::{Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, SplitSide, options};
+use inspect::settings::{
+    Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, SplitSide, Value, options,
+};
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
@@ -26,12 +28,12 @@ impl App {
                 app.section(ui, Section::Surface, Self::surface_rows);
                 app.section(ui, Section::LevelOfDetail, Self::lod_rows);
                 app.section(ui, Section::Displacement, Self::height_rows);
+                app.parts_section(ui);
+                app.morphs_section(ui);
+                app.section(ui, Section::Look, Self::look_rows);
+                app.section(ui, Section::Import, Self::import_rows);
+                app.section(ui, Section::Advanced, Self::advanced_rows);
             });
-            self.parts_section(ui);
-            self.morphs_section(ui);
-            self.section(ui, Section::Look, Self::look_rows);
-            self.section(ui, Section::Import, Self::import_rows);
-            self.of_half(|app| app.section(ui, Section::Advanced, Self::advanced_rows));
         });
     }
 
@@ -48,23 +50,24 @@ impl App {
         }
         let row = |ui: &mut egui::Ui| {
             for (half, name) in [(SplitSide::Left, "Edit left (A)"), (SplitSide::Right, "Edit right (B)")] {
-                let hover =
-                    "The settings of surface, level of detail, displacement and below Advanced are those of this half.";
+                let hover = "The settings of surface, level of detail, displacement and below Advanced are those of this half; so are \
+                             its looks and overlays, if Left looks gives the left half its own.";
                 ui.selectable_value(&mut self.panels.edited, half, name).on_hover_text(hover);
             }
-            if ui.button("Swap").on_hover_text("Exchanges the tessellations left and right.").clicked() {
-                Change::SwapHalves.apply(&mut self.settings);
+            let hover = "Exchanges the tessellations left and right, and looks and poses that differ.";
+            if ui.button("Swap").on_hover_text(hover).clicked() {
+                self.swap_halves();
             }
         };
         ui.add_enabled_ui(has_left, |ui| ui.horizontal(row));
     }
 
     /// Shows rows whose settings are those of the half that is edited.
-    fn of_half(&mut self, show: impl FnOnce(&mut Self)) {
-        let is_left = self.panels.edited == SplitSide::Left;
+    pub(super) fn of_half(&mut self, show: impl FnOnce(&mut Self)) {
+        let is_left = self.panels.edited == SplitSide::Left && self.settings.split.is_some();
         let exchange = |settings: &mut Settings| {
             if is_left {
-                Change::SwapHalves.apply(settings)
+                settings.swap_halves();
             }
         };
         exchange(&mut self.settings);
@@ -102,6 +105,20 @@ impl App {
         }
     }
 
+    /// Whether the left half looks otherwise than the right one.
+    fn left_looks_row(&mut self, ui: &mut egui::Ui) {
+        let option = &options::SPLIT_LOOKS;
+        let same = option.unset.iter().map(|unset| (false, unset.label, unset.text));
+        let own = (true, "Its own", "Edit left then has the overlays, colours and light of the left half.");
+        let before = self.settings.left_looks.is_some();
+        let mut has_own = before;
+        chooser(ui, option.label, &option_hover(option, ""), &mut has_own, &same.chain([own]).collect::<Vec<_>>());
+        if has_own != before {
+            // Nothing differs yet.
+            option.set(&mut self.settings, if has_own { Value::Options(Vec::new()) } else { Value::Unset });
+        }
+    }
+
     /// A section of rows with a label and a control or a number each.
     pub(super) fn section(&mut self, ui: &mut egui::Ui, section: Section, rows: impl FnOnce(&mut Self, &mut egui::Ui)) {
         if self.panels.open.title(ui, section) {
@@ -125,6 +142,7 @@ impl App {
         if self.settings.split.is_some() && self.panels.edited == SplitSide::Right {
             self.left_mesh_row(ui);
             self.left_row(ui);
+            self.left_looks_row(ui);
             option_row(ui, &options::SPLIT_VIEW, &mut self.settings, "");
         }
         self.normals_rows(ui);

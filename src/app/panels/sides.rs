@@ -73,12 +73,12 @@ impl App {
             let size = egui::vec2(0.5 * (ui.available_width() - gap), ui.spacing().interact_size.y + 4.0);
             for (side, name, hover) in Side::ALL {
                 let is_shown = self.panels.side == side;
-                // That of measurements has the colour of the worst that is wrong.
+                // The tab of measurements has the colour of the worst that is wrong.
                 let color = worst.filter(|_| side == Side::Measurements && !is_shown).map(|color| legible(ui, color));
                 let text = color.map_or_else(|| RichText::new(name), |color| RichText::new(name).color(color));
-                let tab = ui.add_sized(size, egui::Button::selectable(is_shown, text).frame_when_inactive(true));
-                tab.widget_info(|| egui::WidgetInfo::selected(egui::Role::Tab, true, is_shown, name));
-                if tab.on_hover_text(hover).clicked() {
+                let response = ui.add_sized(size, egui::Button::selectable(is_shown, text).frame_when_inactive(true));
+                response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Tab, true, is_shown, name));
+                if response.on_hover_text(hover).clicked() {
                     self.panels.side = side;
                 }
             }

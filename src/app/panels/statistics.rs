@@ -21,7 +21,6 @@ impl App {
             }
             let pushed = self.pushed_down(ui, top);
             ui.push_id("given", |ui| self.given_section(ui));
-            ui.push_id("LOD shader", |ui| self.lod_shader_section(ui));
             self.deviation_section(ui);
             self.section(ui, Section::Cracks, |app, ui| app.crack_facts(ui));
             if self.panels.open.has(Section::Cracks) {
@@ -59,7 +58,10 @@ impl App {
     fn seam_facts(&self, ui: &mut egui::Ui) {
         let seams = self.results().map(|results| results.found.seams.shading);
         let angle = |of: fn(&SeamTurns) -> f64| {
-            seams.map_or_else(|| "…".into(), |seams| if seams.edges > 0 { degrees(of(&seams)) } else { "-".into() })
+            seams.map_or_else(
+                || "…".into(),
+                |seams| if seams.edges > 0 { format!("{:.2}°", of(&seams)) } else { "-".into() },
+            )
         };
         let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv seam.";
         fact(ui, "Angle at seams", &angle(|seams| seams.emitted.most), hover);
@@ -163,6 +165,11 @@ impl App {
         fact(ui, "Corners", &grouped(mesh.corners.len() as u64), hover);
         self.normal_facts(ui);
         fact(ui, "Materials", &grouped(mesh.materials.len() as u64), "Base colours and textures.");
+        let styles: Vec<String> = document.loaded.preparation.parts.style_texts().collect();
+        if !styles.is_empty() {
+            let hover = format!("What parts have in place of what is set for all (--part): {}.", styles.join("; "));
+            fact(ui, "Styles of parts", &grouped(styles.len() as u64), &hover);
+        }
         let hover = "Extent of the mesh in object units; over the whole clip, if one is chosen.";
         for (axis, length) in [("Size x", size.x), ("Size y", size.y), ("Size z", size.z)] {
             fact(ui, axis, &format!("{} units", short(f64::from(length))), hover);
@@ -188,10 +195,6 @@ impl App {
         let hover = "Corners whose normal runs along one of their edges.";
         fact(ui, "Normals along edges", &count(faults.map(|faults| faults.along_edge)), hover);
     }
-}
-
-fn degrees(angle: f64) -> String {
-    format!("{angle:.2}°")
 }
 
 /// A row with the colour that marks it on the mesh.

@@ -8,7 +8,7 @@ use crate::app::text::{counted, grouped, mebibytes, short};
 use crate::app::widgets::{legible, rgb, status, text_width};
 use crate::commands::{Action, key_name};
 use geometry::tessellate::{largest_patch, point_count, triangle_count};
-use gpu::DRAWING;
+use gpu::ms_of;
 use inspect::render::layout::CRACK_COLOR;
 
 impl App {
@@ -87,9 +87,7 @@ impl App {
                        this adapter can't do that or the picture was drawn in several steps.";
             return (ms, why.into());
         }
-        let sum =
-            |drawing| times.iter().filter(|time| DRAWING.contains(&time.pass) == drawing).map(|time| time.ms).sum();
-        let (tessellation, draw): (f64, f64) = (sum(false), sum(true));
+        let [tessellation, draw] = [false, true].map(|are_drawing| ms_of(times, are_drawing));
         let passes: Vec<_> = times.iter().map(|time| format!("{}: {:.3} ms", time.pass, time.ms)).collect();
         let hover =
             format!("Tessellation and drawing: each pass's last run, by the GPU's clock.\n{}", passes.join("\n"));

@@ -11,12 +11,14 @@ use crate::app::viewport::playback::LISTED;
 use crate::app::widgets::chooser;
 use crate::commands::{Action, with_key};
 use geometry::mesh::rig::Clip;
+use inspect::render::LeftPose;
+use inspect::settings::SplitSide;
 
 /// The range of speeds at which a clip plays; 1 is its own speed.
 const SPEED_RANGE: RangeInclusive<f64> = 0.1..=4.0;
 /// How far the buttons beside the time go, in s.
 const FRAME: f64 = 1.0 / 30.0;
-/// The widths of the list of clips, of the slider of speeds, and of the numbers beside sliders, in points.
+/// The widths of the lists of clips and poses, of the slider of speeds, and of the numbers beside sliders, in points.
 const CLIPS_WIDTH: f32 = 110.0;
 const SPEED_WIDTH: f32 = 60.0;
 const NUMBER_WIDTH: f32 = 72.0;
@@ -82,7 +84,24 @@ impl App {
         ui.add(slider).labelled_by(label.id).on_hover_text(hover);
     }
 
+    /// The pose of a split view's left half: that of the right one, or one that stays.
+    fn left_pose_list(&mut self, ui: &mut Ui) {
+        let Some(document) = self.document.as_ref().filter(|_| self.settings.split.is_some()) else { return };
+        let own = self.viewport.playback.left;
+        let title = document.scene.pose_title(SplitSide::Left).unwrap_or_default();
+        let same = (LeftPose::Same, "The same", "The left half has the pose of the right one.");
+        let now = (LeftPose::Own(self.moment()), "This moment", "The left half stays in the pose that is shown now.");
+        let mut choices = vec![same, now];
+        if !choices.iter().any(|(pose, ..)| *pose == own) {
+            choices.push((own, &title, "The left half stays in this pose."));
+        }
+        ui.spacing_mut().combo_width = CLIPS_WIDTH;
+        let hover = "The pose left of the split (--split-animation, --split-time).";
+        chooser(ui, "Left pose", hover, &mut self.viewport.playback.left, &choices);
+    }
+
     fn time_slider(&mut self, ui: &mut Ui) {
+        self.left_pose_list(ui);
         let clip = self.viewport.playback.clip.and_then(|clip| self.clips().get(clip));
         let duration = clip.map_or(0.0, |clip| clip.duration);
         let hover = if clip.is_some() { format!("Time in the clip, 0 to {duration:.3} s.") } else { String::new() };

@@ -27,16 +27,18 @@ impl App {
             let now = self.availability();
             let commands = all(&now);
             self.command_button(ui, &commands, &now, &Action::SplitView, ["Split", "Split view"]);
-            for overlay in ON_TOOLBAR {
-                let action = Action::Setting(Change::Overlay(overlay));
-                self.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
-            }
             let why_not = |overlay| {
                 let action = Action::Setting(Change::Overlay(overlay));
                 commands.iter().find(|command| command.action == action)?.why_not(&now)
             };
-            self.overlays_list(ui, why_not);
-            self.colors_list(ui, why_not);
+            self.of_half(|app| {
+                for overlay in ON_TOOLBAR {
+                    let action = Action::Setting(Change::Overlay(overlay));
+                    app.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
+                }
+                app.overlays_list(ui, why_not);
+                app.colors_list(ui, why_not);
+            });
             divider(ui, "Frame");
             self.command_button(ui, &commands, &now, &Action::Camera(CameraAction::Frame), ["Frame", "Frame all"]);
             let names = ["Freeze LOD", "Freeze LOD camera"];

@@ -290,11 +290,13 @@ impl App {
         })
     }
 
-    /// Whether the file has no normals for some triangles, and they aren't made anew for all.
+    /// Whether the file has no normals for some triangles, and none are made anew for all or for a part. A warning tells it too.
     fn lacks_normals(&self) -> bool {
         self.document.as_ref().is_some_and(|document| {
             let loaded = &document.loaded;
-            loaded.preparation.import.normals == NormalSource::File && loaded.read.repairs.normals_made > 0
+            loaded.preparation.import.normals == NormalSource::File
+                && loaded.read.repairs.normals_made > 0
+                && loaded.preparation.parts.styles.iter().all(|(_, own)| own.normals != Some(NormalSource::Made))
         })
     }
 

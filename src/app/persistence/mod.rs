@@ -50,8 +50,8 @@ impl Persistence {
     /// Reads the state that was saved in a folder. Without a folder nothing is read, and nothing will be saved.
     pub fn read(folder: Option<&Path>) -> Self {
         let Some(folder) = folder else { return Self::default() };
-        let state_file::StoredState { kept, place, said } = state_file::read(folder);
-        Self { place, written: kept.clone(), kept, said, ..Self::default() }
+        let read = state_file::read(folder);
+        Self { written: read.kept.clone(), ..read }
     }
 
     pub fn settings(&self) -> &Settings {
@@ -98,34 +98,12 @@ impl Persistence {
 
     /// Lists a file again that was loaded, in case it was gone before.
     pub(in crate::app) fn is_back(&mut self, source: &Source) {
-        if let Some(file) = self.known(source) {
-            file.is_gone = false;
-        }
+        self.known(source).into_iter().for_each(|file| file.is_gone = false);
     }
 
     fn known(&mut self, source: &Source) -> Option<&mut SavedFile> {
         let path = path_of(source)?;
         self.kept.files.iter_mut().find(|file| file.path == path)
-    }
-
-    /// Takes over the window's present state.
-    fn take(
-        &mut self,
-        context: &egui::Context,
-        settings: &Settings,
-        open: OpenSections,
-        companions: [Option<String>; KEPT.len()],
-        placement: Placement,
-        seen: Option<(SavedCamera, Vec<SavedCamera>)>,
-    ) {
-        self.kept.take_settings(settings);
-        self.kept.open = open;
-        self.kept.companions = companions;
-        self.kept.frame = frame_now(context, &self.kept.frame);
-        let open = self.kept.files.iter_mut().find(|file| Some(&file.path) == self.open.as_ref());
-        if let Some((file, seen)) = open.zip(seen) {
-            (file.placement, file.seen, file.bookmarks) = (placement, Some(seen.0), seen.1);
-        }
     }
 
     /// Writes changes once they have been collected for a while. The first failure is shown.
@@ -157,19 +135,6 @@ impl Persistence {
     pub(in crate::app) fn move_to_another_window(&mut self) {
         self.changed = None;
     }
-
-    /// Writes all changes that aren't written yet.
-    ///
-    /// # Errors
-    /// Why the file can't be written, as a sentence.
-    fn finish(&mut self) -> Result<(), String> {
-        let Some(place) = &self.place else { return Ok(()) };
-        if self.kept == self.written {
-            return Ok(());
-        }
-        self.written = self.kept.clone();
-        state_file::write(place, &self.kept)
-    }
 }
 
 /// The absolute path of a file, if it is valid UTF-8.
@@ -181,11 +146,10 @@ fn path_of(source: &Source) -> Option<String> {
 /// The geometry of the window. While it is maximised, its size is the one that it goes back to.
 fn frame_now(context: &egui::Context, before: &WindowGeometry) -> WindowGeometry {
     let (zoom, size) = (context.zoom_factor(), context.viewport_rect().size());
-    let window = context.input(|input| {
+    let [is_maximized, is_fullscreen, is_minimized] = context.input(|input| {
         let window = input.viewport();
-        (window.maximized.unwrap_or(false), window.fullscreen.unwrap_or(false), window.minimized.unwrap_or(false))
+        [window.maximized, window.fullscreen, window.minimized].map(|is_so| is_so == Some(true))
     });
-    let (is_maximized, is_fullscreen, is_minimized) = window;
     // Rounded to whole points, so that a window that opens with this size has it exactly.
     let sized = [(size.x * zoom).round(), (size.y * zoom).round()];
     let is_large = sized.iter().zip(LEAST_SIZE).all(|(side, least)| *side >= least);
@@ -241,29 +205,35 @@ impl App {
 
     /// Saves the window's state. Called at the end of each frame.
     pub(in crate::app) fn keep(&mut self, context: &egui::Context) {
-        let diagonal = self.document.as_ref().map(|document| document.diagonal);
-        let seen = diagonal.map(|diagonal| {
-            let saved = |&camera: &Camera| SavedCamera { camera, diagonal };
-            (saved(&self.viewport.camera), self.viewport.bookmarks.iter().map(saved).collect())
-        });
         let files = KEPT.map(|(companion, _)| match self.companion(companion) {
             Some(Source::File(path)) => path.to_str().map(str::to_owned),
             _ => None,
         });
-        let placement = self.document.as_ref().map(|document| {
-            let Import { up, unit, .. } = document.loaded.preparation.import;
-            Placement { up, unit }
-        });
-        let placement = placement.unwrap_or_default();
         let settings = self.settings_without_files();
-        self.persistence.take(context, &settings, self.panels.open, files, placement, seen);
+        let Persistence { kept, open, .. } = &mut self.persistence;
+        kept.take_settings(&settings);
+        (kept.open, kept.companions) = (self.panels.open, files);
+        kept.frame = frame_now(context, &kept.frame);
+        let file = kept.files.iter_mut().find(|file| Some(&file.path) == open.as_ref());
+        if let Some((file, document)) = file.zip(self.document.as_ref()) {
+            let Import { up, unit, .. } = document.loaded.preparation.import;
+            let saved = |&camera: &Camera| SavedCamera { camera, diagonal: document.diagonal };
+            (file.placement, file.seen) = (Placement { up, unit }, Some(saved(&self.viewport.camera)));
+            file.bookmarks = self.viewport.bookmarks.iter().map(saved).collect();
+        }
         self.persistence.write_on(context, &mut self.jobs);
     }
 
     /// Writes the last changes when the window is closed.
+    ///
+    /// # Errors
+    /// Why the file can't be written, as a sentence.
     pub(in crate::app) fn keep_for_good(&mut self) -> Result<(), String> {
         self.jobs.wait_for(Work::State);
-        self.persistence.finish()
+        let Persistence { place, kept, written, .. } = &mut self.persistence;
+        let Some(place) = place.as_ref().filter(|_| kept != written) else { return Ok(()) };
+        written.clone_from(kept);
+        state_file::write(place, kept)
     }
 
     /// Asks whether something that is saved should be forgotten.

@@ -15,7 +15,7 @@ use geometry::defaults::with_defaults;
 use geometry::mesh::UpAxis;
 use inspect::render::Camera;
 use inspect::settings::{Choice, Settings};
-use load::{FileUnit, LengthUnit};
+use load::{FileUnit, Import, LengthUnit};
 
 /// The greatest number of files that are saved with their cameras.
 pub(super) const MAX_FILES: usize = 50;
@@ -24,6 +24,7 @@ pub(crate) const LEAST_SIZE: [f32; 2] = [760.0, 480.0];
 const LARGEST_SIDE: f32 = 16384.0;
 /// The range of the window's zoom; 1 is the usual size.
 const ZOOM_RANGE: RangeInclusive<f32> = 0.2..=5.0;
+const FINITE: RangeInclusive<f32> = f32::MIN..=f32::MAX;
 /// The range of a mesh's size, relative to the size when its camera was saved, in which that camera is still used.
 const SAME_SIZE: RangeInclusive<f32> = 0.5..=2.0;
 /// What is open beside the mesh and is opened again in the next window, each with its name in the file.
@@ -134,7 +135,7 @@ impl SavedState {
     /// Takes settings, without displacement, axis and unit, which depend on the mesh.
     pub(super) fn take_settings(&mut self, settings: &Settings) {
         let own = settings.with(settings.tessellation.undisplaced());
-        self.settings = Settings { import: own.import.without_placement(), ..own };
+        self.settings = Settings { import: Import { up: None, unit: None, ..own.import }, ..own };
     }
 }
 
@@ -154,7 +155,7 @@ fn read_unit(value: &Value) -> Option<FileUnit> {
 fn read_open(value: &Value) -> OpenSections {
     let mut open = OpenSections::default();
     for section in Section::ALL {
-        open.set(section, Fields(value).switch(section.title(), open.has(section)));
+        open.set(section, value[section.title()].as_bool().unwrap_or(open.has(section)));
     }
     open
 }
@@ -162,14 +163,13 @@ fn read_open(value: &Value) -> OpenSections {
 impl WindowGeometry {
     fn read(value: &Value) -> Self {
         let opening = Self::default();
-        let fields = Fields(value);
-        let side = |name, i: usize| fields.number(name, LEAST_SIZE[i]..=LARGEST_SIDE, opening.size[i]);
+        let side = |name: &str, i: usize| number(&value[name], LEAST_SIZE[i]..=LARGEST_SIDE).unwrap_or(opening.size[i]);
         let theme = THEMES.iter().find(|(_, name)| value["theme"].as_str() == Some(name));
         Self {
             size: [side("width", 0), side("height", 1)],
-            is_maximized: fields.switch("maximized", opening.is_maximized),
+            is_maximized: value["maximized"].as_bool().unwrap_or(opening.is_maximized),
             theme: theme.map_or(opening.theme, |(theme, _)| *theme),
-            zoom: fields.number("zoom", ZOOM_RANGE, opening.zoom),
+            zoom: number(&value["zoom"], ZOOM_RANGE).unwrap_or(opening.zoom),
         }
     }
 
@@ -188,7 +188,7 @@ impl SavedFile {
 
     fn read(value: &Value) -> Option<Self> {
         let path = absolute(&value["path"])?;
-        let is_gone = Fields(value).switch("gone", false);
+        let is_gone = value["gone"].as_bool().unwrap_or(false);
         let bookmarks = value["bookmarks"].as_array().into_iter().flatten().filter_map(SavedCamera::read);
         let bookmarks = bookmarks.take(MOST_BOOKMARKS).collect();
         let placement = Placement { up: value["up"].as_str().and_then(UpAxis::named), unit: read_unit(&value["unit"]) };
@@ -196,82 +196,59 @@ impl SavedFile {
     }
 
     fn written(&self) -> Value {
-        let mut written = json!({ "path": self.path });
-        if self.is_gone {
-            written["gone"] = true.into();
-        }
         let Placement { up, unit } = self.placement;
-        if let Some(up) = up {
-            written["up"] = up.name().into();
-        }
-        match unit {
-            Some(FileUnit::Named(unit)) => written["unit"] = unit.name().into(),
-            Some(length @ FileUnit::Metres(_)) => written["unit"] = length.metres().into(),
-            None => {}
-        }
-        if let Some(seen) = &self.seen {
-            seen.write(&mut written);
-        }
-        if !self.bookmarks.is_empty() {
-            let bookmark = |camera: &SavedCamera| {
-                let mut written = json!({});
-                camera.write(&mut written);
-                written
-            };
-            written["bookmarks"] = self.bookmarks.iter().map(bookmark).collect();
-        }
-        written
+        let unit = unit.map(|unit| match unit {
+            FileUnit::Named(unit) => json!(unit.name()),
+            FileUnit::Metres(_) => json!(unit.metres()),
+        });
+        let seen = self.seen.as_ref().map(SavedCamera::written).unwrap_or_default();
+        json!({
+            "path": self.path,
+            "gone": self.is_gone,
+            "up": up.map(Choice::name),
+            "unit": unit,
+            "camera": seen["camera"],
+            "diagonal": seen["diagonal"],
+            "bookmarks": self.bookmarks.iter().map(SavedCamera::written).collect::<Value>(),
+        })
     }
 }
 
 impl SavedCamera {
-    /// Writes it into the object of a file or of a bookmark.
-    fn write(&self, written: &mut Value) {
-        // The window has no cameras of matrices.
-        let Camera { target, azimuth, elevation, distance, orthographic, field_of_view, roll, rows: _ } = &self.camera;
-        written["camera"] = json!({
-            "target": target.to_array(),
-            "azimuth": azimuth,
-            "elevation": elevation,
-            "distance": distance,
-            "orthographic": orthographic,
-            "field_of_view": field_of_view,
-            "roll": roll,
-        });
-        written["diagonal"] = json!(self.diagonal);
+    /// The members that it has in the object of a file or of a bookmark.
+    fn written(&self) -> Value {
+        let mut camera = self.camera;
+        let mut written: Value = numbers(&mut camera).into_iter().map(|(name, number)| (name, json!(number))).collect();
+        written["target"] = json!(camera.target.to_array());
+        written["orthographic"] = json!(camera.orthographic);
+        json!({ "camera": written, "diagonal": self.diagonal })
     }
 
     fn read(file: &Value) -> Option<Self> {
-        let number = |value: &Value| value.as_f64().map(|number| number as f32).filter(|number| number.is_finite());
-        let camera = &file["camera"];
-        // Files of earlier versions don't have all of them.
-        let later = |name: &str, usual| camera.get(name).map_or(Some(usual), number);
-        let target = [0, 1, 2].map(|i| number(&camera["target"][i]));
-        let [Some(x), Some(y), Some(z)] = target else { return None };
-        let camera = Camera {
-            target: Vec3::new(x, y, z),
-            azimuth: number(&camera["azimuth"])?,
-            elevation: number(&camera["elevation"])?,
-            distance: number(&camera["distance"])?,
-            orthographic: camera["orthographic"].as_bool()?,
-            field_of_view: later("field_of_view", Camera::default().field_of_view)?,
-            roll: later("roll", 0.0)?,
-            rows: None,
-        };
-        camera.is_sound().then_some(Self { camera, diagonal: number(&file["diagonal"])? })
+        let all = &file["camera"];
+        let target = Vec3::from_array(serde_json::from_value(all["target"].clone()).ok()?);
+        let mut camera = Camera { target, orthographic: all["orthographic"].as_bool()?, ..Camera::default() };
+        for (name, own) in numbers(&mut camera) {
+            // Files of earlier versions don't have all of them.
+            *own = all.get(name).map_or(Some(*own), |value| number(value, FINITE))?;
+        }
+        camera.is_sound().then_some(Self { camera, diagonal: number(&file["diagonal"], FINITE)? })
     }
 }
 
-/// Reads the members of a JSON object. Any other value has none.
-struct Fields<'a>(&'a Value);
+/// A camera's numbers with their names. The window has no cameras of matrices.
+fn numbers(camera: &mut Camera) -> [(&'static str, &mut f32); 5] {
+    let Camera { target: _, azimuth, elevation, distance, orthographic: _, field_of_view, roll, rows: _ } = camera;
+    [
+        ("azimuth", azimuth),
+        ("elevation", elevation),
+        ("distance", distance),
+        ("field_of_view", field_of_view),
+        ("roll", roll),
+    ]
+}
 
-impl Fields<'_> {
-    fn switch(&self, name: &str, otherwise: bool) -> bool {
-        self.0[name].as_bool().unwrap_or(otherwise)
-    }
-
-    fn number(&self, name: &str, range: RangeInclusive<f32>, otherwise: f32) -> f32 {
-        let number = self.0[name].as_f64().map(|number| number as f32);
-        number.filter(|number| range.contains(number)).unwrap_or(otherwise)
-    }
+/// Reads a number in a range.
+fn number(value: &Value, range: RangeInclusive<f32>) -> Option<f32> {
+    value.as_f64().map(|number| number as f32).filter(|number| range.contains(number))
 }

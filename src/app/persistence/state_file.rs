@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use etcetera::BaseStrategy;
 
+use super::Persistence;
 use super::saved_state::SavedState;
 use geometry::progress::Progress;
 use load::files::{FileError, Limits, read_file, write_whole};
@@ -25,24 +26,15 @@ pub(crate) fn folder() -> Option<PathBuf> {
     }
 }
 
-/// The state that was read from a folder.
-pub(super) struct StoredState {
-    pub kept: SavedState,
-    /// The path to write to; none if the file there must not be replaced.
-    pub place: Option<PathBuf>,
-    /// What went wrong, as a sentence.
-    pub said: Option<String>,
-}
-
-/// Reads the saved state from a folder. A file that can't be parsed is renamed.
-pub(super) fn read(folder: &Path) -> StoredState {
+/// Reads the saved state from a folder. A file that can't be parsed is renamed, and one that can't be read is never replaced.
+pub(super) fn read(folder: &Path) -> Persistence {
     let place = folder.join(NAME);
     let shown = place.display();
-    let alone = |said| StoredState { kept: SavedState::default(), place: None, said: Some(said) };
+    let alone = |said| Persistence { said: Some(said), ..Persistence::default() };
     let unread = |why: String| alone(format!("{shown} can't be read, so settings won't be saved this time ({why})"));
     match std::fs::metadata(&place) {
         Err(error) if error.kind() == ErrorKind::NotFound => {
-            return StoredState { kept: SavedState::default(), place: Some(place), said: None };
+            return Persistence { place: Some(place), ..Persistence::default() };
         }
         Err(error) => return unread(error.to_string()),
         // Reading a pipe might never end.
@@ -56,14 +48,14 @@ pub(super) fn read(folder: &Path) -> StoredState {
         Err(_) => None,
     };
     if let Some(kept) = kept {
-        return StoredState { kept, place: Some(place), said: None };
+        return Persistence { kept, place: Some(place), ..Persistence::default() };
     }
     let aside = folder.join(SET_ASIDE);
     match std::fs::rename(&place, &aside) {
         Ok(()) => {
             let said =
                 format!("{shown} is damaged. It was renamed to {SET_ASIDE}, and all settings have their defaults");
-            StoredState { kept: SavedState::default(), place: Some(place), said: Some(said) }
+            Persistence { place: Some(place), said: Some(said), ..Persistence::default() }
         }
         Err(error) => {
             alone(format!("{shown} is damaged and can't be renamed, so settings won't be saved this time ({error})"))

@@ -10,7 +10,6 @@ use geometry::mesh::Bounds;
 use geometry::tessellate::LodView;
 use geometry::view::ScreenView;
 use inspect::render::{Camera, LineSegment, lod_camera_lines};
-use inspect::settings::Settings;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FrozenCamera {
@@ -31,9 +30,8 @@ impl FrozenCamera {
 impl App {
     /// Freezes LOD and clipping as they are for the camera of the picture that is shown, or lets them follow the camera again.
     pub(in crate::app) fn toggle_frozen(&mut self) {
-        match self.viewport.frozen {
-            Some(_) => self.viewport.frozen = None,
-            None => self.freeze(),
+        if self.viewport.frozen.take().is_none() {
+            self.freeze();
         }
     }
 
@@ -48,8 +46,7 @@ impl App {
     /// Freezes LOD and clipping, if they follow the camera, as they were where what the panels show was measured: the numbers stay
     /// true wherever the camera goes.
     pub(in crate::app) fn keep_measured(&mut self) {
-        let Settings { tessellation, .. } = &self.settings;
-        if self.uses_lod_shader() || tessellation.follows_view() {
+        if self.uses_lod_shader() || self.settings.tessellation.follows_view() {
             self.keep_view();
         }
     }

@@ -4,7 +4,7 @@ use super::frozen_camera::FrozenCamera;
 use super::ruler::Ruler;
 use crate::app::{App, Document};
 use geometry::mesh::{Bounds, Moment, Topology};
-use inspect::render::{LineSegment, axis_lines, bone_lines, crack_lines, t_junction_lines};
+use inspect::render::{LeftPose, LineSegment, axis_lines, bone_lines, crack_lines, t_junction_lines};
 use inspect::settings::{Overlays, SplitSide};
 
 /// Everything that the lines over the mesh depend on.
@@ -14,9 +14,11 @@ pub(crate) struct Highlight {
     measured: [u64; 2],
     /// The number of the scene in the left half; 0 for none.
     left: u64,
+    left_pose: LeftPose,
     /// Whose axes are drawn, if they are.
     axes: Option<Bounds>,
-    overlays: Overlays,
+    /// What is shown in each half.
+    overlays: [Option<Overlays>; 2],
     t_junctions: bool,
     selected_edge: Option<u32>,
     selected_triangle: Option<u32>,
@@ -35,16 +37,19 @@ impl App {
     /// Updates the lines over the mesh if anything that they depend on has changed.
     pub(in crate::app) fn mark(&mut self) {
         let Some(document) = &self.document else { return };
-        let overlays = self.settings.overlays;
-        let junctions = document.checks.t_junctions().filter(|_| overlays.t_junctions);
+        let overlays = SplitSide::BOTH.map(|half| self.settings.half(half).map(|own| own.overlays));
+        let shows = |is_on: fn(&Overlays) -> bool| overlays.iter().flatten().any(is_on);
+        let junctions = document.checks.t_junctions().filter(|_| shows(|own| own.t_junctions));
         let is_selected = self.selected_edge().is_some() || self.selected_triangle().is_some();
         let is_marked = junctions.is_some() || is_selected;
+        let shows_pose = is_marked || shows(|own| own.bones);
         let posed = if is_marked { document.posed() } else { None };
-        let shows_measured = overlays.cracks || is_selected;
+        let shows_measured = shows(|own| own.cracks) || is_selected;
         let wanted = Highlight {
             measured: document.halves.each_ref().map(|half| if shows_measured { half.measure.generation } else { 0 }),
             left: document.scene.half(SplitSide::Left).map_or(0, |_| document.left_made),
-            axes: overlays.grid.then_some(document.scene.bounds),
+            left_pose: document.scene.left_pose(),
+            axes: shows(|own| own.grid).then_some(document.scene.bounds),
             overlays,
             t_junctions: junctions.is_some(),
             selected_edge: self.selected_edge(),
@@ -53,7 +58,7 @@ impl App {
             worst: self.worst_marked(),
             ruler: self.viewport.ruler,
             frozen: self.frozen_shown(),
-            moment: document.moment.filter(|_| is_marked || overlays.bones).map(|moment| (moment, posed.is_some())),
+            moment: document.moment.filter(|_| shows_pose).map(|moment| (moment, posed.is_some())),
             generation: document.highlight.map_or(0, |marked| marked.generation),
         };
         if document.highlight == Some(wanted) {
@@ -73,8 +78,8 @@ impl App {
 
     /// The lines over a half, in its pose if that is known on the CPU.
     fn marks(&self, half: SplitSide, document: &Document, posed: Option<&Topology>) -> Vec<LineSegment> {
-        let posed = posed.filter(|_| document.scene.shares_mesh(half));
-        let overlays = self.settings.overlays;
+        let posed = posed.filter(|_| document.scene.shares_pose(half));
+        let overlays = self.settings.half(half).unwrap_or(self.settings).overlays;
         let mut lines = if overlays.grid { axis_lines(&document.scene.bounds) } else { Vec::new() };
         if let Some((topology, junctions)) = posed.zip(document.checks.t_junctions()).filter(|_| overlays.t_junctions) {
             lines.extend(t_junction_lines(topology, junctions));

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::job_list::Work;
-use crate::app::jobs::measure_job::{MeasureError, Results, Seen};
+use crate::app::jobs::measure_job::Results;
 use crate::app::jobs::scenes::{arena_bytes, scene_of};
 use crate::app::jobs::user_shader_job::OpenShader;
 use gpu::GpuError;
@@ -69,26 +69,6 @@ impl App {
         self.dialogs.error = Some(format!("the left half can't be shown: {why}"));
     }
 
-    /// Measures the left half while it is shown.
-    pub(in crate::app) fn measure_left(&mut self, seen: &Seen) -> Result<(), MeasureError> {
-        let is_wanted = self.settings.half(SplitSide::Left).is_some();
-        let Some(document) = self.document.as_mut() else { return Ok(()) };
-        let left = document.scene.half_mut(SplitSide::Left).filter(|left| is_wanted && left.tessellator.is_counted());
-        let measure = &mut document.halves[SplitSide::Left as usize].measure;
-        match left.zip(self.settings.half(SplitSide::Left)) {
-            Some((scene, settings)) => {
-                let seen = Seen { inputs: settings.inputs(seen.inputs.view), ..*seen };
-                measure.go_on(&self.engine.gpu, scene, &seen)
-            }
-            None => {
-                if measure.is_busy() {
-                    measure.forget();
-                }
-                Ok(())
-            }
-        }
-    }
-
     /// What was measured last. The panels show all of it together: while another picture is measured, that of the picture before. None
     /// while a clip plays, and if the picture isn't drawn: these aren't measured.
     pub(in crate::app) fn results(&self) -> Option<&Results> {
@@ -113,6 +93,7 @@ impl App {
         let scene = open.and_then(|document| document.scene.half(half));
         let facts = HalfFacts {
             mesh: titles.map(|titles| titles[half as usize].clone()),
+            pose: open.and_then(|document| document.scene.pose_title(half)),
             shader: self.shader_title(half),
             largest: self.largest_text(half),
             triangles: scene.map(|scene| scene.tessellator.totals().1),

@@ -37,7 +37,9 @@ impl App {
     /// Shows the legend of the colours over a picture, if they have one. It is painted anew only if it changes.
     pub(super) fn legend(&mut self, ui: &egui::Ui, picture: Rect) {
         let usual = self.document.as_ref().map(|document| document.scene.usual());
-        let legend = usual.and_then(|usual| legend_of(&self.settings, &usual, &self.legend_distances()));
+        let distances = self.legend_distances();
+        let of_half = |own| usual.and_then(|usual| legend_of(&own, &usual, &distances));
+        let legend = self.settings.halves().rev().find_map(of_half);
         let Some(legend) = legend else { return self.viewport.legend = None };
         let point = ui.ctx().pixels_per_point();
         let room = [picture.width(), picture.height()].map(|side| (side * point).max(1.0) as u32);

@@ -12,21 +12,19 @@ const MS_AT_REST: f64 = 400.0;
 
 /// When the window was last used.
 #[derive(Default)]
-pub(crate) struct Pace {
-    input: Option<Instant>,
-}
+pub(crate) struct Pace(Option<Instant>);
 
 impl Pace {
     /// Notes whether there is input in this frame.
     pub(crate) fn note(&mut self, context: &egui::Context) {
         if context.input(|input| !input.events.is_empty() || input.pointer.any_down()) {
-            self.input = Some(Instant::now());
+            self.0 = Some(Instant::now());
         }
     }
 
     /// How long the device may be busy at once, in ms.
     pub(crate) fn ms(&self) -> f64 {
-        if self.input.is_some_and(|input| input.elapsed() < USED) { MS_IN_USE } else { MS_AT_REST }
+        if self.0.is_some_and(|input| input.elapsed() < USED) { MS_IN_USE } else { MS_AT_REST }
     }
 }
 

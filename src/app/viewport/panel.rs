@@ -10,6 +10,7 @@ use super::legend::PaintedLegend;
 use super::picture::PictureRequest;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{MeasureError, Seen};
+use crate::app::painting::filled;
 use crate::app::text::counted;
 use crate::app::widgets::rgb;
 use crate::app::{App, Document};
@@ -92,7 +93,7 @@ impl App {
             }
             None => {
                 let background = self.settings_in(ui.ctx().theme()).background_color();
-                ui.painter().add(self.painting.fill(rect, rgb(background)));
+                ui.painter().add(filled(&self.painting, rect, rgb(background)));
             }
         }
         self.viewport_notes(ui, rect);
@@ -173,6 +174,7 @@ impl App {
         let wanted = PictureRequest {
             document: document.generation,
             moment: document.moment,
+            left_pose: document.scene.left_pose(),
             lines: document.highlight.map_or(0, |marked| marked.generation),
             deviation,
             from_files: document.from_files,
@@ -181,7 +183,8 @@ impl App {
             inputs: settings.inputs(view),
             view: ScreenView { clip_from_object: camera.clip_from_object(viewport, &document.scene.bounds), viewport },
         };
-        Ok(Some((wanted, document.from_files == from_files && document.moment == moment)))
+        let is_posed = (wanted.moment, wanted.left_pose) == (moment, self.viewport.playback.left);
+        Ok(Some((wanted, document.from_files == from_files && is_posed)))
     }
 
     /// Measures what is shown, if it is at rest.
@@ -205,10 +208,15 @@ impl App {
             Some(frozen) => (frozen.camera, frozen.screen_view(&bounds)),
             None => (wanted.camera, view),
         };
-        let measured = Seen { camera, view: counted_in, inputs: wanted.inputs };
-        let right = &mut document.halves[SplitSide::Right as usize];
-        right.measure.go_on(&self.engine.gpu, &mut document.scene, &measured)?;
-        self.measure_left(&measured)?;
+        for half in SplitSide::BOTH.into_iter().rev() {
+            let measure = &mut document.halves[half as usize].measure;
+            let scene = document.scene.half_mut(half).filter(|scene| scene.tessellator.is_counted());
+            if let Some((scene, inputs)) = scene.zip(wanted.inputs_of(half)) {
+                measure.go_on(&self.engine.gpu, scene, &Seen { camera, view: counted_in, inputs })?;
+            } else if measure.is_busy() {
+                measure.forget();
+            }
+        }
         self.count_leaks(context, counted_in)?;
         self.compare_outlines(context, &wanted.settings.tessellation, &silhouette, view)?;
         Ok(())
@@ -234,8 +242,9 @@ impl App {
     /// # Errors
     /// The mesh's rig needs a larger buffer than the adapter can bind.
     pub(in crate::app) fn pose_now(&mut self) -> Result<(), GpuError> {
-        let wanted = self.moment();
+        let (wanted, left) = (self.moment(), self.viewport.playback.left);
         let Some(document) = &mut self.document else { return Ok(()) };
+        document.scene.set_left_pose(left)?;
         if document.moment != wanted {
             document.moment = wanted;
             document.scene.set_moment(wanted)?;
@@ -330,11 +339,12 @@ impl App {
         let preview = &self.viewport.preview;
         let previewed = preview.shown(&self.viewport.picture).map(|(_, shape)| preview.mark(shape));
         let frozen = self.viewport.frozen.map(|_| "LOD camera frozen".to_owned());
-        let grid = self.document.as_ref().filter(|_| self.settings.overlays.grid).map(|document| {
-            let spacing = Ground::under(&document.scene.bounds).spacing;
-            let unit = if spacing == 1.0 { "unit" } else { "units" };
-            format!("Grid: {spacing} {unit}")
-        });
+        let grid =
+            self.document.as_ref().filter(|_| self.settings.halves().any(|own| own.overlays.grid)).map(|document| {
+                let spacing = Ground::under(&document.scene.bounds).spacing;
+                let unit = if spacing == 1.0 { "unit" } else { "units" };
+                format!("Grid: {spacing} {unit}")
+            });
         let has_left = self.document.as_ref().is_some_and(|document| document.scene.half(SplitSide::Left).is_some());
         let difference = (has_left && self.settings.shows_difference())
             .then(|| "Difference: black where both halves are equal".to_owned());

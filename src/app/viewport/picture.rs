@@ -8,13 +8,13 @@ use glam::{Vec2, vec2};
 use super::pace::next_steps;
 use crate::app::Document;
 use crate::app::jobs::given::FromFiles;
-use crate::app::painting::{Painting, ShownPicture};
+use crate::app::painting::ShownPicture;
 use geometry::mesh::Moment;
 use geometry::tessellate::Inputs;
 use geometry::view::ScreenView;
 use gpu::{GpuError, PassTime, Recorder, Timing, chunks_an_arena, take_times};
 use inspect::engine::Engine;
-use inspect::render::{Camera, Pixel, Renderer, Scene, Target, half_at, section};
+use inspect::render::{Camera, LeftPose, Pixel, Renderer, Scene, Target, WindowPipelines, half_at, section};
 use inspect::settings::{ColorSource, Settings, SplitSide};
 
 /// Everything that the picture depends on.
@@ -22,6 +22,7 @@ use inspect::settings::{ColorSource, Settings, SplitSide};
 pub(crate) struct PictureRequest {
     pub document: u64,
     pub moment: Option<Moment>,
+    pub left_pose: LeftPose,
     pub lines: u64,
     /// The number of the deviation result that is shown.
     pub deviation: u64,
@@ -172,7 +173,7 @@ impl Picture {
     }
 
     /// Makes a target of this size, if there is none yet.
-    pub(crate) fn fit(&mut self, painting: &Painting, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
+    pub(crate) fn fit(&mut self, painting: &WindowPipelines, engine: &Engine, size: [u32; 2]) -> Result<(), GpuError> {
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size) {
             return Ok(());
         }
@@ -180,7 +181,7 @@ impl Picture {
         if self.drawn.take().is_some() {
             self.before = self.target.take().map(|(_, shown)| shown);
         }
-        let shown = painting.shown(&engine.gpu, &target, wgpu::FilterMode::Nearest);
+        let shown = ShownPicture::new(painting, &engine.gpu, &target, wgpu::FilterMode::Nearest);
         self.target = Some((target, shown));
         self.drawing = None;
         Ok(())
@@ -273,13 +274,14 @@ impl Picture {
         let from_here = |drawn: &PictureRequest| {
             (drawn.document, drawn.moment, drawn.camera) == (wanted.document, wanted.moment, wanted.camera)
         };
+        let is_shown = |own: &Settings| own.overlays.colors.source() == ColorSource::ReferenceSurface;
+        let shown = |half| wanted.settings.half(half).filter(is_shown).and(scene.half(half));
+        let is_known = SplitSide::BOTH.into_iter().filter_map(shown).all(Scene::knows_deviation);
         // Nothing may be measured of a surface shader.
-        let shows =
-            wanted.settings.overlays.colors.source() == ColorSource::ReferenceSurface && wanted.from_files.surface == 0;
-        let mut halves =
-            SplitSide::BOTH.into_iter().filter_map(|half| wanted.settings.half(half).and(scene.half(half)));
-        let is_known = halves.all(Scene::knows_deviation);
-        shows && self.drawing.is_none() && !is_known && self.drawn.as_ref().is_some_and(from_here)
+        wanted.from_files.surface == 0
+            && self.drawing.is_none()
+            && !is_known
+            && self.drawn.as_ref().is_some_and(from_here)
     }
 
     /// Whether no picture is under way, so that the scene may change.

@@ -3,6 +3,7 @@
 use crate::app::App;
 use geometry::mesh::Moment;
 use geometry::mesh::rig::Clip;
+use inspect::render::LeftPose;
 
 /// How many clips the list shows.
 pub(in crate::app) const LISTED: usize = 1000;
@@ -16,13 +17,15 @@ pub(crate) struct Playback {
     pub time: f64,
     /// 1 is the clip's own speed.
     pub speed: f64,
+    /// The pose left of a split.
+    pub left: LeftPose,
     /// While playing: when `time` was last advanced, on the window's clock in s.
     playing: Option<f64>,
 }
 
 impl Default for Playback {
     fn default() -> Self {
-        Self { clip: None, time: 0.0, speed: 1.0, playing: None }
+        Self { clip: None, time: 0.0, speed: 1.0, left: LeftPose::Same, playing: None }
     }
 }
 
@@ -73,13 +76,24 @@ impl App {
     pub fn choose_clip(&mut self, clip: Option<usize>) {
         let clip = clip.filter(|&clip| clip < self.clips().len());
         let was_framed = self.is_framed();
-        let Playback { speed, playing, .. } = self.viewport.playback;
+        let Playback { speed, left, playing, .. } = self.viewport.playback;
         let playing = playing.filter(|_| clip.is_some());
-        self.viewport.playback = Playback { clip, speed, playing, ..Playback::default() };
+        self.viewport.playback = Playback { clip, speed, left, playing, ..Playback::default() };
         self.frame_clip();
         // A camera that frames the whole mesh frames the whole clip now; one that shows a detail stays.
         if was_framed {
             self.frame();
+        }
+    }
+
+    /// Exchanges what is left and right of the split, with their poses.
+    pub(in crate::app) fn swap_halves(&mut self) {
+        self.settings.swap_halves();
+        if let LeftPose::Own(own) = self.viewport.playback.left {
+            let left = LeftPose::Own(self.moment());
+            self.choose_clip(own.map(|moment| moment.clip));
+            self.viewport.playback.time = own.map_or(0.0, |moment| moment.time);
+            self.viewport.playback.left = left;
         }
     }
 

@@ -68,8 +68,14 @@ impl App {
 
     /// The place under the pointer of a picture whose colours have numbers; none while anything moves.
     fn place_under(&self, response: &Response) -> Option<PointerValue> {
+        let pointer = response.hover_pos().filter(|_| !self.is_playing() && !response.is_pointer_button_down_on())?;
+        let document = self.document.as_ref().filter(|_| !self.viewport.picture.is_busy())?;
+        let at = (pointer - response.rect.min) * response.ctx.pixels_per_point();
+        let (half, pixel) =
+            self.viewport.picture.pixel(&document.scene, [at.x.max(0.0) as u32, at.y.max(0.0) as u32])?;
+        let picture = self.viewport.picture.pictures;
         let has_numbers = matches!(
-            self.settings.overlays.colors,
+            self.settings.half(half)?.overlays.colors,
             Colors::Factors
                 | Colors::LowFactors
                 | Colors::TriangleSize
@@ -77,15 +83,7 @@ impl App {
                 | Colors::Curvature
                 | Colors::TexelDensity
         );
-        let pointer = response
-            .hover_pos()
-            .filter(|_| has_numbers && !self.is_playing() && !response.is_pointer_button_down_on())?;
-        let document = self.document.as_ref().filter(|_| !self.viewport.picture.is_busy())?;
-        let at = (pointer - response.rect.min) * response.ctx.pixels_per_point();
-        let (half, pixel) =
-            self.viewport.picture.pixel(&document.scene, [at.x.max(0.0) as u32, at.y.max(0.0) as u32])?;
-        let picture = self.viewport.picture.pictures;
-        Some(PointerValue { half, pixel, picture, since: Instant::now(), search: Search::Waiting })
+        has_numbers.then(|| PointerValue { half, pixel, picture, since: Instant::now(), search: Search::Waiting })
     }
 
     fn start_search(&mut self, place: &PointerValue, response: &Response) -> Result<Search, GpuError> {
@@ -109,7 +107,8 @@ impl App {
         let vertices = found.triangle?.vertices;
         let corners = vertices.map(|vertex| Vec3::from(vertex.position));
         let middle = vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5);
-        match self.settings.overlays.colors {
+        let settings = self.settings.half(place.half)?;
+        match settings.overlays.colors {
             Colors::TriangleSize => {
                 let size = size_px(corners.map(|corner| view.clip_from_object * corner.extend(1.0)), view.viewport)?;
                 Some(format!("{} px", short(size)))
@@ -120,7 +119,7 @@ impl App {
                 let distance = reference.closest(point.as_dvec3()).distance;
                 let px_where_w_is_1 = self.viewport.picture.drawn?.camera.px_where_w_is_1(view.viewport.y);
                 let px = f64::from(px_where_w_is_1 / (clip_from_object * point.extend(1.0)).w);
-                Some(match self.settings.deviation_in {
+                Some(match settings.deviation_in {
                     SurfaceUnit::Units => format!("{} units", short(distance)),
                     SurfaceUnit::Px => format!("{} px", short(distance * px)),
                 })
@@ -133,7 +132,7 @@ impl App {
                 let scene = self.document.as_ref()?.scene.half(place.half)?;
                 let material = scene.tessellator.topology().material_of(found.patch);
                 let material = &scene.tessellator.mesh().materials[material];
-                let (density, unit) = match self.settings.texel_density_per {
+                let (density, unit) = match settings.texel_density_per {
                     SurfaceUnit::Units => (texel_density(material, vertices.map(|own| own.uv.into()), corners), "unit"),
                     SurfaceUnit::Px => {
                         let seen = |aside: Vec2| mean_at(&view, middle + aside, &vertices, |own| own.uv);
@@ -174,11 +173,12 @@ impl App {
         }
         let scene = self.document.as_ref()?.scene.half(half)?;
         let (mesh, topology) = scene.tessellator.posed().deformed_if_quick()?;
-        let inputs = self.settings.half(half)?.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
+        let settings = self.settings.half(half)?;
+        let inputs = settings.inputs(LodView::new(Mat4::IDENTITY, Vec2::ONE));
         // A pixel at a border may have its middle beside the triangle.
         let u = (at.x.max(0.0) as u32).min(FIXED_ONE);
         let v = (at.y.max(0.0) as u32).min(FIXED_ONE - u);
-        let (kind, net) = (self.settings.curvature_kind, patch_net(&mesh, &topology, &inputs, patch));
+        let (kind, net) = (settings.curvature_kind, patch_net(&mesh, &topology, &inputs, patch));
         let curvature = patch_curvature(kind, inputs.evaluated_surface(&mesh), &net, u, v);
         let unit = if kind == CurvatureKind::Gaussian { "unit²" } else { "unit" };
         Some(format!("{} / {unit}", short(curvature.into())))

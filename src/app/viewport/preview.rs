@@ -10,13 +10,13 @@ use glam::{Mat4, Vec3, vec2};
 use super::picture::{Picture, PictureRequest};
 use super::preview_pace::PreviewPace;
 use crate::app::jobs::job_list::Jobs;
-use crate::app::painting::{Painting, ShownPicture};
+use crate::app::painting::ShownPicture;
 use crate::app::{App, Document};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::ScreenView;
 use gpu::{GpuError, Timing, submit_untimed};
 use inspect::engine::Engine;
-use inspect::render::{Camera, Scene, Target, half_places};
+use inspect::render::{Camera, Scene, Target, WindowPipelines, half_places};
 use inspect::settings::{ColorSource, Colors, Settings, SplitSide, SplitView};
 
 /// A full picture that takes longer than this is late: 30 pictures a second leave 33 ms for each, and the window itself takes
@@ -136,14 +136,14 @@ impl Preview {
     }
 
     /// Makes a target for a full picture of this size.
-    fn fit(&mut self, painting: &Painting, engine: &Engine, full: glam::Vec2) -> Result<(), GpuError> {
+    fn fit(&mut self, painting: &WindowPipelines, engine: &Engine, full: glam::Vec2) -> Result<(), GpuError> {
         let size = |times: u32| full.to_array().map(|side| (side as u32).div_ceil(times).max(1));
         if self.target.as_ref().is_some_and(|(target, _)| target.size == size(self.coarseness)) {
             return Ok(());
         }
         let make = if engine.gpu.is_software() { Target::draft } else { Target::new };
         let target = make(&engine.gpu, size(self.coarseness))?.coarse(self.coarseness);
-        let shown = painting.shown(&engine.gpu, &target, wgpu::FilterMode::Linear);
+        let shown = ShownPicture::new(painting, &engine.gpu, &target, wgpu::FilterMode::Linear);
         self.target = Some((target, shown));
         // The new target is empty.
         self.drawn = None;
@@ -222,12 +222,14 @@ fn shape_of(
     if !follows && (triangles <= kept || wanted.from_files.factors != 0) {
         return Shape::Same;
     }
-    // It stands for the mesh alone, not for another one beside it, and has no parts with surfaces of their own.
+    // It stands for the mesh alone, not for another one or another pose beside it, and has no parts with surfaces of their own.
     if patches > most
-        && document.loaded.mesh.part_styles.is_empty()
+        && !document.loaded.mesh.has_styles()
         && document.moment.is_none()
         && (wanted.settings.split.is_none()
-            || document.left_of == 0 && wanted.settings.split_view == SplitView::Divider)
+            || document.scene.shares_pose(SplitSide::Left)
+                && wanted.settings.split_view == SplitView::Divider
+                && wanted.settings.left_looks.is_none())
         && document.stand_in.is_made(jobs, context, engine, &document.loaded, most as usize)
     {
         return Shape::StandIn;
@@ -239,9 +241,11 @@ fn shape_of(
 fn settings_of(shape: Shape, settings: &Settings) -> Settings {
     let mut cheap = *settings;
     // Both need data that is computed for what is emitted.
-    if matches!(cheap.overlays.colors.source(), ColorSource::ReferenceSurface | ColorSource::MinimumTriangles) {
-        cheap.overlays.colors = Colors::default();
-    }
+    cheap.change_looks(|own| {
+        if matches!(own.overlays.colors.source(), ColorSource::ReferenceSurface | ColorSource::MinimumTriangles) {
+            own.overlays.colors = Colors::default();
+        }
+    });
     let factor = match shape {
         Shape::Same => return cheap,
         Shape::Factor(factor) => factor,
@@ -277,11 +281,8 @@ impl App {
         let preview = &mut self.viewport.preview;
         preview.land();
         preview.fit(&self.painting, &self.engine, full.view.viewport)?;
-        let light = self
-            .environment
-            .as_ref()
-            .filter(|_| full.from_files.light > 0)
-            .map(|open| open.content.environment.clone());
+        let open = self.environment.as_ref().filter(|_| full.from_files.light > 0);
+        let light = open.map(|open| open.content.environment.clone());
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {
                 stand_in.matcap.clone_from(&document.scene.matcap);

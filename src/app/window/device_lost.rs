@@ -8,13 +8,13 @@ use super::fatal_screen::FatalScreen;
 use crate::app::App;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::scenes::scene_of;
-use crate::app::painting::Painting;
 use crate::app::style::style;
 use crate::app::viewport::picture::Picture;
 use crate::app::viewport::preview::Preview;
 use crate::app::viewport::warm_up::WarmUp;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use inspect::engine::Engine;
+use inspect::render::WindowPipelines;
 use inspect::settings::Lighting;
 
 /// A device that is lost sooner than this after the last one isn't replaced automatically.
@@ -100,7 +100,7 @@ impl App {
         render_state: egui_wgpu::RenderState,
     ) -> Result<(), GpuError> {
         let engine = gpu.attempt(|| Engine::new(gpu.clone()))?;
-        let painting = Painting::new(&gpu, render_state.target_format)?;
+        let painting = WindowPipelines::new(&gpu, render_state.target_format)?;
         let scene = self.document.as_ref().map(|document| scene_of(&engine, &document.loaded)).transpose()?;
         let mut viewport = Picture::new(&engine);
         viewport.cancelled = self.viewport.picture.cancelled;

@@ -77,11 +77,8 @@ impl App {
                 screen.tries_again = true;
                 ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             }
-            if ui
-                .button("Quit")
-                .on_hover_text(with_key("Closes the window.", &Action::File(FileAction::Quit)))
-                .clicked()
-            {
+            let hover = with_key("Closes the window.", &Action::File(FileAction::Quit));
+            if ui.button("Quit").on_hover_text(hover).clicked() {
                 ui.ctx().send_viewport_cmd(egui::ViewportCommand::Close);
             }
         });

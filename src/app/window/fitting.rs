@@ -22,35 +22,21 @@ impl Fitting {
             return;
         }
         let start = *self.start.get_or_insert_with(Instant::now);
-        let frame = context.input(|input| Frame::from_viewport(input.viewport()));
-        self.is_done = frame.is_some() || start.elapsed() > TOLD_WITHIN;
-        if let Some(size) = frame.and_then(|frame| frame.fitting()) {
+        let fitting = context.input(|input| fitting(input.viewport()));
+        self.is_done = fitting.is_some() || start.elapsed() > TOLD_WITHIN;
+        if let Some(size) = fitting.flatten() {
             context.send_viewport_cmd(ViewportCommand::InnerSize(size));
         }
     }
 }
 
-/// The sizes of a window's content, of the window with its frame, and of the screen, in points.
-#[derive(Clone, Copy, Debug)]
-struct Frame {
-    inner: Vec2,
-    outer: Vec2,
-    screen: Vec2,
-}
-
-impl Frame {
-    /// None while the window has no frame or isn't free to have another size.
-    fn from_viewport(window: &ViewportInfo) -> Option<Self> {
-        let fills = [window.maximized, window.fullscreen].contains(&Some(true));
-        let (inner, outer) = (window.inner_rect?.size(), window.outer_rect?.size());
-        (outer != inner && !fills).then_some(Self { inner, outer, screen: window.monitor_size? })
-    }
-
-    /// The size of the content with which the window fits the screen; none if it does already.
-    fn fitting(self) -> Option<Vec2> {
-        let excess = (self.outer - self.screen).max(Vec2::ZERO);
-        (excess != Vec2::ZERO).then_some(self.inner - excess)
-    }
+/// The size of the content with which a window and its frame fit the screen, in points, or none if they do already. Unknown while
+/// the window has no frame or isn't free to have another size.
+fn fitting(window: &ViewportInfo) -> Option<Option<Vec2>> {
+    let fills = [window.maximized, window.fullscreen].contains(&Some(true));
+    let (inner, outer) = (window.inner_rect?.size(), window.outer_rect?.size());
+    let excess = (outer - window.monitor_size?).max(Vec2::ZERO);
+    (outer != inner && !fills).then(|| (excess != Vec2::ZERO).then_some(inner - excess))
 }
 
 #[cfg(test)]
@@ -71,14 +57,13 @@ mod tests {
 
     #[test]
     fn a_window_and_its_frame_fit_the_screen() {
-        let fitting = |window: &ViewportInfo| Frame::from_viewport(window).and_then(Frame::fitting);
-        assert_eq!(fitting(&window(vec2(1280.0, 720.0))), Some(vec2(1280.0, 696.0)));
-        assert_eq!(fitting(&window(vec2(1400.0, 700.0))), Some(vec2(1280.0, 696.0)));
-        assert_eq!(fitting(&window(vec2(1280.0, 696.0))), None);
+        assert_eq!(fitting(&window(vec2(1280.0, 720.0))), Some(Some(vec2(1280.0, 696.0))));
+        assert_eq!(fitting(&window(vec2(1400.0, 700.0))), Some(Some(vec2(1280.0, 696.0))));
+        assert_eq!(fitting(&window(vec2(1280.0, 696.0))), Some(None));
         let maximized = ViewportInfo { maximized: Some(true), ..window(vec2(1280.0, 720.0)) };
         assert_eq!(fitting(&maximized), None);
         let frameless =
             ViewportInfo { outer_rect: window(vec2(1280.0, 720.0)).inner_rect, ..window(vec2(1280.0, 720.0)) };
-        assert!(Frame::from_viewport(&frameless).is_none(), "the frame may come later");
+        assert_eq!(fitting(&frameless), None, "the frame may come later");
     }
 }

@@ -35,34 +35,13 @@ pub enum WindowError {
 /// What the command line changes in how the mesh is taken.
 pub type Opening<'a> = Option<&'a dyn Fn(&mut Preparation)>;
 
-/// Opens the window with `source`, or with a cube made in code, on the chosen adapter; `opening` says how the mesh is taken. Returns
-/// when it is closed. Files beyond `limits` aren't opened.
+/// Opens the window with `source`, or with a cube made in code, on the chosen adapter; `opening` says how the mesh is taken.
+/// Files beyond `limits` aren't opened. `watch` is called before every frame, in all windows that follow each other. Returns
+/// when the last one is closed.
 ///
 /// # Errors
 /// There is no display, no adapter, or the window can't be drawn.
 pub fn run(
-    source: Option<Source>,
-    opening: Opening,
-    limits: Limits,
-    adapter: AdapterChoice,
-) -> Result<(), WindowError> {
-    run_opening(source, opening, limits, adapter, |_, _| {})
-}
-
-/// Like [`run`], but calls `watch` before every frame, in all windows that follow each other.
-///
-/// # Errors
-/// There is no display, no adapter, or the window can't be drawn.
-pub fn run_watched(
-    source: Option<Source>,
-    limits: Limits,
-    adapter: AdapterChoice,
-    watch: impl FnMut(&mut App, &egui::Context) + 'static,
-) -> Result<(), WindowError> {
-    run_opening(source, None, limits, adapter, watch)
-}
-
-fn run_opening(
     source: Option<Source>,
     opening: Opening,
     limits: Limits,

@@ -7,6 +7,7 @@ use image::{DynamicImage, RgbaImage};
 use crate::cli::{CliError, make_folder};
 use geometry::names::shown_path;
 use inspect::shot::{Reference, write_drawn};
+use lab::check::{GOLDEN, GateResult};
 
 /// The golden pictures of an asset.
 #[derive(Clone, Debug)]
@@ -15,14 +16,6 @@ pub(super) struct Golden {
     place: PathBuf,
     /// Whether they are written in place of compared with.
     is_written: bool,
-}
-
-/// How a view compares with its golden picture.
-pub(super) struct Compared {
-    pub is_same: bool,
-    /// How they differ, in a sentence without its end.
-    pub text: String,
-    pub difference: Option<DynamicImage>,
 }
 
 impl Golden {
@@ -48,36 +41,33 @@ impl Golden {
         if self.is_written { None } else { views.map(there).collect() }
     }
 
-    /// Compares a view that this adapter has drawn with its golden picture, or writes that.
+    /// Compares a view that this adapter has drawn with its golden picture, or writes that. Returns the result, and a picture
+    /// of how they differ.
     pub(super) fn compare(
         &self,
         view: &str,
         drawn: &RgbaImage,
         adapter: &wgpu::AdapterInfo,
-    ) -> Result<Compared, CliError> {
+    ) -> Result<(GateResult, Option<DynamicImage>), CliError> {
         let path = self.path(view);
         let shown = shown_path(&path);
-        let without = |is_same, text| Ok(Compared { is_same, text, difference: None });
+        let judged = |passed, text| GateResult { name: GOLDEN[0].to_owned(), passed, text, ..GateResult::default() };
         if self.is_written {
             path.parent().map_or(Ok(()), make_folder)?;
             write_drawn(&path, drawn, adapter, &[])?;
-            return without(true, format!("{shown} was written"));
+            return Ok((judged(true, format!("{shown} was written")), None));
         }
         if !path.is_file() {
-            return without(false, format!("there is no golden picture {shown}; write it with --update-golden"));
+            let text = format!("there is no golden picture {shown}; write it with --update-golden");
+            return Ok((judged(false, text), None));
         }
         let reference = Reference::read(&path, None)?;
         Ok(match reference.compare(drawn, adapter) {
-            Err(other_size) => return without(false, format!("{shown}: {other_size}")),
+            Err(other_size) => (judged(false, format!("{shown}: {other_size}")), None),
+            Ok(verdict) if verdict.is_same() => (judged(true, verdict.in_words()), None),
             Ok(verdict) => {
-                let is_same = verdict.is_same();
-                let difference = (!is_same).then(|| reference.difference(drawn, &verdict).into());
-                let text = if is_same {
-                    verdict.in_words()
-                } else {
-                    format!("it differs from {shown}: {}", verdict.in_words())
-                };
-                Compared { is_same, text, difference }
+                let text = format!("it differs from {shown}: {}", verdict.in_words());
+                (judged(false, text), Some(reference.difference(drawn, &verdict).into()))
             }
         })
     }

@@ -9,14 +9,13 @@ use base64::engine::general_purpose::STANDARD;
 use image::DynamicImage;
 use image::imageops::FilterType;
 
-use super::golden::Compared;
 use super::plan::{Job, Named};
 use crate::cli::{CliError, file_error, file_of, note};
 use geometry::names::on_one_line;
 use geometry::progress::Progress;
 use inspect::engine::{Engine, Loaded, Preparation};
 use inspect::shot::png_bytes;
-use lab::check::{Asset, Cache, GOLDEN, GateResult, View};
+use lab::check::{Asset, Cache, GateResult, View};
 use load::files::file_reason;
 use load::selection::is_part_of;
 use load::{LoadError, ShownParts};
@@ -69,10 +68,9 @@ fn measure(job: &Job, engine: &Engine, pictures: bool, asset: &mut Asset) -> Res
         let mut gates = Vec::new();
         if let Some((golden, drawn)) = job.golden.as_ref().zip(drawn.as_ref()) {
             let start = Instant::now();
-            let Compared { is_same, text, difference } = golden.compare(name, drawn, shot.adapter())?;
+            let (result, difference) = golden.compare(name, drawn, shot.adapter())?;
             let evidence = difference.filter(|_| pictures).map(|picture| encoded(job, picture)).transpose()?;
-            let (name, seconds) = (GOLDEN[0].to_owned(), start.elapsed().as_secs_f64());
-            gates.push(GateResult { name, passed: is_same, text, evidence, seconds, ..GateResult::default() });
+            gates.push(GateResult { evidence, seconds: start.elapsed().as_secs_f64(), ..result });
         }
         let picture = drawn.filter(|_| pictures).map(|drawn| encoded(job, drawn.into())).transpose()?;
         for gate in wanted {

@@ -7,14 +7,13 @@ use clap::{Arg, ArgAction, Command, CommandFactory, Parser};
 
 use super::Args;
 use super::golden::Golden;
-use crate::cli::options::check_view_name;
+use crate::cli::options::{check_view_name, said};
 use crate::cli::shot_options::ShotOptions;
-use crate::cli::{CliError, file_error, note, refuse};
+use crate::cli::{CliError, note, refuse};
 use geometry::names::{on_one_line, shown, shown_path};
 use inspect::gates::Gate;
-use lab::check::{Config, FolderError, Inputs, OptionValue, Section, assets};
+use lab::check::{Config, Inputs, OptionValue, Section, assets};
 use load::Source;
-use load::files::file_reason;
 
 /// The configuration that is read if there is one and none is named.
 const CONFIG: &str = "pnaen.toml";
@@ -52,7 +51,7 @@ pub(super) type Named = (&'static str, String);
 impl Job {
     pub(super) fn inputs(&self) -> Inputs<'_> {
         let path = if let Source::File(path) = &self.source { path } else { Path::new(&self.name) };
-        Inputs { path, configuration: &self.configuration }
+        (path, &self.configuration)
     }
 }
 
@@ -78,8 +77,7 @@ pub(super) fn plan(args: &Args) -> Result<Vec<Job>, CliError> {
     let config = path.map(|path| Config::read(path, &names, &CAMERA)).transpose()?.unwrap_or_default();
     let folder = path.and_then(Path::parent).unwrap_or(Path::new(""));
     check_options(&config, &command, folder)?;
-    let unreadable = |FolderError { folder, error }: FolderError| file_error(&folder, "read", &file_reason(&error));
-    let found = assets(&args.files).map_err(unreadable)?;
+    let found = assets(&args.files)?;
     if found.is_empty() {
         return Err(CliError::NoAssets);
     }
@@ -260,12 +258,4 @@ fn clash(config: &Config, error: CliError) -> CliError {
         CliError::Usage(reason) => config.clash(reason).into(),
         other => other,
     }
-}
-
-/// What an error of the command line says, in one line.
-fn said(error: &clap::Error) -> String {
-    let text = error.to_string();
-    let lines = text.lines().take_while(|line| !line.trim().is_empty());
-    let line = lines.map(str::trim).collect::<Vec<_>>().join(" ");
-    line.strip_prefix("error: ").unwrap_or(&line).to_owned()
 }

@@ -17,7 +17,7 @@ use inspect::render::layout::WORST_COLOR;
 use inspect::render::{Camera, LineSegment};
 use inspect::settings::{Colors, Overlays, Settings};
 use inspect::shot::legend::{Named, draw_key};
-use inspect::shot::{Shot, ShotView, Subject, write_picture};
+use inspect::shot::{Shot, ShotError, ShotView, Subject, write_picture};
 use lab::compare::{Comparison, ForeignMesh, OurTessellation, SideDifference};
 
 /// sRGB colours of what differs: sides that are cut differently, patches that differ, patches without triangles, and vertices
@@ -70,7 +70,7 @@ pub(super) fn draw(
         ShotView { camera: *camera, lod_camera: None, size: args.surface.size, transparent: false, legend: true };
     names.extend(is_compared.then_some((WORST_COLOR, "largest distance from ours")));
     let mut picture = Shot::new(engine, scene, subject, view)?.picture(None, &Progress::new())?;
-    draw_key(&mut picture, "What differs", &names)?;
+    draw_key(&mut picture, "What differs", &names).map_err(ShotError::from)?;
     Ok(write_picture(path, &picture.into())?)
 }
 

@@ -7,8 +7,8 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use geometry::names::shown;
-use geometry::numbers::{counted, grouped, short};
-use lab::compare::{Comparison, Farthest, Finding, OurTessellation, SideDifference, Tolerances, plural, point};
+use geometry::numbers::{counted, grouped, numbered, short};
+use lab::compare::{Comparison, Farthest, Finding, OurTessellation, SideDifference, Tolerances, point};
 
 /// How many sides are printed, and how many JSON has.
 const SAID: usize = 10;
@@ -37,7 +37,7 @@ impl Report<'_> {
             text,
             "\n{} and {} on {} of {} patches; ours are {}.",
             counted(found.triangles, "triangle"),
-            plural(found.vertices, "vertex", "vertices"),
+            numbered(found.vertices, "# [vertex|vertices]"),
             grouped(found.patches),
             grouped(self.ours.topology.patches.len() as u64),
             counted(self.ours.tessellated.triangles.len() as u64, "triangle")

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::{Args, Parser};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use super::{CameraOption, ViewOptions};
 use crate::cli::{CliError, file_error, read_text, refuse};
@@ -115,14 +115,17 @@ fn read(path: &Path) -> Result<Vec<NamedView>, CliError> {
 
 /// Reads a camera from its words: its name and then its options.
 fn parse_words(words: Vec<String>) -> Result<NamedView, String> {
-    // A parser's first line says what is wrong, and the others how the command line is used.
-    let said = |error: clap::Error| {
-        let text = error.to_string();
-        on_one_line(text.lines().next().unwrap_or_default().trim_start_matches("error: "))
-    };
-    let own = NamedView::try_parse_from(words).map_err(said)?;
+    let own = NamedView::try_parse_from(words).map_err(|error| said(&error))?;
     check_view_name(&own.name)?;
     Ok(own)
+}
+
+/// What an error of the command line says, in one line, without how the command line is used.
+pub(crate) fn said(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let lines = text.lines().take_while(|line| !line.trim().is_empty());
+    let line = lines.map(str::trim).collect::<Vec<_>>().join(" ");
+    on_one_line(line.strip_prefix("error: ").unwrap_or(&line))
 }
 
 /// Refuses the name of a view that its files can't have.
@@ -166,15 +169,13 @@ fn words(line: &str) -> Result<Vec<String>, String> {
 
 /// Reads an array of objects, whose fields are `name` and camera options with underscores in place of hyphens.
 fn parse_json(text: &str) -> Result<Vec<NamedView>, String> {
-    let value: Value = serde_json::from_str(text).map_err(|error| format!("it is no JSON: {error}"))?;
-    let Value::Array(cameras) = value else { return Err("its JSON is no array of cameras".to_owned()) };
-    let read =
-        |(index, camera): (usize, &Value)| parse_object(camera).map_err(|reason| format!("camera {index}: {reason}"));
+    let cameras: Vec<Map<_, _>> =
+        serde_json::from_str(text).map_err(|error| format!("it is no JSON, or no array of objects: {error}"))?;
+    let read = |(index, camera)| parse_object(camera).map_err(|reason| format!("camera {index}: {reason}"));
     cameras.iter().enumerate().map(read).collect()
 }
 
-fn parse_object(camera: &Value) -> Result<NamedView, String> {
-    let Value::Object(fields) = camera else { return Err("it is no object".to_owned()) };
+fn parse_object(fields: &Map<String, Value>) -> Result<NamedView, String> {
     let Some(Value::String(name)) = fields.get("name") else { return Err("it has no name, a string".to_owned()) };
     let mut words = Vec::new();
     for (field, value) in fields.iter().filter(|(field, _)| *field != "name") {

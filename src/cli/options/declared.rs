@@ -14,7 +14,7 @@ use load::Import;
 
 /// Options that are made from declarations.
 pub trait Group: Clone + Default {
-    const ALL: &'static [&'static Declaration];
+    const ALL: &'static [&'static [&'static Declaration]];
 
     fn arg(declaration: &'static Declaration) -> Arg {
         with_default(arg(declaration), declaration)
@@ -55,7 +55,7 @@ const USUAL_PARTITIONING: &str = "By default rows under LOD by error, else fract
 
 impl<T: Group> clap::Args for Declared<T> {
     fn augment_args(command: Command) -> Command {
-        command.args(T::ALL.iter().map(|declaration| T::arg(declaration)))
+        command.args(T::ALL.iter().copied().flatten().map(|declaration| T::arg(declaration)))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -76,7 +76,7 @@ impl<T: Group> FromArgMatches for Declared<T> {
 }
 
 impl Group for GivenTessellation {
-    const ALL: &'static [&'static Declaration] = &options::TESSELLATION;
+    const ALL: &'static [&'static [&'static Declaration]] = &[&options::TESSELLATION];
 
     fn arg(declaration: &'static Declaration) -> Arg {
         let own = arg(declaration);
@@ -91,7 +91,7 @@ impl Group for GivenTessellation {
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
         let mut settings = Settings::from(self.tessellation);
-        take(Self::ALL, matches, &mut settings)?;
+        take(&options::TESSELLATION, matches, &mut settings)?;
         self.tessellation = settings.tessellation;
         let is_given = |id: &str| {
             matches.try_contains_id(id).is_ok_and(|is_known| is_known)
@@ -113,11 +113,11 @@ impl Group for GivenTessellation {
 }
 
 impl Group for Settings {
-    const ALL: &'static [&'static Declaration] = &options::PICTURE;
+    const ALL: &'static [&'static [&'static Declaration]] = &[&options::LOOKS, &options::PICTURE];
 
     fn arg(declaration: &'static Declaration) -> Arg {
         let arg = with_default(arg(declaration), declaration);
-        if declaration.name == options::SPLIT_LEFT.name { arg.requires(options::SPLIT.name) } else { arg }
+        if matches!(declaration.kind, Kind::Options(_)) { arg.requires(options::SPLIT.name) } else { arg }
     }
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
@@ -127,22 +127,23 @@ impl Group for Settings {
         let has_heights = matches.try_contains_id("height").is_ok_and(|has_heights| has_heights);
         right.tessellation.displacement = right.displacement.unwrap_or(Displacement::usual(has_heights));
         let mut own = self.with(right.tessellation);
-        take(Self::ALL, matches, &mut own)?;
-        *self = own.with(self.tessellation);
+        take(&options::LOOKS, matches, &mut own)?;
         let is_given = matches.value_source(options::LIGHTING.name) == Some(ValueSource::CommandLine);
         if !is_given && matches.try_contains_id("environment").is_ok_and(|has_file| has_file) {
-            self.lighting = Lighting::Environment;
+            own.lighting = Lighting::Environment;
         }
+        take(&options::PICTURE, matches, &mut own)?;
+        *self = own.with(self.tessellation);
         Ok(())
     }
 }
 
 impl Group for Import {
-    const ALL: &'static [&'static Declaration] = &options::IMPORT;
+    const ALL: &'static [&'static [&'static Declaration]] = &[&options::IMPORT];
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
         let mut settings = Settings { import: *self, ..Settings::default() };
-        take(Self::ALL, matches, &mut settings)?;
+        take(&options::IMPORT, matches, &mut settings)?;
         *self = settings.import;
         Ok(())
     }
@@ -348,13 +349,16 @@ mod tests {
                 Kind::Pair(range) => Value::Pair([range.least, range.most]),
                 Kind::Switch => Value::Switch(true),
                 Kind::Color => Value::Color([1, 2, 3]),
-                Kind::Options(all) => Value::Options(vec![(all()[0].name, Value::Name("flat"))]),
+                Kind::Options(all) if all()[0].name == options::SURFACE.name => {
+                    Value::Options(vec![(all()[0].name, Value::Name("flat"))])
+                }
+                Kind::Options(all) => Value::Options(vec![(all()[0].name, Value::Names(vec!["clay", "wireframe"]))]),
             };
             // A factor stands for uniform LOD.
             let mut expected =
                 if option.name == options::FACTOR.name { Settings::default() } else { Settings::usual() };
             let mut arguments = Vec::new();
-            if option.name == options::SPLIT_LEFT.name {
+            if matches!(option.kind, Kind::Options(_)) {
                 assert!(read(&[format!("--{}={value}", option.name)]).is_err(), "it needs a split");
                 arguments.push("--split=0.5".to_owned());
                 expected.split = Some(0.5);

@@ -51,15 +51,15 @@ impl OpeningOptions {
 }
 
 impl Group for GivenImport {
-    const ALL: &'static [&'static Declaration] = &options::IMPORT;
+    const ALL: &'static [&'static [&'static Declaration]] = &[&options::IMPORT];
 
     fn arg(declaration: &'static Declaration) -> Arg {
         arg(declaration)
     }
 
     fn take(&mut self, matches: &ArgMatches) -> Result<(), Error> {
-        let value = |declaration: &&'static Declaration| Some((declaration.name, given(declaration, matches)?));
-        self.0 = Self::ALL.iter().filter_map(value).collect();
+        let value = |declaration: &'static Declaration| Some((declaration.name, given(declaration, matches)?));
+        self.0 = options::IMPORT.into_iter().filter_map(value).collect();
         Ok(())
     }
 }
@@ -71,6 +71,7 @@ mod tests {
     use super::*;
     use crate::cli::Cli;
     use geometry::mesh::UpAxis;
+    use geometry::mesh::subdivision::FaceVarying;
     use load::import::Subdivide;
     use load::{FileUnit, LengthUnit, NormalSource};
 
@@ -88,6 +89,7 @@ mod tests {
             show_hidden: true,
             subdivide: Subdivide::Loop,
             levels: Some(3.0),
+            subdivide_uvs: Some(FaceVarying::Corners),
         };
         assert!(options(&["a.obj"]).is_empty());
         assert_eq!(options(&["a.obj"]).import(usual), usual);

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::builder::{OsStringValueParser, PathBufValueParser, TypedValueParser};
 use glam::Vec3;
 
 use geometry::mesh::PartStyle;
@@ -16,7 +16,7 @@ use load::{HeightSource, Source};
 
 /// Parses the path of a picture. Refuses standard output, and endings of files that are no PNG files.
 pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(|path| picture_path(PathBuf::from(path)))
+    PathBufValueParser::new().try_map(picture_path)
 }
 
 fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
@@ -35,10 +35,7 @@ fn picture_path(path: PathBuf) -> Result<PathBuf, String> {
 
 /// The same, or that of a report on a picture.
 pub(crate) fn picture_or_page() -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(|path| {
-        let path = PathBuf::from(path);
-        if ending(&path) == "html" { Ok(path) } else { picture_path(path) }
-    })
+    PathBufValueParser::new().try_map(|path| if ending(&path) == "html" { Ok(path) } else { picture_path(path) })
 }
 
 /// Parses the path of a file to write, whose ending, one of these, gives its format. `wanted` says which there are.
@@ -46,20 +43,14 @@ pub(crate) fn ending_in(
     endings: &'static [&'static str],
     wanted: &'static str,
 ) -> impl TypedValueParser<Value = PathBuf> {
-    OsStringValueParser::new().try_map(move |path| {
-        let path = PathBuf::from(path);
-        if endings.contains(&ending(&path).as_str()) { Ok(path) } else { Err(wanted) }
-    })
-}
-
-/// Parses the path of a mesh to write.
-pub(crate) fn model() -> impl TypedValueParser<Value = PathBuf> {
-    ending_in(&["glb", "obj"], "meshes are written as .glb or .obj files: name it one of these")
+    let is_one = move |path: &PathBuf| endings.contains(&ending(path).as_str());
+    PathBufValueParser::new().try_map(move |path| Some(path).filter(is_one).ok_or(wanted))
 }
 
 /// Parses the name of a part, and what it has in place of what is set for all.
 pub(crate) fn part_style(text: &str) -> Result<(String, PartStyle), String> {
-    let (name, style) = text.rsplit_once(':').ok_or("expected NAME:surface=SURFACE,detail=NUMBER")?;
+    let expected = "expected NAME:KEY=VALUE,.., such as door:surface=flat,detail=2,normals=made,crease=30";
+    let (name, style) = text.rsplit_once(':').ok_or(expected)?;
     Ok((name.to_owned(), style.parse()?))
 }
 
@@ -122,7 +113,7 @@ pub(crate) fn angle(text: &str) -> Result<f32, String> {
 }
 
 /// Parses a time that is finite and not negative.
-pub(super) fn seconds(text: &str) -> Result<f64, String> {
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     number(text, |time: &f64| time.is_finite() && *time >= 0.0, "a number of seconds, 0 or more")
 }
 

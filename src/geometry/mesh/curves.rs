@@ -90,7 +90,7 @@ impl Curves {
         (sharing, used): (Sharing, StylesUsed),
         edges: impl Iterator<Item = u32>,
     ) -> Self {
-        let used = if mesh.part_styles.is_empty() { StylesUsed::Nothing } else { used };
+        let used = if mesh.has_styles() { used } else { StylesUsed::Nothing };
         let per_patch = sharing.is_per_patch();
         let mut curves = Curves { side_curves: vec![0; topology.sides.len()], per_patch, ..Curves::default() };
         if !per_patch {

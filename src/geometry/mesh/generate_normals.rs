@@ -5,13 +5,13 @@ use std::ops::Range;
 
 use glam::Vec3;
 
-use super::Corner;
 use super::build_limits::{Borrowed, Budget, BuildError, borrowing};
 use super::chunked_vec::ChunkedVec;
 use super::normals::{Face, fan_normals};
 use super::smooth_points::give_normals;
 use super::unfinished_mesh::{CornerPoints, UnfinishedMesh};
 use super::weld::plus_zero3;
+use super::{Corner, Mesh};
 use crate::casts::to_u32;
 use crate::cores::in_ranges;
 use crate::progress::Progress;
@@ -33,24 +33,40 @@ const LEAST: usize = 1 << 9;
 /// counted for one of them.
 const SMALL_FAN: usize = 256;
 
-/// Gives every corner without a normal one, computed from the faces around its point with a crease angle in degrees. Corners with exactly equal
-/// positions lie on one point. Some corners may be left without a use. Takes time linear in the number of triangles,
-/// times the logarithm of the largest fan's faces where those give different normals.
+/// The crease angles of triangles, in degrees.
+pub(crate) struct CreaseAngles<'a> {
+    all: f32,
+    least: f32,
+    /// The mesh, if parts or materials of it have angles of their own.
+    styled: Option<&'a Mesh>,
+}
+
+impl<'a> CreaseAngles<'a> {
+    /// That of all, and those of a mesh's parts and materials. It needn't have its triangles yet.
+    pub(crate) fn new(all: f32, mesh: &'a Mesh) -> Self {
+        let own = || mesh.styles().filter_map(|own| own.crease_angle);
+        Self { all, least: own().fold(all, f32::min), styled: own().next().map(|_| mesh) }
+    }
+}
+
+/// Gives every corner without a normal one, computed from the faces around its point, whatever their parts, that are within the
+/// crease angle of its own triangle. Corners with exactly equal positions lie on one point. Some corners may be left without a use.
+/// Takes time linear in the number of triangles, times the logarithm of the largest fan's faces where those give different normals.
 ///
 /// # Errors
 /// [`BuildError`].
 pub(crate) fn generate_normals(
     mesh: &mut UnfinishedMesh,
-    crease_angle: f32,
+    angles: &CreaseAngles,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<(), BuildError> {
     let _scope = Borrowed::from(budget);
     let points = CornerPoints::new(mesh, budget)?;
-    let done = borrowing(budget, || give_normals(mesh, &points, crease_angle, budget, progress))?;
+    let done = borrowing(budget, || give_normals(mesh, &points, angles.least, budget, progress))?;
     if done.is_empty() || done.contains(&false) {
         budget.borrow(done.len() as u64)?;
-        with_fans(mesh, &points, &done, crease_angle, budget, progress)?;
+        with_fans(mesh, &points, &done, angles, budget, progress)?;
     }
     Ok(())
 }
@@ -60,7 +76,7 @@ fn with_fans(
     mesh: &mut UnfinishedMesh,
     points: &CornerPoints,
     done: &[bool],
-    crease_angle: f32,
+    angles: &CreaseAngles,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<(), BuildError> {
@@ -72,7 +88,7 @@ fn with_fans(
         progress.check()?;
         let block = around.block(next);
         next = block.end;
-        for (points, normals) in normals_of(mesh, &around, block, crease_angle) {
+        for (points, normals) in normals_of(mesh, &around, block, angles) {
             let mut normals = normals.as_slice();
             for point in points {
                 let corners = around.of_mut(point);
@@ -209,7 +225,7 @@ fn normals_of(
     mesh: &UnfinishedMesh,
     around: &CornersByPoint,
     block: Range<usize>,
-    crease_angle: f32,
+    angles: &CreaseAngles,
 ) -> Vec<(Range<usize>, Vec<Vec3>)> {
     let largest = block.clone().map(|point| around.of(point).len()).max().unwrap_or_default();
     let least = if largest <= SMALL_FAN { LEAST } else { block.len() };
@@ -224,13 +240,27 @@ fn normals_of(
                 let triangle = mesh.triangles[corner as usize / 3];
                 Face::new(triangle.map(|id| mesh.corners[id as usize].position), corner as usize % 3)
             }));
-            fan_normals(&faces, crease_angle, &mut made);
+            creased(&faces, corners, angles, &mut made);
             let given = corners.iter().map(|&corner| mesh.corners[mesh.corner(corner) as usize].normal);
             let normals = made.iter().zip(given);
             all.extend(normals.map(|(made, given)| if given.x.is_nan() { plus_zero3(*made) } else { given }));
         }
         (points, all)
     })
+}
+
+/// Computes the normals of a fan's faces, each with the crease angle of its own triangle. `corners` are theirs on the point.
+fn creased(faces: &[Face], corners: &[u32], angles: &CreaseAngles, normals: &mut Vec<Vec3>) {
+    fan_normals(faces, angles.all, normals);
+    let Some(mesh) = angles.styled else { return };
+    let own = |corner: &u32| mesh.style_of(corner / 3).crease_angle.unwrap_or(angles.all);
+    let own: Vec<f32> = corners.iter().map(own).collect();
+    let mut made = Vec::new();
+    for angle in (0..own.len()).filter(|first| !own[..*first].contains(&own[*first])).map(|first| own[first]) {
+        fan_normals(faces, angle, &mut made);
+        let of_faces = normals.iter_mut().zip(&made).zip(&own).filter(|(_, other)| **other == angle);
+        of_faces.for_each(|((normal, made), _)| *normal = *made);
+    }
 }
 
 /// The faces around one point.
@@ -304,6 +334,7 @@ mod tests {
     use crate::cores::on_threads;
     use crate::mesh::build_limits::Budget;
     use crate::mesh::shapes::Shape;
+    use crate::mesh::{PartRange, PartStyle};
 
     fn without_normals(corners: impl Iterator<Item = Corner>, triangles: &[[u32; 3]]) -> UnfinishedMesh {
         let corners = corners.map(|corner| Corner { normal: Vec3::NAN, ..corner }).collect();
@@ -322,11 +353,11 @@ mod tests {
     }
 
     /// The meshes that both ways make.
-    fn both(mesh: impl Fn() -> UnfinishedMesh, crease_angle: f32) -> [UnfinishedMesh; 2] {
+    fn both(mesh: impl Fn() -> UnfinishedMesh, angles: &CreaseAngles) -> [UnfinishedMesh; 2] {
         let (mut fast, mut slow) = (mesh(), mesh());
-        generate_normals(&mut fast, crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
+        generate_normals(&mut fast, angles, &Budget::unlimited(), &Progress::new()).unwrap();
         let points = CornerPoints::new(&slow, &Budget::unlimited()).unwrap();
-        with_fans(&mut slow, &points, &[], crease_angle, &Budget::unlimited(), &Progress::new()).unwrap();
+        with_fans(&mut slow, &points, &[], angles, &Budget::unlimited(), &Progress::new()).unwrap();
         [fast, slow]
     }
 
@@ -337,6 +368,7 @@ mod tests {
             used in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..60),
             bend in 0.0_f32..1.0,
             crease_angle in prop::sample::select(vec![0.0_f32, 1.0, 30.0, 60.0, 90.0, 180.0]),
+            own in prop::option::of(prop::sample::select(vec![0.0_f32, 45.0, 180.0])),
             has_seams in any::<bool>(),
         ) {
             let corner = |(i, ([x, y], z)): (usize, &([i8; 2], i8))| Corner {
@@ -350,7 +382,12 @@ mod tests {
             corners.dedup_by_key(|corner| (corner.position, corner.uv));
             let count = corners.len();
             let triangles: Vec<_> = used.iter().map(|at| at.map(|at| at.index(count) as u32)).collect();
-            let [fast, slow] = both(|| without_normals(corners.iter().copied(), &triangles), crease_angle);
+            // The first half of the triangles is a part.
+            let part_ranges = vec![PartRange { triangles: 0..triangles.len() as u32 / 2, part: 0 }];
+            let part_styles = vec![PartStyle { crease_angle: own, ..PartStyle::default() }];
+            let parts = Mesh { part_ranges, part_styles, ..Mesh::default() };
+            let angles = CreaseAngles::new(crease_angle, &parts);
+            let [fast, slow] = both(|| without_normals(corners.iter().copied(), &triangles), &angles);
             prop_assert_eq!(bits(&fast), bits(&slow));
         }
     }
@@ -365,7 +402,7 @@ mod tests {
             let points = CornerPoints::new(&mesh, &Budget::unlimited()).unwrap();
             let done = give_normals(&mut mesh, &points, 60.0, &Budget::unlimited(), &Progress::new()).unwrap();
             assert_eq!(done.iter().all(|done| *done), is_smooth, "{shape:?}");
-            let [fast, slow] = both(whole, 60.0);
+            let [fast, slow] = both(whole, &CreaseAngles::new(60.0, &Mesh::default()));
             assert_eq!(bits(&fast), bits(&slow), "{shape:?}");
         }
     }
@@ -379,7 +416,9 @@ mod tests {
         let triangles: Vec<_> = squares.flat_map(|i| [[i, i + 1, i + side], [i + side, i + 1, i + side + 1]]).collect();
         let made = |cores| {
             let mut mesh = without_normals((0..side * side).map(corner), &triangles);
-            let make = || generate_normals(&mut mesh, 60.0, &Budget::unlimited(), &Progress::new());
+            let none = Mesh::default();
+            let angles = CreaseAngles::new(60.0, &none);
+            let make = || generate_normals(&mut mesh, &angles, &Budget::unlimited(), &Progress::new());
             on_threads(cores, make).unwrap().unwrap();
             bits(&mesh)
         };

@@ -11,12 +11,19 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::Mesh;
+use super::{Mesh, Wrap};
 use crate::casts::{to_f32, to_u32};
 use crate::progress::{Cancelled, Progress};
 
 /// The greatest width and height of a height map, in px. Larger images are scaled down.
 pub const MAX_KEPT: u32 = 4096;
+
+/// The greatest width and height in texels of the texture that holds all maps of a mesh. Every adapter has textures of that size
+/// (WebGPU, default limits).
+pub const HEIGHTS_ACROSS: u32 = 8192;
+
+/// The greatest size of a mesh's maps together, in bytes: that of this texture.
+pub const MOST_BYTES: u64 = 4 * (HEIGHTS_ACROSS as u64).pow(2);
 
 /// The greatest number of maps of a mesh, for which the shaders have room.
 pub const MAX_MAPS: usize = 256;
@@ -40,9 +47,12 @@ impl HeightAmount {
     }
 
     /// The amount by which a height that is multiplied by `factor` and then has `offset` added moves the surface, both in object
-    /// units; none if the height makes no difference, and as for [`Self::new`].
+    /// units; none as for [`Self::new`].
     pub fn from_factor(factor: f32, offset: f32) -> Option<Self> {
-        Self::new(factor, -offset / factor)
+        // So far below the midlevel all heights of an image are the same number in f32, and an offset alone stays what it is.
+        let least = 2.0 * offset.abs() / MOST_AMOUNT;
+        let scale = if factor.abs() < least { least } else { factor };
+        Self::new(scale, if scale == 0.0 { 0.0 } else { -offset / scale })
     }
 }
 
@@ -55,12 +65,12 @@ pub struct HeightMap {
     pub size: [u32; 2],
     /// The number of levels.
     pub levels: u32,
-    /// Whether the image repeats, since some texture coordinate lies outside 0 to 1. Otherwise the pixels at its border
-    /// continue.
-    pub repeats: bool,
+    /// What is beyond the image along u and v. In [`Heights`] the pixels at the border continue if no texture coordinate lies
+    /// outside 0 to 1.
+    pub wrap: [Wrap; 2],
     /// How far it moves the surface; none if the settings say so.
     pub amount: Option<HeightAmount>,
-    /// The least and the greatest height.
+    /// The least and the greatest height, or beyond them.
     pub range: [f32; 2],
     /// The pixels of all levels, one level after another, each row by row from the top. Maps that differ in the rest share them.
     pub heights: Arc<Vec<f32>>,
@@ -93,13 +103,19 @@ impl HeightMap {
     pub fn with_amount(&self, amount: Option<HeightAmount>) -> Self {
         Self { amount, ..self.clone() }
     }
+
+    /// Returns the same image that goes on so beyond its border.
+    pub fn with_wrap(&self, wrap: [Wrap; 2]) -> Self {
+        Self { wrap, ..self.clone() }
+    }
 }
 
 impl Heights {
     /// Uses one map for all materials of a mesh.
     pub fn everywhere(mesh: &Mesh, map: HeightMap) -> Self {
         // The only possible error is cancellation, and no other code has this handle.
-        Self::of_materials(mesh, &vec![Some(map); mesh.materials.len()], &Progress::new()).expect("not cancelled")
+        let made = Self::of_materials(mesh, &vec![Some(map); mesh.materials.len()], &Progress::new());
+        made.expect("not cancelled").expect("one map")
     }
 
     /// Uses a map made in code, of `side` px a side, with so many waves across and down. It can be repeated without a seam.
@@ -111,30 +127,37 @@ impl Heights {
         Self::everywhere(mesh, HeightMap::new([side; 2], (0..side * side).map(height).collect()))
     }
 
-    /// Uses a map for each material that has one. Materials whose maps are equal share one.
+    /// Uses a map for each material that has one. Materials with equal maps share one. None if these are more than [`MAX_MAPS`].
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
-    pub fn of_materials(mesh: &Mesh, own: &[Option<HeightMap>], progress: &Progress) -> Result<Self, Cancelled> {
-        let (mut maps, mut of_material): (Vec<HeightMap>, _) = (Vec::new(), Vec::new());
-        for (material, own) in mesh.materials.iter().zip(own) {
-            let Some(own) = own else {
-                of_material.push(None);
-                continue;
-            };
-            let is_same = |map: &HeightMap| Arc::ptr_eq(&map.heights, &own.heights) && map.amount == own.amount;
-            let index = maps.iter().position(is_same).unwrap_or(maps.len());
-            if index == maps.len() {
-                maps.push(own.clone());
+    pub fn of_materials(
+        mesh: &Mesh,
+        own: &[Option<HeightMap>],
+        progress: &Progress,
+    ) -> Result<Option<Self>, Cancelled> {
+        let (mut maps, mut of_material, mut known) = (Vec::new(), vec![None; own.len()], HashMap::new());
+        for ((material, own), place) in mesh.materials.iter().zip(own).zip(&mut of_material) {
+            progress.check()?;
+            let Some(own) = own else { continue };
+            let amount = own.amount.map(|own| [own.scale, own.midlevel].map(f32::to_bits));
+            let index = *known.entry((Arc::as_ptr(&own.heights), amount, own.wrap)).or_insert(maps.len());
+            if index == MAX_MAPS {
+                return Ok(None);
             }
-            of_material.push(Some(to_u32(index)));
+            if index == maps.len() {
+                maps.push(HeightMap { wrap: [Wrap::Clamp; 2], ..own.clone() });
+            }
+            *place = Some(to_u32(index));
             let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
             let mut uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
-            maps[index].repeats |= uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any());
+            if uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any()) {
+                maps[index].wrap = own.wrap;
+            }
         }
         let reliefs = relief::reliefs(mesh, &maps, &of_material, progress)?;
         let (radius, angles) = (mesh.bounds().radius(), angles(mesh));
-        Ok(Self { maps, of_material, are_of_colors: false, radius, angles, reliefs })
+        Ok(Some(Self { maps, of_material, are_of_colors: false, radius, angles, reliefs }))
     }
 
     /// Returns the number of a material's image, if it has one.
@@ -188,7 +211,7 @@ fn angles(mesh: &Mesh) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Shape;
+    use crate::mesh::{Material, Shape};
 
     #[test]
     fn a_point_moves_by_the_height_that_differs_most_from_the_middle() {
@@ -203,8 +226,52 @@ mod tests {
     }
 
     #[test]
-    fn amounts_that_depend_on_no_height_are_none() {
-        let bad = [(0.0, 1.0), (f32::NAN, 0.0), (f32::INFINITY, 0.0), (1.0, f32::NAN), (1e-30, 1e30)];
+    fn more_maps_than_shaders_have_room_for_are_refused() {
+        let mut mesh = Shape::Torus.build();
+        let map = HeightMap::new([1, 1], vec![0.5]);
+        let numbered = |i: usize| Some(map.with_amount(HeightAmount::from_factor(i as f32, 0.0)));
+        let own: Vec<_> = (0..=MAX_MAPS).map(numbered).collect();
+        mesh.materials = vec![Material::plain("plain", [1.0; 4]); own.len()];
+        let count = |own: &[Option<HeightMap>], progress: &Progress| {
+            Heights::of_materials(&mesh, own, progress).map(|made| made.map(|heights| heights.maps.len()))
+        };
+        assert_eq!(count(&own[1..], &Progress::new()), Ok(Some(MAX_MAPS)));
+        assert_eq!(count(&own, &Progress::new()), Ok(None));
+        let cancelled = Progress::new();
+        cancelled.cancel();
+        assert_eq!(count(&own, &cancelled), Err(Cancelled));
+    }
+
+    #[test]
+    fn images_go_on_as_they_are_said_to_only_where_coordinates_leave_them() {
+        let mut mesh = Shape::Saddle.build();
+        let wrap = [Wrap::Mirror, Wrap::Clamp];
+        let map = HeightMap::new([2, 2], vec![0.5; 4]).with_wrap(wrap);
+        assert_eq!(Heights::everywhere(&mesh, map.clone()).maps[0].wrap, [Wrap::Clamp; 2]);
+        mesh.corners.iter_mut().for_each(|corner| corner.uv *= 2.0);
+        assert_eq!(Heights::everywhere(&mesh, map.clone()).maps[0].wrap, wrap);
+        // One image that goes on in two ways is two maps of the same pixels.
+        mesh.materials = vec![mesh.materials[0].clone(); 2];
+        let own = [Some(map.clone()), Some(map.with_wrap([Wrap::Repeat; 2]))];
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps");
+        assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
+    }
+
+    #[test]
+    fn a_height_without_a_factor_leaves_the_offset() {
+        for (factor, offset) in [(0.0, 0.0), (0.0, 1.0), (0.0, -0.7), (0.0, 3e5), (1e-12, 0.3), (0.0, 1e-40)] {
+            let HeightAmount { scale, midlevel } = HeightAmount::from_factor(factor, offset).expect("an amount");
+            for height in [0.0, 0.25, 1.0] {
+                let moved = scale * (height - midlevel);
+                assert!((moved - offset).abs() <= 1e-6 * offset.abs() + 1e-30, "{factor} {offset}: {moved}");
+            }
+        }
+        assert_eq!(HeightAmount::from_factor(0.0, 0.0), Some(HeightAmount { scale: 0.0, midlevel: 0.0 }));
+    }
+
+    #[test]
+    fn amounts_that_are_no_numbers_or_too_large_are_none() {
+        let bad = [(f32::NAN, 0.0), (f32::INFINITY, 0.0), (1.0, f32::NAN), (0.0, f32::INFINITY), (1e-30, 1e30)];
         assert!(bad.into_iter().all(|(factor, offset)| HeightAmount::from_factor(factor, offset).is_none()));
         assert_eq!(HeightAmount::from_factor(1e9, 0.0).map(|amount| amount.scale), Some(1e9));
         assert_eq!(HeightAmount::from_factor(1.1e9, 0.0), None);
@@ -217,7 +284,7 @@ mod tests {
         let map = HeightMap::new([2, 2], vec![0.5; 4]);
         let deep = map.with_amount(HeightAmount::from_factor(3.0, 0.0));
         let own = [Some(map.clone()), None, Some(deep.clone()), Some(map.clone())];
-        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled");
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps");
         assert_eq!(heights.of_material, [Some(0), None, Some(1), Some(0)]);
         assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
         assert!(heights.follow_settings() && !Heights::everywhere(&mesh, deep).follow_settings());

@@ -5,45 +5,40 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::HeightMap;
+use super::{HeightMap, PartStyle, Sampling};
 use crate::choice::choices;
 use crate::defaults::with_defaults;
 
-/// The look of some of a mesh's patches.
-#[derive(Clone, Debug)]
-pub struct Material {
-    /// The name in the file.
-    pub name: String,
-    /// Linear RGBA, 0 to 1.
-    pub base_color: [f32; 4],
-    /// The image that multiplies the base colour, at the corners' own texture coordinates. Materials that use the same image
-    /// share it.
-    pub texture: Option<Arc<Texture>>,
-    /// How the base colour's image is sampled.
-    pub sampling: Sampling,
-    /// Whether its triangles are also meant to be seen from behind.
-    pub double_sided: bool,
-    /// How it reflects light.
-    pub look: Look,
-    /// The height image that the file gives it, at the corners' own texture coordinates.
-    pub height: Option<HeightMap>,
-    /// The mesh's triangles of this material.
-    pub triangles: Range<u32>,
+with_defaults! {
+    /// The look of some of a mesh's patches; by default white, neither metal nor glossy.
+    #[derive(Clone, Debug)]
+    pub struct Material {
+        /// The name in the file.
+        pub name: String = String::new(),
+        /// Linear RGBA, 0 to 1.
+        pub base_color: [f32; 4] = [1.0; 4],
+        /// The image that multiplies the base colour, at the corners' own texture coordinates. Materials that use the same image
+        /// share it.
+        pub texture: Option<Arc<Texture>> = None,
+        /// How the base colour's image is sampled.
+        pub sampling: Sampling = Sampling::default(),
+        /// Whether its triangles are also meant to be seen from behind.
+        pub double_sided: bool = false,
+        /// How it reflects light.
+        pub look: Look = Look::default(),
+        /// The height image that the file gives it, at the corners' own texture coordinates.
+        pub height: Option<HeightMap> = None,
+        /// The mesh's triangles of this material.
+        pub triangles: Range<u32> = 0..0,
+        /// What these have in place of what is said for all, where their part says nothing.
+        pub style: PartStyle = PartStyle::default(),
+    }
 }
 
 impl Material {
     /// Returns a material of one colour (linear RGBA), neither metal nor glossy, without triangles.
     pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
-        Self {
-            name: name.to_owned(),
-            base_color,
-            texture: None,
-            sampling: Sampling::default(),
-            double_sided: false,
-            look: Look::default(),
-            height: None,
-            triangles: 0..0,
-        }
+        Self { name: name.to_owned(), base_color, ..Self::default() }
     }
 
     /// Whether one may see what is behind its triangles: it blends, or it transmits light.
@@ -121,7 +116,7 @@ with_defaults! {
 
 impl Look {
     /// How many images pictures show of a material beside that of the base colour. Where more are needed, the last slots' are
-    /// left out. A body that refracts light needs one more, of what is behind it.
+    /// left out. What [distorts](Self::distorts) needs one more, of what is behind it.
     pub const MOST_IMAGES: usize = 12;
 
     /// The maps whose texture coordinates tangents go along: those of the first one that there is.
@@ -148,6 +143,11 @@ impl Look {
     /// Whether light that goes through it is bent, and absorbed behind the surface.
     pub fn refracts(&self) -> bool {
         self.transmits() && self.thickness > 0.0
+    }
+
+    /// Whether what is behind it is seen elsewhere or blurred: by a body that refracts light, or a rough surface.
+    pub fn distorts(&self) -> bool {
+        self.transmits() && (self.thickness > 0.0 || self.roughness > 0.0)
     }
 
     /// The part of light that the body absorbs in an object unit, for short ways, as linear RGB (Beer and Lambert's coefficient).
@@ -223,30 +223,4 @@ pub enum MapUv {
     /// One of the sets that [`CornerDetails`](super::CornerDetails) has as they are in the file, 0 or 1, then an affine map:
     /// u' = a u + b v + c and v' = d u + e v + f, as `[a, b, c, d, e, f]` (KHR_texture_transform).
     Set(usize, [f32; 6]),
-}
-
-with_defaults! {
-    /// How an image is sampled, in the words of WebGPU.
-    #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-    pub struct Sampling {
-        /// Beyond the image, along u and v.
-        pub wrap: [Wrap; 2] = [Wrap::Repeat; 2],
-        /// Whether texels are blended where they are larger than pixels.
-        pub magnify_linear: bool = true,
-        /// The same where they are smaller.
-        pub minify_linear: bool = true,
-        /// Whether mip levels are used, and blended (`Some(true)`).
-        pub mip_linear: Option<bool> = Some(true),
-    }
-}
-
-/// What is beyond an image.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Wrap {
-    /// The image again.
-    Repeat,
-    /// The image again, mirrored every other time.
-    Mirror,
-    /// Its border.
-    Clamp,
 }

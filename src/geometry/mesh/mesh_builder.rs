@@ -10,11 +10,11 @@ use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
-use super::generate_normals::generate_normals;
+use super::generate_normals::{CreaseAngles, generate_normals};
 use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::unfinished_mesh::UnfinishedMesh;
 use super::weld::{plus_zero2, plus_zero3};
-use super::{Corner, Material, Mesh, PartRange, Repairs};
+use super::{Corner, Material, Mesh, PartRange, PartStyle, Repairs};
 use crate::casts::to_u32;
 use crate::cores::{in_ranges, ranges};
 use crate::progress::{Cancelled, Progress};
@@ -43,6 +43,7 @@ impl From<Corner> for InputCorner {
 
 /// Collects triangles and builds a mesh. Equal corners are stored once: the memory that a builder takes grows with the
 /// number of distinct corners, plus 12 bytes a triangle (the formula is in `load::memory_budget`).
+#[derive(Default)]
 pub struct MeshBuilder {
     groups: Vec<Group>,
     distinct: DistinctCorners,
@@ -55,14 +56,10 @@ pub struct MeshBuilder {
     repairs: Repairs,
     /// The part of the file that the next triangles belong to.
     part: Option<u32>,
-    /// The angle up to which faces are smooth where normals are made, in degrees.
-    crease_angle: f32,
-}
-
-impl Default for MeshBuilder {
-    fn default() -> Self {
-        Self::with_crease_angle(CREASE_ANGLE)
-    }
+    /// The angle up to which faces are smooth where normals are made, in degrees; none for [`CREASE_ANGLE`].
+    crease_angle: Option<f32>,
+    /// What parts have in place of what is said for all, by the numbers that they are [entered](Self::enter_part) with.
+    pub part_styles: Vec<PartStyle>,
 }
 
 /// Triangles, the materials that have some, and their parts.
@@ -123,16 +120,7 @@ impl MeshBuilder {
 
     /// Starts a mesh whose missing normals are smooth where faces meet at up to this angle, in degrees from 0 to 180.
     pub fn with_crease_angle(crease_angle: f32) -> Self {
-        Self {
-            groups: Vec::new(),
-            distinct: DistinctCorners::default(),
-            triangles: 0,
-            offered: 0,
-            expected: [0; 2],
-            repairs: Repairs::default(),
-            part: None,
-            crease_angle,
-        }
+        Self { crease_angle: Some(crease_angle), ..Self::default() }
     }
 
     /// Announces that about `offered` more corners will be added, and that about `distinct` of them will be distinct.
@@ -365,8 +353,11 @@ impl MeshBuilder {
         progress.check()?;
         let DistinctCorners { corners, bindings, .. } = self.distinct;
         let mut mesh = UnfinishedMesh { corners, bindings, triangles };
+        let (repairs, part_styles) = (self.repairs, self.part_styles);
+        let made = Mesh { name, materials, part_ranges, part_styles, repairs, ..Mesh::default() };
         if mesh.corners.iter().any(|corner| corner.normal.x.is_nan()) {
-            generate_normals(&mut mesh, self.crease_angle, budget, progress)?;
+            let angles = CreaseAngles::new(self.crease_angle.unwrap_or(CREASE_ANGLE), &made);
+            generate_normals(&mut mesh, &angles, budget, progress)?;
         }
         let _scope = Borrowed::from(budget);
         budget.borrow(mesh.corners.len() as u64 * 4)?;
@@ -378,9 +369,7 @@ impl MeshBuilder {
             budget.borrow(corners.len() as u64 * 32)?;
             corners.shrink_to_fit();
         }
-        let repairs = self.repairs;
-        let triangles = triangles.into();
-        Ok((Mesh { name, corners, triangles, materials, part_ranges, repairs, ..Mesh::default() }, bindings))
+        Ok((Mesh { corners, triangles: triangles.into(), ..made }, bindings))
     }
 
     /// Joins all triangles into one list, and returns it with the materials that have triangles, and with the parts.

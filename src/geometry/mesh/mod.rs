@@ -31,6 +31,7 @@ mod part_style;
 pub mod polygon;
 pub mod repairs;
 pub mod rig;
+mod sampling;
 pub mod shapes;
 mod slices;
 mod smooth_points;
@@ -52,10 +53,11 @@ pub use corner_details::{CornerDetail, CornerDetails};
 pub use file_camera::{FileCamera, Projection};
 pub use heights::{HeightAmount, HeightMap, Heights};
 pub use light::{Light, LightKind, MOST_LIGHTS};
-pub use material::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture, Wrap};
+pub use material::{Alpha, Look, Map, MapUv, Material, Slot, Texture};
 pub use repairs::Repairs;
 pub use rig::clip::Clip;
 pub use rig::{Bone, Moment, Pose, Rig};
+pub use sampling::{Sampling, Wrap};
 pub use slices::{MeshSlices, SliceError};
 pub use topology::{Edge, EdgeCounts, EdgeKind, Patch, Side, Topology};
 
@@ -63,7 +65,7 @@ pub use build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing};
 pub use crease_band::{CreaseBand, with_crease_band};
 pub use curves::{Curve, CurveItems, Curves, Sharing};
 pub use dominance::Dominance;
-pub use heights::{MAX_MAPS, PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
+pub use heights::{HEIGHTS_ACROSS, MAX_MAPS, PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 pub use normal_faults::NormalFaults;
 pub use orientation::UpAxis;
 pub use part_style::{CurveStyle, PartStyle, StylesUsed};
@@ -97,7 +99,7 @@ pub struct Mesh {
     pub materials: Vec<Material>,
     /// Which triangles are whose part of the file, in their order. Triangles that belong to no part are in none of these.
     pub part_ranges: Vec<PartRange>,
-    /// What each of the file's parts has in place of what the tessellation says for all; empty if none differs.
+    /// What each of the file's parts has in place of what is said for all; empty if none has anything.
     pub part_styles: Vec<PartStyle>,
     /// The height images that displacement can move the surface by.
     pub heights: Option<Arc<Heights>>,

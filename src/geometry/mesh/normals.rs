@@ -2,9 +2,23 @@
 //! that meet at up to the crease angle, creased elsewhere.
 
 use crate::casts::to_u32;
+use crate::choice::choices;
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
+
+choices! {
+    /// Whose normals the corners of a mesh have.
+    #[derive(Default, Hash)]
+    pub enum NormalSource {
+        #[default]
+        File => "file", "Of the file",
+            "Corners have the normals of the file. Where it has none, or one without a direction, they are made.";
+        Made => "made", "Made anew",
+            "All normals are made from the triangles around each point, weighted by angle, as if the file had none. Its \
+             smoothing groups and tangents aren't used then.";
+    }
+}
 
 /// The crease angle unless another one is chosen, in degrees.
 pub const CREASE_ANGLE: f32 = 60.0;

@@ -1,15 +1,17 @@
-//! What a part of a mesh has in place of what its tessellation says for all.
+//! What a part of a mesh, or a material, has in place of what is said for all.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
+use super::normals::NormalSource;
 use super::{Mesh, Topology};
 use crate::choice::Choice;
 use crate::defaults::with_defaults;
 use crate::surface_kind::Surface;
 
 with_defaults! {
-    /// What a part of a mesh has in place of what its tessellation says for all.
+    /// What a part of a mesh, or a material, has in place of what is said for all. Where both say something, the part does.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct PartStyle {
         /// Its surface; none for that of the tessellation.
@@ -17,6 +19,10 @@ with_defaults! {
         /// How many times as fine as the rest LOD makes it, [`Self::LEAST`] to [`Self::MOST`] in steps of that least: it multiplies
         /// lengths and errors in px, and the factors of uniform LOD and of LOD by distance. None for 1.
         pub detail: Option<f32> = None,
+        /// Whose normals its corners get when the file is read; none for those that are chosen for all.
+        pub normals: Option<NormalSource> = None,
+        /// The angle up to which its triangles are smooth where normals are made, in degrees from 0 to 180; none for that of all.
+        pub crease_angle: Option<f32> = None,
     }
 }
 
@@ -29,7 +35,17 @@ impl PartStyle {
     /// This style, and what it doesn't say of another one.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
-        Self { surface: self.surface.or(other.surface), detail: self.detail.or(other.detail) }
+        Self {
+            surface: self.surface.or(other.surface),
+            detail: self.detail.or(other.detail),
+            normals: self.normals.or(other.normals),
+            crease_angle: self.crease_angle.or(other.crease_angle),
+        }
+    }
+
+    /// Whether it says anything of how a mesh is tessellated that was read.
+    pub fn is_of_tessellation(&self) -> bool {
+        self.surface.is_some() || self.detail.is_some()
     }
 
     /// This style with the nearest detail that there is.
@@ -41,13 +57,28 @@ impl PartStyle {
     }
 }
 
-/// As the command line has it: `surface=flat,detail=2`.
+/// As the command line has it: `surface=flat,detail=2,normals=made,crease=30`.
 impl fmt::Display for PartStyle {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let surface = self.surface.map(|surface| format!("surface={}", surface.name()));
-        let detail = self.detail.map(|detail| format!("detail={detail}"));
-        f.write_str(&Vec::from_iter(surface.into_iter().chain(detail)).join(","))
+        let texts = [
+            self.surface.map(|surface| format!("surface={}", surface.name())),
+            self.detail.map(|detail| format!("detail={detail}")),
+            self.normals.map(|normals| format!("normals={}", normals.name())),
+            self.crease_angle.map(|angle| format!("crease={angle}")),
+        ];
+        f.write_str(&Vec::from_iter(texts.into_iter().flatten()).join(","))
     }
+}
+
+/// The value of that name.
+fn named<T: Choice>(what: &str, name: &str) -> Result<Option<T>, String> {
+    let names = || Vec::from_iter(T::ALL.iter().map(|value| value.name())).join(", ");
+    T::named(name).map(Some).ok_or_else(|| format!("no {what} is named {name:?}: choose one of {}", names()))
+}
+
+/// The number that a text is, if it is in a range, which `reason` describes.
+fn number(text: &str, range: RangeInclusive<f32>, reason: &str) -> Result<Option<f32>, String> {
+    text.parse().ok().filter(|number| range.contains(number)).map(Some).ok_or_else(|| reason.to_owned())
 }
 
 impl FromStr for PartStyle {
@@ -55,20 +86,16 @@ impl FromStr for PartStyle {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let mut own = Self::default();
+        let of_detail = "a part's detail is a number from 1/64 (0.015625) to 16, such as detail=2";
+        let of_crease = "a part's crease angle is a number of degrees from 0 to 180, such as crease=30";
         for (key, value) in text.split(',').map(|pair| pair.split_once('=').unwrap_or((pair, ""))) {
+            let value = value.trim();
             match key.trim() {
-                "surface" => {
-                    let names = || Surface::ALL.map(Choice::name).join(", ");
-                    let named = Surface::named(value.trim());
-                    own.surface =
-                        Some(named.ok_or_else(|| format!("no surface is named {value:?}: choose one of {}", names()))?);
-                }
-                "detail" => {
-                    let detail = value.trim().parse().ok().filter(|detail| (Self::LEAST..=Self::MOST).contains(detail));
-                    let reason = "a part's detail is a number from 1/64 (0.015625) to 16, such as detail=2";
-                    own.detail = Some(detail.ok_or(reason)?);
-                }
-                _ => return Err("a part has surface=NAME or detail=NUMBER or both, joined by a comma".to_owned()),
+                "surface" => own.surface = named("surface", value)?,
+                "detail" => own.detail = number(value, Self::LEAST..=Self::MOST, of_detail)?,
+                "normals" => own.normals = named("source of normals", value)?,
+                "crease" => own.crease_angle = number(value, 0.0..=180.0, of_crease)?,
+                _ => return Err("a part has surface=, detail=, normals= or crease=, joined by commas".to_owned()),
             }
         }
         Ok(own.rounded())
@@ -76,13 +103,23 @@ impl FromStr for PartStyle {
 }
 
 impl Mesh {
-    /// What the part of a triangle has in place of what the tessellation says for all.
+    /// What a triangle has in place of what is said for all: what its part says, then its material.
     pub fn style_of(&self, triangle: u32) -> PartStyle {
-        if self.part_styles.is_empty() {
-            return PartStyle::default();
-        }
-        let part = self.part_of(triangle);
-        part.and_then(|part| self.part_styles.get(part as usize)).copied().unwrap_or_default().rounded()
+        let part = if self.part_styles.is_empty() { None } else { self.part_of(triangle) };
+        let part = part.and_then(|part| self.part_styles.get(part as usize)).copied();
+        let material = self.materials.partition_point(|material| material.triangles.end <= triangle);
+        let material = self.materials.get(material).map(|material| material.style);
+        part.unwrap_or_default().or(material.unwrap_or_default()).rounded()
+    }
+
+    /// The styles of parts and of materials.
+    pub fn styles(&self) -> impl Iterator<Item = PartStyle> {
+        self.part_styles.iter().copied().chain(self.materials.iter().map(|material| material.style))
+    }
+
+    /// Whether anything is tessellated otherwise than the tessellation says for all.
+    pub fn has_styles(&self) -> bool {
+        self.styles().any(|own| own.is_of_tessellation())
     }
 }
 
@@ -133,7 +170,7 @@ impl Topology {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::{Curves, PartRange, Shape, Sharing};
+    use crate::mesh::{Curves, Material, PartRange, Shape, Sharing};
 
     /// A torus whose first half is a part of this style.
     fn half(style: PartStyle) -> (Mesh, Topology) {
@@ -148,12 +185,24 @@ mod tests {
     fn styles_are_read_as_they_are_written() {
         for surface in Surface::ALL.map(Some).into_iter().chain([None]) {
             for detail in [None, Some(PartStyle::LEAST), Some(0.5), Some(1.0), Some(3.25), Some(PartStyle::MOST)] {
-                let style = PartStyle { surface, detail };
-                let is_written = style != PartStyle::default();
-                assert!(!is_written || style.to_string().parse() == Ok(style), "{style}");
+                for (normals, crease_angle) in [
+                    (None, None),
+                    (Some(NormalSource::File), Some(0.0)),
+                    (Some(NormalSource::Made), Some(22.5)),
+                    (None, Some(180.0)),
+                ] {
+                    let style = PartStyle { surface, detail, normals, crease_angle };
+                    let is_written = style != PartStyle::default();
+                    assert!(!is_written || style.to_string().parse() == Ok(style), "{style}");
+                }
             }
         }
+        let all = "surface=pn,detail=2,normals=made,crease=30";
+        assert_eq!(all.parse::<PartStyle>().map(|own| own.to_string()), Ok(all.to_owned()));
         for text in ["", "flat", "surface=", "surface=round", "detail=0", "detail=nan", "detail=17", "size=2"] {
+            assert!(text.parse::<PartStyle>().is_err(), "{text}");
+        }
+        for text in ["normals=", "normals=smooth", "crease=", "crease=nan", "crease=-1", "crease=181", "crease=inf"] {
             assert!(text.parse::<PartStyle>().is_err(), "{text}");
         }
     }
@@ -162,14 +211,36 @@ mod tests {
     fn a_program_that_embeds_may_give_any_detail() {
         let least = PartStyle::LEAST;
         for (given, expected) in [(f32::NAN, least), (-1.0, least), (0.0, least), (0.51, 33.0 * least), (1e9, 16.0)] {
-            let (mesh, _) = half(PartStyle { surface: None, detail: Some(given) });
+            let (mesh, _) = half(PartStyle { detail: Some(given), ..PartStyle::default() });
             assert_eq!(mesh.style_of(0).detail, Some(expected));
         }
     }
 
     #[test]
+    fn a_material_has_a_style_where_the_part_says_nothing() {
+        let style = |text: &str| text.parse::<PartStyle>().expect("a style");
+        let (mut mesh, _) = half(style("surface=pn"));
+        let count = mesh.triangles.len() as u32;
+        assert!(!mesh.materials[0].style.is_of_tessellation());
+        // The materials' border is within the part.
+        let first = mesh.materials[0].clone();
+        mesh.materials = vec![
+            Material { triangles: 0..count / 4, ..first.clone() },
+            Material { triangles: count / 4..count, style: style("surface=flat,detail=2"), ..first },
+        ];
+        let styles = [0, count / 4 - 1, count / 4, count / 2 - 1, count / 2, count - 1].map(|own| mesh.style_of(own));
+        let [plain, both, material] = ["surface=pn", "surface=pn,detail=2", "surface=flat,detail=2"].map(style);
+        assert_eq!(styles, [plain, plain, both, both, material, material]);
+        mesh.part_styles = vec![style("normals=made,crease=10")];
+        assert!(mesh.has_styles(), "the material has one");
+        mesh.materials.pop();
+        assert!(!mesh.has_styles(), "normals are those of the file when it is read");
+    }
+
+    #[test]
     fn details_alone_change_no_group_and_as_published_each_side_follows_its_own_surface() {
-        let (mesh, topology) = half(PartStyle { surface: Some(Surface::Pn), detail: Some(2.0) });
+        let style = PartStyle { surface: Some(Surface::Pn), detail: Some(2.0), ..PartStyle::default() };
+        let (mesh, topology) = half(style);
         for sharing in [Sharing::EachSide, Sharing::NoneAveraged] {
             let (plain, own) = (
                 Curves::build(&mesh, &topology, sharing),

@@ -15,7 +15,7 @@ use super::height_list::{fetch_height, level_place};
 use super::normal::unit_or;
 use super::surface::outline_place;
 use crate::choice::choices;
-use crate::mesh::HeightMap;
+use crate::mesh::{HeightMap, Wrap};
 
 choices! {
     /// Whether a surface is displaced by height images, and what its patches agree on where they meet.
@@ -60,19 +60,22 @@ fn wrapped(x: f32) -> f32 {
 
 /// Returns where the texture coordinate `x` lies along a row or column of `size` px: in px from the centre of px 0. In
 /// images that repeat, `size` is added, so that the result isn't negative.
-fn pixel_coordinate(map: &HeightMap, x: f32, size: u32) -> f32 {
-    if map.repeats {
+fn pixel_coordinate(wrap: Wrap, x: f32, size: u32) -> f32 {
+    if wrap == Wrap::Repeat {
         return wrapped(x) * size as f32 + size as f32 - 0.5;
     }
-    (x * size as f32 - 0.5).clamp(0.0, (size - 1) as f32)
+    // There and back again.
+    let turned = 2.0 * wrapped(0.5 * x);
+    let place = if wrap == Wrap::Mirror { turned.min(2.0 - turned) } else { x };
+    (place * size as f32 - 0.5).clamp(0.0, (size - 1) as f32)
 }
 
 /// Returns the height of a mip level at a texture coordinate, bilinearly interpolated.
 pub(crate) fn bilinear_height(map: &HeightMap, level: u32, uv: Vec2) -> f32 {
     let width = (map.size[0] >> level).max(1);
     let height = (map.size[1] >> level).max(1);
-    let x = pixel_coordinate(map, uv.x, width);
-    let y = pixel_coordinate(map, uv.y, height);
+    let x = pixel_coordinate(map.wrap[0], uv.x, width);
+    let y = pixel_coordinate(map.wrap[1], uv.y, height);
     let left = x as u32 % width;
     let upper = y as u32 % height;
     // Images that don't repeat give weight 0 to a px beyond the last one.
@@ -199,12 +202,12 @@ mod tests {
     /// Returns a map of 4 x 2 px that rises by 1/8 for each px to the right and by 1/4 for each px down.
     fn slope() -> HeightMap {
         let heights = (0..8).map(|i| (i % 4) as f32 / 8.0 + (i / 4) as f32 / 4.0).collect();
-        HeightMap { repeats: true, ..HeightMap::new([4, 2], heights) }
+        HeightMap::new([4, 2], heights)
     }
 
     #[test]
     fn images_that_do_not_repeat_continue_with_their_border() {
-        let map = HeightMap { repeats: false, ..slope() };
+        let map = slope().with_wrap([Wrap::Clamp; 2]);
         for (u, expected) in [(-1.0, 0.0), (0.0, 0.0), (0.125, 0.0), (0.875, 0.375), (1.0, 0.375), (7.0, 0.375)] {
             assert_eq!(bilinear_height(&map, 0, vec2(u, 0.25)), expected, "{u}");
         }
@@ -214,6 +217,19 @@ mod tests {
             slope().heights[..8].iter().sum::<f32>() / 8.0,
             "repeating makes no difference inside the image"
         );
+    }
+
+    #[test]
+    fn mirrored_images_run_back_beyond_their_border() {
+        let (map, within) = (slope().with_wrap([Wrap::Mirror, Wrap::Repeat]), slope().with_wrap([Wrap::Clamp; 2]));
+        for u in [0.0, 0.1, 0.45, 0.875, 1.0] {
+            let expected = bilinear_height(&within, 0, vec2(u, 0.25));
+            for other in [u, -u, 2.0 - u, 2.0 + u, -2.0 - u] {
+                // Rows repeat.
+                let height = bilinear_height(&map, 0, vec2(other, -2.75));
+                assert!((height - expected).abs() < 1e-5, "{other}: {height}, not {expected}");
+            }
+        }
     }
 
     #[test]

@@ -121,8 +121,9 @@ impl Inputs {
 
     /// The surfaces of a mesh's patches.
     pub fn surfaces(&self, mesh: &Mesh) -> impl Iterator<Item = Surface> {
-        let styles = if self.styles() == StylesUsed::Nothing { &[][..] } else { &mesh.part_styles };
-        std::iter::once(self.tessellation.surface).chain(styles.iter().filter_map(|style| style.surface))
+        let are_used = self.styles() != StylesUsed::Nothing;
+        let own = mesh.styles().filter(move |_| are_used).filter_map(|style| style.surface);
+        std::iter::once(self.tessellation.surface).chain(own)
     }
 
     /// The surface as which all patches of a mesh are evaluated: flat only if all of them are. The control points of flat ones among

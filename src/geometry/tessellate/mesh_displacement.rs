@@ -436,7 +436,9 @@ mod tests {
         let steps = steps.with_amount(HeightAmount::from_factor(0.3, 0.1));
         let mut places = |own: [Option<&HeightMap>; 2]| {
             let own = own.map(|map| map.cloned());
-            mesh.heights = Some(Arc::new(Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled")));
+            mesh.heights = Some(Arc::new(
+                Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps"),
+            ));
             shared_places(&mesh, &topology, Displacement::On)
         };
         let [flat, first, second, both] =

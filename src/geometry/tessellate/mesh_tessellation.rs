@@ -9,9 +9,8 @@ use super::mesh_factors::MeshLod;
 use super::vertex::{Vertex, pack_key};
 use super::{
     Clip, ControlNet, Edges, FIXED_ONE, HullFactors, Inputs, NOT_CULLED, Normals, PatchFactors, Solid, Tessellation,
-    corner_weights, cull_reason, domain_plan, domain_point, domain_triangle, edge_normal, edge_position, edge_uv,
-    linear_normal, linear_uv, outline_place, pack_normal, patch_position, point_count, quadratic_edge_normal,
-    quadratic_normal, surface_normal, triangle_count,
+    corner_weights, cull_reason, edge_normal, edge_position, edge_uv, linear_normal, linear_uv, outline_place,
+    pack_normal, patch_position, point_count, quadratic_edge_normal, quadratic_normal, surface_normal, triangle_count,
 };
 use crate::mesh::{Mesh, Topology};
 
@@ -136,16 +135,13 @@ impl ControlNets<'_> {
                 NOT_CULLED => written(patch).process(inputs.tessellation.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
-            let plan = domain_plan(factors);
-            let vertex = |i| {
-                let uv = corner_weights(inputs.tessellation.convention, domain_point(&plan, i));
-                let own = self.vertex(patch, &net, uv);
+            let vertex = |point| {
+                let own = self.vertex(patch, &net, corner_weights(inputs.tessellation.convention, point));
                 displacement.map_or(own, |displacement| displacement.displaced(self, factors, own))
             };
             let base = out.vertices.len() as u32;
-            out.vertices.extend((0..point_count(factors)).map(vertex));
-            let triangles = (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t));
-            out.triangles.extend(triangles.map(|corners| corners.map(|i| base + i)));
+            out.vertices.extend(factors.points().into_iter().map(vertex));
+            out.triangles.extend(factors.triangles().into_iter().map(|corners| corners.map(|i| base + i)));
             out.patch_factors.push(factors);
         }
         out

@@ -74,6 +74,6 @@ impl Tessellator {
             None => (sharing(own.surface, own.edges), inputs.styles()),
         };
         // A change of what no part has groups nothing anew.
-        Grouping { sharing, styles: if self.mesh.part_styles.is_empty() { StylesUsed::Nothing } else { styles } }
+        Grouping { sharing, styles: if self.mesh.has_styles() { styles } else { StylesUsed::Nothing } }
     }
 }

@@ -5,16 +5,16 @@ mod lights;
 mod materials;
 
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 use glam::{Vec3, Vec4};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 use super::attributes::Attributes;
 use super::{ExportError, Exported};
-use geometry::mesh::CornerDetail;
+use geometry::mesh::{CornerDetail, Texture};
 
-use materials::{UvSet, UvSets, Written};
+use materials::{UvSet, UvSets};
 
 /// The most bytes of binary data. The length of a GLB file has 32 bits, and its JSON needs room as well.
 pub(super) const MAX_BYTES: u64 = u32::MAX as u64 - (1 << 24);
@@ -61,32 +61,26 @@ struct Writer {
     /// For messages.
     path: String,
     bin: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-    images: Vec<Value>,
-    samplers: Vec<Value>,
-    textures: Vec<Value>,
-    materials: Vec<Value>,
-    extensions: BTreeSet<&'static str>,
+    /// The document's lists by their names; none is empty, which wouldn't be valid glTF.
+    lists: BTreeMap<&'static str, Vec<Value>>,
     warnings: Vec<String>,
-    written: Written,
+    /// The images that were written so far, which materials share, in the order of their list.
+    written: Vec<*const Texture>,
 }
 
 /// Indices of the accessors of all vertices.
 struct VertexAccessors {
-    position: usize,
-    normal: usize,
-    /// The texture coordinates of the base colour.
+    /// Those that every primitive has, as its attributes.
+    common: Value,
+    /// The texture coordinates of the base colour, and the file's sets that are used.
     uv: usize,
     sets: [Option<usize>; 2],
-    color: Option<usize>,
-    tangent: Option<usize>,
 }
 
 impl VertexAccessors {
     /// Returns the attributes of a primitive with these texture coordinates.
     fn attributes(&self, sets: &UvSets) -> Value {
-        let mut attributes = json!({ "POSITION": self.position, "NORMAL": self.normal });
+        let mut attributes = self.common.clone();
         for (n, set) in sets.written().enumerate() {
             let accessor = match set {
                 UvSet::Own => Some(self.uv),
@@ -95,16 +89,24 @@ impl VertexAccessors {
             // Without details, maps are drawn at the texture coordinates of the base colour.
             attributes[format!("TEXCOORD_{n}")] = json!(accessor.unwrap_or(self.uv));
         }
-        for (name, accessor) in [("COLOR_0", self.color), ("TANGENT", self.tangent)] {
-            if let Some(accessor) = accessor {
-                attributes[name] = json!(accessor);
-            }
-        }
         attributes
     }
 }
 
 impl Writer {
+    /// Appends to one of the document's lists, and returns the index.
+    fn push(&mut self, list: &'static str, value: Value) -> usize {
+        let list = self.lists.entry(list).or_default();
+        list.push(value);
+        list.len() - 1
+    }
+
+    /// The index of a value in one of the lists, to which it is appended unless it is there.
+    fn shared(&mut self, list: &'static str, value: Value) -> usize {
+        let known = self.lists.get(list).and_then(|all| all.iter().position(|own| *own == value));
+        known.unwrap_or_else(|| self.push(list, value))
+    }
+
     /// Appends bytes as a new buffer view, which starts at a multiple of 4.
     fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         let offset = self.bin.len();
@@ -114,87 +116,74 @@ impl Writer {
         if let Some(target) = target {
             view["target"] = json!(target);
         }
-        pushed(&mut self.views, view)
+        self.push("bufferViews", view)
     }
 
     /// Appends vectors of floats, one for each vertex.
     fn floats<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
         let view = self.view(bytemuck::cast_slice(values.as_flattened()), Some(ARRAY_BUFFER));
         let (kind, count) = (format!("VEC{N}"), values.len());
-        pushed(&mut self.accessors, json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind }))
+        self.push("accessors", json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind }))
     }
 
     fn vertices(&mut self, mesh: &Exported, used: Attributes) -> VertexAccessors {
         let zero = mesh.positions.first().copied().unwrap_or_default();
         let [min, max] = mesh.positions.iter().fold([zero; 2], |[min, max], p| [min.min(*p), max.max(*p)]);
         let position = self.floats::<3>(bytemuck::cast_slice(&mesh.positions));
-        self.accessors[position]["min"] = json!(min.to_array());
-        self.accessors[position]["max"] = json!(max.to_array());
+        let accessor = &mut self.lists.entry("accessors").or_default()[position];
+        (accessor["min"], accessor["max"]) = (json!(min.to_array()), json!(max.to_array()));
         let normal = self.floats::<3>(bytemuck::cast_slice(&mesh.normals));
         let uv = self.floats::<2>(bytemuck::cast_slice(&mesh.uvs));
-        let mut accessors = VertexAccessors { position, normal, uv, sets: [None; 2], color: None, tangent: None };
-        let details = &mesh.details;
+        let mut common = json!({ "POSITION": position, "NORMAL": normal });
+        let (details, mut sets) = (&mesh.details, [None; 2]);
         for set in (0..2).filter(|&set| used.sets[set]) {
             let uvs: Vec<_> = details.iter().map(|detail| detail.uvs[set].to_array()).collect();
-            accessors.sets[set] = Some(self.floats(&uvs));
+            sets[set] = Some(self.floats(&uvs));
         }
         if used.colors {
             let colors: Vec<_> = details.iter().map(|detail| detail.color.to_array()).collect();
-            accessors.color = Some(self.floats(&colors));
+            common["COLOR_0"] = json!(self.floats(&colors));
         }
         if used.tangents {
             let tangents = details.iter().zip(&mesh.normals).map(|(detail, normal)| tangent(detail, *normal));
-            accessors.tangent = Some(self.floats(&tangents.collect::<Vec<_>>()));
+            common["TANGENT"] = json!(self.floats(&tangents.collect::<Vec<_>>()));
         }
-        accessors
+        VertexAccessors { common, uv, sets }
     }
 
     fn primitive(&mut self, attributes: Value, triangles: &[[u32; 3]], material: usize) -> Value {
         let view = self.view(bytemuck::cast_slice(triangles), Some(ELEMENT_ARRAY_BUFFER));
         let count = triangles.len() * 3;
         let accessor = json!({ "bufferView": view, "componentType": UNSIGNED_INT, "count": count, "type": "SCALAR" });
-        let indices = pushed(&mut self.accessors, accessor);
+        let indices = self.push("accessors", accessor);
         json!({ "attributes": attributes, "indices": indices, "material": material, "mode": TRIANGLES })
     }
 
     /// Adds an extension to an object, and names it in the document.
     fn extend(&mut self, object: &mut Value, name: &'static str, members: Value) {
         object["extensions"][name] = members;
-        self.extensions.insert(name);
+        self.shared("extensionsUsed", json!(name));
     }
 
     fn finish(mut self, mesh: &Exported, primitives: Vec<Value>) -> Result<(Vec<u8>, Vec<String>), String> {
-        let mut nodes = Vec::new();
         let mut root = json!({
             "asset": { "version": "2.0", "generator": concat!("pnaen ", env!("CARGO_PKG_VERSION")) },
         });
         // A mesh without primitives is not valid glTF; an empty scene is.
         if !primitives.is_empty() {
             root["meshes"] = json!([{ "name": mesh.mesh.name, "primitives": primitives }]);
-            nodes.push(json!({ "mesh": 0 }));
+            self.push("nodes", json!({ "mesh": 0 }));
         }
-        self.lights(&mesh.mesh.lights, &mut root, &mut nodes);
-        let mut scene = Map::new();
-        if !nodes.is_empty() {
-            scene.insert("nodes".to_owned(), (0..nodes.len()).collect());
-        }
+        self.lights(&mesh.mesh.lights, &mut root);
         root["scene"] = json!(0);
-        root["scenes"] = json!([scene]);
+        root["scenes"] = json!([{}]);
+        if let Some(nodes) = self.lists.get("nodes") {
+            root["scenes"][0]["nodes"] = (0..nodes.len()).collect();
+        }
         if !self.bin.is_empty() {
             root["buffers"] = json!([{ "byteLength": self.bin.len() }]);
         }
-        let lists = [
-            ("nodes", nodes),
-            ("bufferViews", self.views),
-            ("accessors", self.accessors),
-            ("images", self.images),
-            ("samplers", self.samplers),
-            ("textures", self.textures),
-            ("materials", self.materials),
-            ("extensionsUsed", self.extensions.into_iter().map(Value::from).collect()),
-        ];
-        // Empty lists are not valid glTF.
-        for (name, list) in lists.into_iter().filter(|(_, list)| !list.is_empty()) {
+        for (name, list) in self.lists {
             root[name] = Value::Array(list);
         }
         let json = serde_json::to_vec(&root).map_err(|error| error.to_string())?;
@@ -205,12 +194,6 @@ impl Writer {
         };
         Ok((glb.to_vec().map_err(|error| error.to_string())?, self.warnings))
     }
-}
-
-/// Appends to a list, and returns the index.
-fn pushed(list: &mut Vec<Value>, value: Value) -> usize {
-    list.push(value);
-    list.len() - 1
 }
 
 /// Returns the tangent of a vertex as glTF has it: of unit length, also where none is known.

@@ -74,27 +74,16 @@ impl<'a> Exported<'a> {
         Self { mesh, positions, normals, uvs, details: details.collect(), triangles }
     }
 
-    /// Checks that a file's name has an ending that can be written.
-    ///
-    /// # Errors
-    /// The ending is neither .glb nor .obj.
-    pub fn check_ending(path: &Path) -> Result<(), ExportError> {
-        match ending(path).as_str() {
-            "glb" | "obj" => Ok(()),
-            _ => Err(ExportError::Extension { path: shown_path(path) }),
-        }
-    }
-
     /// Checks that a file with this name can hold so many vertices and triangles of a mesh, before they are read back.
     ///
     /// # Errors
     /// The ending is neither .glb nor .obj, or the format can't hold that many.
     pub fn check(path: &Path, mesh: &Mesh, vertices: u64, triangles: u64) -> Result<(), ExportError> {
-        Self::check_ending(path)?;
         // This program writes 32-bit indices in both formats.
         let fits = match ending(path).as_str() {
+            "glb" => glb::bytes(Attributes::new(mesh), vertices, triangles) <= glb::MAX_BYTES,
             "obj" => vertices <= u64::from(u32::MAX),
-            _ => glb::bytes(Attributes::new(mesh), vertices, triangles) <= glb::MAX_BYTES,
+            _ => return Err(ExportError::Extension { path: shown_path(path) }),
         };
         if fits { Ok(()) } else { Err(ExportError::TooLarge { path: shown_path(path), triangles }) }
     }

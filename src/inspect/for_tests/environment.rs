@@ -8,7 +8,7 @@ use crate::render::blur_levels::ENVIRONMENT_LEVELS;
 use crate::render::cube_map::CubeMap;
 use crate::render::dfg::{DFG_SIZE, dfg_table};
 use crate::render::environment::{ENVIRONMENT_SIZE, Environment};
-use crate::render::irradiance::{Irradiance, terms};
+use crate::render::irradiance::light_parts;
 
 impl Environment {
     /// The same light (linear RGB) from all sides, under which a white surface that absorbs nothing can't be seen.
@@ -16,7 +16,8 @@ impl Environment {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn uniform(gpu: &Gpu, light: [f32; 3]) -> Result<Self, GpuError> {
-        Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, |_| light.into()))
+        let light = CubeMap::new(ENVIRONMENT_SIZE, |_| light.into());
+        Self::new(gpu, &light, &light_parts(light.lights()))
     }
 }
 
@@ -38,12 +39,6 @@ pub fn long_reflection(look: &LookAt, normal: Vec3, to_eye: Vec3, radiance: impl
         sum += normal.dot(direction).max(1e-4) * radiance(direction, roughness).extend(1.0);
     }
     sum.truncate() / sum.w
-}
-
-/// Twin of `environment_irradiance`, of a light that isn't turned.
-pub fn irradiance_of(coefficients: &Irradiance, normal: Vec3) -> Vec3 {
-    let sum: Vec3 = coefficients.iter().zip(terms(normal)).map(|(&color, term)| color * term).sum();
-    sum.max(Vec3::ZERO)
 }
 
 pub fn environment_dfg(facing: f32, roughness: f32) -> [f32; 2] {
@@ -69,38 +64,4 @@ fn dfg_texel(facing: f32, roughness: f32) -> [f32; 4] {
 
 pub fn environment_sheen(facing: f32, roughness: f32) -> f32 {
     dfg_texel(facing, roughness)[2]
-}
-
-#[cfg(test)]
-mod tests {
-    use std::f32::consts::PI;
-
-    use super::*;
-    use crate::render::irradiance::irradiance;
-
-    /// The integral over all texels.
-    fn integrated(map: &CubeMap, normal: Vec3) -> Vec3 {
-        map.lights().map(|(direction, angle, light)| light * (direction.dot(normal).max(0.0) * angle / PI)).sum()
-    }
-
-    #[test]
-    fn an_even_light_gives_itself() {
-        let map = CubeMap::new(32, |_| Vec3::new(1.0, 0.5, 0.25));
-        let coefficients = irradiance(&map);
-        for (normal, ..) in CubeMap::new(2, |_| Vec3::ZERO).lights() {
-            assert!(irradiance_of(&coefficients, normal).distance(Vec3::new(1.0, 0.5, 0.25)) < 1e-3);
-        }
-    }
-
-    /// Harmonics of degree 2 and less are exact, but for the texels.
-    #[test]
-    fn smooth_lights_give_their_integral() {
-        let map =
-            CubeMap::new(32, |d| Vec3::new(1.0 + 0.5 * d.y, 1.0 + d.x * d.z, 1.0 + 0.4 * d.x * d.x - 0.3 * d.z * d.y));
-        let coefficients = irradiance(&map);
-        for (normal, ..) in CubeMap::new(4, |_| Vec3::ZERO).lights() {
-            let (found, exact) = (irradiance_of(&coefficients, normal), integrated(&map, normal));
-            assert!(found.distance(exact) < 3e-3, "{normal}: {found} {exact}");
-        }
-    }
 }

@@ -5,4 +5,5 @@ pub mod prefiltered;
 pub mod punctual;
 pub mod random;
 pub mod reflectance;
+pub mod sunlit;
 pub mod tone;

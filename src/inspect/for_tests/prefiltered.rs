@@ -1,10 +1,43 @@
-//! An environment's cube map as the pass blurs it, and as samplers read it.
+//! An environment's cubes as the passes make them, and as samplers read them; and functions of `shaders/prefilter.wgsl`.
 
-use glam::{Vec2, Vec3, Vec4, vec2};
+use std::f32::consts::PI;
 
-use crate::render::blur_levels::{ENVIRONMENT_LEVELS, SAMPLE_COUNT, roughness_of_level};
+use glam::{Vec2, Vec3, Vec4, vec2, vec3, vec4};
+
+use crate::render::blur_levels::{ENVIRONMENT_LEVELS, IRRADIANCE_LEVEL, SAMPLE_COUNT, roughness_of_level};
 use crate::render::cube_map::{CubeMap, face_place, texels};
-use crate::render::prefilter::{cube_direction, directions_across, hammersley, light_and_density, sample_level};
+use crate::render::irradiance::LightPart;
+use crate::render::prefilter::{cube_direction, hammersley};
+
+/// Two directions that are orthogonal to a unit vector and to each other (Duff et al. 2017, listing 3).
+pub fn directions_across(normal: Vec3) -> [Vec3; 2] {
+    let side = if normal.z >= 0.0 { 1.0 } else { -1.0 };
+    let a = -1.0 / (side + normal.z);
+    let b = normal.x * normal.y * a;
+    [
+        vec3(1.0 + side * normal.x * normal.x * a, side * b, -side * normal.x),
+        vec3(b, side + normal.y * normal.y * a, -normal.y),
+    ]
+}
+
+/// A light's direction seen along the normal (z) of a GGX surface, by way of its microfacets (Walter et al. 2007, equations 35
+/// and 36), and the square root of its density times 4 (w).
+pub fn light_and_density(point: Vec2, alpha: f32) -> Vec4 {
+    let square = alpha * alpha;
+    let cosine_squared = (1.0 - point.x) / (1.0 + (square - 1.0) * point.x);
+    let sine_squared = square * point.x / (1.0 + (square - 1.0) * point.x);
+    let angle = 2.0 * PI * point.y;
+    let along = 2.0 * (cosine_squared * sine_squared).sqrt();
+    let spread = cosine_squared * square + sine_squared;
+    vec4(along * angle.cos(), along * angle.sin(), cosine_squared - sine_squared, alpha / (PI.sqrt() * spread))
+}
+
+/// The level of the source whose texels are as large as a sample of that density, times 2 (Krivanek and Colbert 2008, section
+/// 3). `size` is the size of a face, in texels.
+pub fn sample_level(root_density: f32, count: u32, size: f32) -> f32 {
+    let texels = (24.0 / PI).sqrt() * size / (root_density * (count as f32).sqrt());
+    texels.log2().max(0.0)
+}
 
 /// Twin of `blurred` in `shaders/pass_prefilter.wgsl`: what a level of that roughness has in a direction.
 pub fn blurred(source: &CubeMap, normal: Vec3, roughness: f32) -> Vec3 {
@@ -36,6 +69,22 @@ pub fn prefiltered(source: &CubeMap) -> CubeMap {
         texels(size).map(texel).collect()
     });
     CubeMap { size: source.size, levels: levels.collect() }
+}
+
+/// Twin of `gathered` in `shaders/pass_prefilter.wgsl`: irradiance divided by pi.
+pub fn gathered(parts: &[LightPart], normal: Vec3) -> Vec3 {
+    let sum: Vec4 = parts.iter().map(|part| normal.extend(0.0).dot(part.direction).max(0.0) * part.light).sum();
+    sum.truncate().min(Vec3::splat(65504.0))
+}
+
+/// The level of irradiance as the pass makes it beside a cube of this size.
+pub fn irradiance_map(parts: &[LightPart], size: u32) -> CubeMap {
+    let size = size >> IRRADIANCE_LEVEL;
+    let texel = |(face, x, y)| {
+        let at = face_place(vec2(x as f32, y as f32) + 0.5, size);
+        gathered(parts, cube_direction(face, at).normalize())
+    };
+    CubeMap { size, levels: vec![texels(size).map(texel).collect()] }
 }
 
 impl CubeMap {

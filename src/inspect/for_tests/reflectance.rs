@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use bytemuck::{Pod, Zeroable};
 use glam::{Vec2, Vec3, vec2};
 
-use crate::render::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_visibility};
+use crate::render::sheen::{LEAST_SHEEN_ALPHA, charlie_distribution, charlie_lambda};
 
 /// How much a clear coat reflects head-on.
 pub(crate) const COAT_F0: f32 = 0.04;
@@ -220,6 +220,11 @@ pub(crate) fn direct_lobe(
     let rough = alphas.max(Vec2::splat(LEAST_ALPHA));
     let along = vec2(direction.dot(to_light), direction.dot(to_eye));
     ggx_distribution(normal, half_way, rough, direction) * ggx_visibility(lit, facing, rough, along) * lit
+}
+
+/// Twin of the function in `shaders/sheen.wgsl`.
+pub(crate) fn charlie_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
+    0.25 / (facing * (1.0 + charlie_lambda(facing, alpha) + charlie_lambda(lit, alpha)))
 }
 
 pub(crate) fn direct_sheen(look: &LookAt, normal: Vec3, to_eye: Vec3, to_light: Vec3, half_way: Vec3) -> f32 {

@@ -4,15 +4,15 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::mesh_defects::Defects;
-use super::place::{EdgeSpot, Place, Spot};
+use super::place::{EdgeSpot, PatchSpot, Place, Spot};
 use super::{Gate, GateKind, Limit};
 use crate::measure::{CrackedEdge, CrossedPatches, EdgeSide, Measured, PatchesAbove, Pop, WorstPoint};
 use crate::render::{Leak, Leaks};
 use geometry::choice::Choice;
-use geometry::mesh::{Mesh, TJunction, Topology};
+use geometry::mesh::{EdgeKind, Mesh, TJunction, Topology};
 use geometry::names::shown;
 use geometry::near::Interval;
-use geometry::numbers::{exact, grouped, hundredths, short};
+use geometry::numbers::{exact, grouped, hundredths, numbered, short};
 use geometry::tessellate::Vertex;
 use geometry::view::ScreenView;
 
@@ -155,64 +155,41 @@ fn judged(Gate { kind, limit }: Gate, facts: &Facts) -> Judgement {
 }
 
 fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
-    let some = |number: u64, words: [&str; 2], worst: fn(&Facts) -> Option<Place>| {
-        Ok(Counted::new(number, words, move || worst(facts)))
+    let some = |number: u64, text: &str, worst: fn(&Facts) -> Option<Place>| {
+        Ok(Counted::new(number, text, move || worst(facts)))
     };
-    let defects = |find, words| defects(facts, find, words);
+    let measured = || known(facts.measured);
+    let defects = |find: fn(&Mesh, &Topology) -> Defects, text| defects(facts, find, text);
+    let edges = |kind, text| self::defects(facts, |_, topology| Defects::of_kind(topology, kind), text);
     match kind {
-        GateKind::Cracks => {
-            let cracked = known(facts.measured)?.cracks.cracked().len() as u64;
-            some(cracked, ["# edge is cracked", "# edges are cracked"], worst_crack)
-        }
+        GateKind::Cracks => some(measured()?.cracks.cracked().len() as u64, "# edge[ is|s are] cracked", worst_crack),
         GateKind::Factors => {
-            let different = known(facts.measured)?.cracks.different_factors;
-            let words = ["# edge has sides with different factors", "# edges have sides with different factors"];
-            some(different, words, worst_factors)
+            let different = measured()?.cracks.different_factors;
+            some(different, "# edge[ has|s have] sides with different factors", worst_factors)
         }
-        GateKind::Leaks => some(leaking(facts)?, LEAKING, worst_leak),
-        GateKind::Folds => {
-            some(known(facts.measured)?.folds, ["# triangle is folded", "# triangles are folded"], worst_fold)
-        }
+        GateKind::Leaks => some(leaking(facts)?, "# px show[s|] the inside of the mesh", worst_leak),
+        GateKind::Folds => some(measured()?.folds, "# triangle[ is|s are] folded", worst_fold),
         GateKind::TJunctions => {
-            let junctions = known(facts.junctions)?.len() as u64;
-            some(junctions, ["the mesh has # T-junction", "the mesh has # T-junctions"], worst_junction)
+            some(known(facts.junctions)?.len() as u64, "the mesh has # T-junction[|s]", worst_junction)
         }
         GateKind::Warnings => {
             let (count, text) = warnings(known(facts.warnings)?);
-            Ok(Counted { text, ..Counted::new(count, [""; 2], || None) })
+            Ok(Counted { text, ..Counted::new(count, "", || None) })
         }
-        GateKind::NonManifold => {
-            let words = ["# edge has three triangles or more", "# edges have three triangles or more"];
-            defects(Defects::non_manifold, words)
-        }
-        GateKind::Boundary => defects(Defects::boundary, ["# edge is open", "# edges are open"]),
-        GateKind::Winding => {
-            let words = ["# edge has triangles wound opposite ways", "# edges have triangles wound opposite ways"];
-            defects(Defects::winding, words)
-        }
+        GateKind::NonManifold => edges(EdgeKind::NonManifold, "# edge[ has|s have] three triangles or more"),
+        GateKind::Boundary => edges(EdgeKind::Boundary, "# edge[ is|s are] open"),
+        GateKind::Winding => defects(Defects::winding, "# edge[ has|s have] triangles wound opposite ways"),
         GateKind::NormalsAgainstFaces => {
-            let several = "# triangles have a normal that points behind them";
-            defects(Defects::against_faces, ["# triangle has a normal that points behind it", several])
+            defects(Defects::against_faces, "# triangle[ has|s have] a normal that points behind [it|them]")
         }
-        GateKind::Degenerate => defects(Defects::without_area, ["# triangle has no area", "# triangles have no area"]),
-        GateKind::Duplicates => {
-            defects(Defects::repeated, ["# triangle repeats another one", "# triangles repeat another one"])
-        }
-        GateKind::NearSeam => {
-            let words = ["# open edge nearly meets another one", "# open edges nearly meet another one"];
-            defects(Defects::near_seam, words)
-        }
-        GateKind::HardEdges => {
-            defects(Defects::hard_edges, ["# edge has two normals at an end", "# edges have two normals at an end"])
-        }
-        GateKind::Inflated => {
-            let words = ["# triangle is blown up at a hard edge", "# triangles are blown up at hard edges"];
-            defects(Defects::inflated, words)
-        }
+        GateKind::Degenerate => defects(Defects::without_area, "# triangle[ has|s have] no area"),
+        GateKind::Duplicates => defects(Defects::repeated, "# triangle[ repeats|s repeat] another one"),
+        GateKind::NearSeam => defects(Defects::near_seam, "# open edge[ nearly meets|s nearly meet] another one"),
+        GateKind::HardEdges => edges(EdgeKind::Split, "# edge[ has|s have] two normals at an end"),
+        GateKind::Inflated => defects(Defects::inflated, "# triangle[ is|s are] blown up at [a hard edge|hard edges]"),
         GateKind::SelfIntersections => {
             let crossed = known(facts.crossed)?.ok_or("too many triangles were emitted to find those that cross")?;
-            let words = ["# pair of patches crosses each other", "# pairs of patches cross each other"];
-            some(crossed.len() as u64, words, worst_crossing)
+            some(crossed.len() as u64, "# pair[|s] of patches cross[es|] each other", worst_crossing)
         }
         GateKind::Deviation => {
             let distance @ Interval { at_least, at_most } = known(facts.deviation)??.distance;
@@ -227,38 +204,31 @@ fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
         GateKind::AboveTolerance => {
             let PatchesAbove { patches, tolerance_px, .. } = *known(facts.above)?;
             let px = exact(tolerance_px);
-            let one = format!("# patch is farther than {px} px from its surface");
-            some(patches, [&one, &format!("# patches are farther than {px} px from their surface")], worst_error)
+            let text = format!("# patch[ is|es are] farther than {px} px from [its|their] surface");
+            some(patches, &text, worst_error)
         }
-        GateKind::Triangles => {
-            some(known(facts.emitted)?.1, ["# triangle is emitted", "# triangles are emitted"], |_| None)
-        }
+        GateKind::Triangles => some(known(facts.emitted)?.1, "# triangle[ is|s are] emitted", |_| None),
         GateKind::Bytes => {
             let (vertices, triangles) = known(facts.emitted)?;
-            let words = ["vertices and indices take # byte", "vertices and indices take # bytes"];
             let bytes = vertices * size_of::<Vertex>() as u64 + triangles * size_of::<[u32; 3]>() as u64;
-            some(bytes, words, |_| None)
+            some(bytes, "vertices and indices take # byte[|s]", |_| None)
         }
     }
 }
 
 impl<'a> Counted<'a> {
-    /// A number with the words for one and for several, in which `#` stands for it, and what finds the worst place.
-    fn new(number: u64, [one, several]: [&str; 2], worst: impl FnOnce() -> Option<Place> + 'a) -> Self {
-        let words = if number == 1 { one } else { several };
-        let text = words.replace('#', &grouped(number));
-        Self { found: Found::Count(number), text, worst: Box::new(worst) }
+    /// A number with a text about it, as [`numbered`] takes it, and what finds the worst place.
+    fn new(number: u64, text: &str, worst: impl FnOnce() -> Option<Place> + 'a) -> Self {
+        Self { found: Found::Count(number), text: numbered(number, text), worst: Box::new(worst) }
     }
 }
 
 /// Counts the mesh's defects that `find` finds.
-fn defects<'a>(facts: &Facts<'a>, find: fn(&Mesh, &Topology) -> Defects, words: [&str; 2]) -> Count<'a> {
+fn defects<'a>(facts: &Facts<'a>, find: impl Fn(&Mesh, &Topology) -> Defects, text: &str) -> Count<'a> {
     let (mesh, topology) = known(facts.mesh)?;
     let found = find(mesh, topology);
-    Ok(Counted::new(found.count() as u64, words, move || worst_defect(found, mesh, topology)))
+    Ok(Counted::new(found.count() as u64, text, move || worst_defect(found, mesh, topology)))
 }
-
-const LEAKING: [&str; 2] = ["# px shows the inside of the mesh", "# px show the inside of the mesh"];
 
 /// The px that leak.
 fn leaking(facts: &Facts) -> Result<u64, &'static str> {
@@ -407,7 +377,7 @@ fn on_patch(facts: &Facts, words: &str, patch: u32, at: Vec3) -> Place {
 /// The same for a triangle of the mesh, which has these corners.
 fn on_triangle(words: &str, triangle: u32, corners: [Vec3; 3], at: Vec3) -> Place {
     let text = format!("{words} triangle {triangle} at {}", position(at));
-    Place { text, triangles: vec![triangle], spot: Spot::patch(corners, at) }
+    Place { text, triangles: vec![triangle], spot: Spot::Patch(PatchSpot::new(corners, at)) }
 }
 
 fn worst_fold(facts: &Facts) -> Option<Place> {
@@ -463,7 +433,7 @@ fn worst_crossing(facts: &Facts) -> Option<Place> {
     let corners = facts.topology.patch_positions(patches[0]);
     let [a, b] = triangles;
     let text = format!("most triangles cross between those of triangles {a} and {b} at {}", position(at));
-    Some(Place { text, triangles: triangles.to_vec(), spot: Spot::patch(corners, at) })
+    Some(Place { text, triangles: triangles.to_vec(), spot: Spot::Patch(PatchSpot::new(corners, at)) })
 }
 
 fn worst_pop(facts: &Facts) -> Option<Place> {

@@ -34,24 +34,14 @@ impl Defects {
         }
     }
 
-    /// Edges of three triangles or more.
-    pub(super) fn non_manifold(_: &Mesh, topology: &Topology) -> Self {
-        Self::edges(topology, |edge| edge.kind == EdgeKind::NonManifold)
-    }
-
-    /// Edges of one triangle.
-    pub(super) fn boundary(_: &Mesh, topology: &Topology) -> Self {
-        Self::edges(topology, |edge| edge.kind == EdgeKind::Boundary)
+    /// Edges of this kind.
+    pub(super) fn of_kind(topology: &Topology, kind: EdgeKind) -> Self {
+        Self::edges(topology, |edge| edge.kind == kind)
     }
 
     /// Edges of two triangles wound opposite ways.
     pub(super) fn winding(_: &Mesh, topology: &Topology) -> Self {
         Self::edges(topology, |edge| matches!(topology.edge_sides(edge), [a, b] if a.reversed() == b.reversed()))
-    }
-
-    /// Edges of two triangles with different normals.
-    pub(super) fn hard_edges(_: &Mesh, topology: &Topology) -> Self {
-        Self::edges(topology, |edge| edge.kind == EdgeKind::Split)
     }
 
     /// Open edges that nearly meet another one.

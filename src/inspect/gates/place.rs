@@ -66,11 +66,6 @@ pub struct PatchSpot {
 }
 
 impl Spot {
-    /// A patch with these corners, and a place on it.
-    pub fn patch(corners: [Vec3; 3], at: Vec3) -> Self {
-        Self::Patch(PatchSpot::new(corners, at))
-    }
-
     /// The largest fold of a patch, with what is around it, or if it is a needle, its middle.
     pub fn fold(folded: &FoldedPatch) -> Self {
         let whole = PatchSpot::new(folded.largest, folded.place());

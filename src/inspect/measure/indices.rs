@@ -2,26 +2,25 @@
 
 use std::ops::Range;
 
+use geometry::choice::texts;
 use geometry::mesh::adjacency::{Layout, Part};
 use geometry::mesh::{Mesh, Topology};
 
-/// What a difference means, the most harmless first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Meaning {
-    /// The same patch, starting at another corner.
-    Turned,
-    /// All patches around a point, or on an edge, name other corners as the dominant ones.
-    OtherDominant,
-    /// Other corners on the same points with the same normals. The surface is the same.
-    SameNormals,
-    /// Other corners on the same points with other normals.
-    OtherNormals,
-    /// Patches around a point, or on an edge, name different corners as the dominant ones.
-    MixedDominant,
-    /// The two corners of a side in the other order.
-    Exchanged,
-    /// Corners that lie on other points.
-    OtherPoints,
+texts! {
+    /// What a difference means, the most harmless first.
+    #[derive(PartialOrd, Ord)]
+    pub enum Meaning, fn text {
+        Turned => "the same patch, starting at another corner",
+        /// All patches around a point, or on an edge, name other corners as the dominant ones.
+        OtherDominant => "another dominant corner, the same for all patches around it",
+        /// The surface is the same.
+        SameNormals => "other corners, same points and normals",
+        OtherNormals => "other corners, same points, other normals",
+        /// Patches around a point, or on an edge, name different corners as the dominant ones.
+        MixedDominant => "not the same dominant corner for all patches around it",
+        Exchanged => "the side's two corners exchanged",
+        OtherPoints => "other points",
+    }
 }
 
 /// A part of a patch that differs.

@@ -29,7 +29,7 @@ use geometry::progress::Progress;
 use load::files::Limits;
 use load::mesh_file::NOT_REFINED;
 use load::selection::Selection;
-use load::{Import, LoadError, NormalSource, Source};
+use load::{Import, LoadError, NormalSource, ShownParts, Source};
 
 /// How often the cage of a reference surface is refined. Its points are then those of the limit surface.
 const LEVELS: f32 = 4.0;
@@ -99,7 +99,8 @@ pub trait Known: Send + Sync {
 pub struct ReferenceShape {
     known: Box<dyn Known>,
     /// How far a cage that was refined is at most from the same one refined once less, in object units. Each refinement moves it
-    /// about a quarter as far as the one before, so about a third of this is missing to the limit. `None` for other surfaces.
+    /// about a quarter as far as the one before, so about a third of this is missing to the limit; under the butterfly scheme it is
+    /// a third as far, and half of this. These are observed and not proven. `None` for other surfaces.
     pub step: Option<f64>,
 }
 
@@ -125,6 +126,9 @@ impl ReferenceShape {
     /// `progress` was cancelled.
     pub fn load(source: &Source, selected: Selection, limits: &Limits, progress: &Progress) -> Result<Self, LoadError> {
         let (shape, refines_all) = (source.shape(), selected.import.refines_all());
+        // Parts don't have normals of their own either.
+        let parts = selected.parts.map(|parts| ShownParts { styles: Vec::new(), ..parts.clone() });
+        let selected = Selection { parts: parts.as_ref(), ..selected };
         if let Some(exact) = shape.and_then(Self::from_shape).filter(|_| !refines_all) {
             return Ok(exact);
         }

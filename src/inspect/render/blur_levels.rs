@@ -3,6 +3,9 @@
 /// Levels of an environment's cube map; `ENVIRONMENT_LEVELS` in `shaders/environment.wgsl`.
 pub const ENVIRONMENT_LEVELS: u32 = 6;
 
+/// The level of the second cube that has irradiance; the same in `shaders/environment.wgsl`.
+pub(crate) const IRRADIANCE_LEVEL: u32 = 1;
+
 /// Directions that a texel is blurred from.
 pub(crate) const SAMPLE_COUNT: u32 = 256;
 

@@ -21,13 +21,9 @@ impl CubeMap {
             let at = |(right, down)| face_place(vec2(x as f32 + right, y as f32 + down), size);
             spots.map(|spot| radiance(cube_direction(face, at(spot)).normalize())).iter().sum::<Vec3>() / 4.0
         };
-        let mut levels = vec![texels(size).map(|(face, x, y)| mean(face, x, y)).collect::<Vec<Vec3>>()];
-        let mut width = size as usize;
-        while width > 1 {
-            let next = levels.last().map(|level| halved(level, width)).unwrap_or_default();
-            levels.push(next);
-            width /= 2;
-        }
+        let first: Vec<Vec3> = texels(size).map(|(face, x, y)| mean(face, x, y)).collect();
+        let next = |(level, width): &(Vec<Vec3>, usize)| (*width > 1).then(|| (halved(level, *width), width / 2));
+        let levels = std::iter::successors(Some((first, size as usize)), next).map(|(level, _)| level).collect();
         Self { size, levels }
     }
 

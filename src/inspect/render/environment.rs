@@ -9,7 +9,7 @@ use super::blur_levels::ENVIRONMENT_LEVELS;
 use super::cube_map::CubeMap;
 use super::dfg::{DFG_SIZE, dfg_table};
 use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, image};
-use super::irradiance::{Irradiance, irradiance};
+use super::irradiance::{LightPart, light_parts};
 use super::prefilter_pass::{cube_view, prefilter};
 use super::studio::studio_light;
 use super::textures::linear_sampler;
@@ -36,8 +36,6 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub(crate) struct Surroundings {
-    /// The coefficients that `irradiance` makes; the fourth component is unused.
-    pub irradiance: [[f32; 4]; 9],
     /// Turns a direction in object space into the light's own. The fourth component is unused.
     pub light_from_object: [[f32; 4]; 3],
     /// Factor of all light.
@@ -61,14 +59,28 @@ pub struct LightView {
     pub tone_curve: ToneCurve,
 }
 
-/// Light from all around on the device: a cube map, blurred by GGX from level to level; irradiance as spherical harmonics; and
-/// the table of directional albedos.
+impl LightView {
+    /// The `Surroundings` of a picture. Each has its own, so that one that is recorded on another thread doesn't change them.
+    pub fn surroundings(&self, gpu: &Gpu) -> wgpu::Buffer {
+        let turn = Mat3::from_rotation_y(-self.rotation.to_radians());
+        let surroundings = Surroundings {
+            light_from_object: [turn.x_axis, turn.y_axis, turn.z_axis].map(|axis| axis.extend(0.0).to_array()),
+            brightness: self.brightness.exp2(),
+            exposure: self.exposure.exp2(),
+            tone_curve: self.tone_curve as u32,
+            _pad: 0,
+        };
+        uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings))
+    }
+}
+
+/// Light from all around on the device: a cube map, blurred by GGX from level to level; one of irradiance; and the table of
+/// directional albedos.
 pub struct Environment {
-    /// [`ENVIRONMENT_LEVELS`] levels in half floats; the first is a mirror's.
-    cube: wgpu::TextureView,
+    /// [`ENVIRONMENT_LEVELS`] levels in half floats, the first of which is a mirror's; and a second cube, which has irradiance.
+    cubes: wgpu::TextureView,
     sampler: wgpu::Sampler,
     dfg: wgpu::TextureView,
-    irradiance: Irradiance,
     /// That of a file comes with it; the studio's is made when it is first seen.
     backdrop: Lazy<Backdrop>,
 }
@@ -86,7 +98,8 @@ impl Environment {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn studio(gpu: &Gpu) -> Result<Self, GpuError> {
-        Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, studio_light))
+        let light = CubeMap::new(ENVIRONMENT_SIZE, studio_light);
+        Self::new(gpu, &light, &light_parts(light.lights()))
     }
 
     /// The light of a panorama.
@@ -98,21 +111,24 @@ impl Environment {
         backdrop.get_or_make(gpu, || Backdrop::new(gpu, &panorama))?;
         // A quarter of a turn has at least as many pixels as a face has texels, and at most twice as many.
         let panorama = panorama.reduced(4 * ENVIRONMENT_SIZE as usize);
-        let own = Self::new(gpu, &CubeMap::new(ENVIRONMENT_SIZE, |direction| panorama.light_from(direction)))?;
+        let light = CubeMap::new(ENVIRONMENT_SIZE, |direction| panorama.light_from(direction));
+        // The map may miss some of a sun that is as small as a pixel. Large pixels aren't lights, but are blended.
+        let is_fine = panorama.size()[1] >= ENVIRONMENT_SIZE;
+        let parts = if is_fine { light_parts(panorama.lights()) } else { light_parts(light.lights()) };
+        let own = Self::new(gpu, &light, &parts)?;
         Ok(Self { backdrop, ..own })
     }
 
-    pub(crate) fn new(gpu: &Gpu, light: &CubeMap) -> Result<Self, GpuError> {
-        let irradiance = irradiance(light);
+    pub(crate) fn new(gpu: &Gpu, light: &CubeMap, parts: &[LightPart]) -> Result<Self, GpuError> {
         // The prefilter fills its levels.
-        let cube = cube_descriptor(light.size, ENVIRONMENT_LEVELS, wgpu::TextureUsages::STORAGE_BINDING);
+        let blurred = cube_texture(light.size, 2, ENVIRONMENT_LEVELS, wgpu::TextureUsages::STORAGE_BINDING);
         let table: Vec<u8> = dfg_table().iter().flatten().flat_map(|&part| f16::from_f32(part).to_ne_bytes()).collect();
-        let (source, cube, dfg, sampler) = gpu.attempt(|| {
+        let (source, cubes, dfg, sampler) = gpu.attempt(|| {
             let dfg = filled_texture(gpu, "directional albedo", [DFG_SIZE; 2], FORMAT, &table);
-            (upload(gpu, light), gpu.device.create_texture(&cube), dfg, linear_sampler(gpu, "environment"))
+            (upload(gpu, light), gpu.device.create_texture(&blurred), dfg, linear_sampler(gpu, "environment"))
         })?;
-        prefilter(gpu, &source, &cube, &sampler)?;
-        Ok(Self { cube: cube_view(&cube), sampler, dfg, irradiance, backdrop: Lazy::default() })
+        prefilter(gpu, &source, parts, &cubes, &sampler)?;
+        Ok(Self { cubes: cube_view(&cubes), sampler, dfg, backdrop: Lazy::default() })
     }
 
     /// What is seen behind the mesh.
@@ -123,22 +139,16 @@ impl Environment {
         self.backdrop.get_or_make(gpu, || Backdrop::new(gpu, &Panorama::from_radiance(STUDIO_SIZE, studio_light)))
     }
 
-    /// The `Surroundings` of a picture for which the light is turned and shown like this. Each picture has its own, so that one
-    /// that is recorded on another thread doesn't change them.
-    pub fn surroundings(&self, gpu: &Gpu, view: &LightView) -> wgpu::Buffer {
-        uniform_buffer(gpu, "surroundings", bytemuck::bytes_of(&surroundings(&self.irradiance, view)))
-    }
-
-    /// The cube map, its sampler, the table and the `Surroundings`, which fragment shaders read, from this binding on.
+    /// The cubes, their sampler, the table and the `Surroundings`, which fragment shaders read, from this binding on.
     pub(super) fn bindings(first: u32) -> [Binding; 4] {
-        let types = [image(wgpu::TextureViewDimension::Cube), SAMPLER, IMAGE, UNIFORM];
+        let types = [image(wgpu::TextureViewDimension::CubeArray), SAMPLER, IMAGE, UNIFORM];
         [0, 1, 2, 3].map(|k| (first + k as u32, FRAGMENT, types[k]))
     }
 
-    /// What is bound there, with what [`Self::surroundings`] returns.
+    /// What is bound there, with what [`LightView::surroundings`] returns.
     pub fn bound<'a>(&'a self, first: u32, surroundings: &'a wgpu::Buffer) -> [(u32, wgpu::BindingResource<'a>); 4] {
         [
-            (first, wgpu::BindingResource::TextureView(&self.cube)),
+            (first, wgpu::BindingResource::TextureView(&self.cubes)),
             (first + 1, wgpu::BindingResource::Sampler(&self.sampler)),
             (first + 2, wgpu::BindingResource::TextureView(&self.dfg)),
             (first + 3, surroundings.as_entire_binding()),
@@ -163,7 +173,7 @@ impl Backdrop {
     pub(super) const BINDINGS: [Binding; 3] =
         [(0, FRAGMENT, IMAGE), (1, FRAGMENT, SAMPLER), (SURROUNDINGS_BINDING, FRAGMENT, UNIFORM)];
 
-    /// What is bound there, with what [`Environment::surroundings`] returns.
+    /// What is bound there, with what [`LightView::surroundings`] returns.
     pub(super) fn bound<'a>(&'a self, surroundings: &'a wgpu::Buffer) -> [(u32, wgpu::BindingResource<'a>); 3] {
         [
             (0, wgpu::BindingResource::TextureView(&self.panorama)),
@@ -173,22 +183,10 @@ impl Backdrop {
     }
 }
 
-fn surroundings(irradiance: &Irradiance, view: &LightView) -> Surroundings {
-    let light_from_object = Mat3::from_rotation_y(-view.rotation.to_radians());
-    let padded = |vector: Vec3| vector.extend(0.0).to_array();
-    Surroundings {
-        irradiance: irradiance.map(padded),
-        light_from_object: [light_from_object.x_axis, light_from_object.y_axis, light_from_object.z_axis].map(padded),
-        brightness: view.brightness.exp2(),
-        exposure: view.exposure.exp2(),
-        tone_curve: view.tone_curve as u32,
-        _pad: 0,
-    }
-}
-
-fn cube_descriptor(size: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {
+/// What to say of a texture of so many cubes.
+fn cube_texture(size: u32, count: u32, levels: u32, usage: wgpu::TextureUsages) -> wgpu::TextureDescriptor<'static> {
     let face = flat_texture("environment", [size; 2], FORMAT, usage | wgpu::TextureUsages::TEXTURE_BINDING);
-    let size = wgpu::Extent3d { depth_or_array_layers: 6, ..face.size };
+    let size = wgpu::Extent3d { depth_or_array_layers: 6 * count, ..face.size };
     wgpu::TextureDescriptor { size, mip_level_count: levels, ..face }
 }
 
@@ -207,6 +205,6 @@ fn upload(gpu: &Gpu, light: &CubeMap) -> wgpu::Texture {
             bytes.extend(pixels.flat_map(|&light| half_floats(light)));
         }
     }
-    let descriptor = cube_descriptor(light.size, light.levels.len() as u32, wgpu::TextureUsages::empty());
+    let descriptor = cube_texture(light.size, 1, light.levels.len() as u32, wgpu::TextureUsages::empty());
     gpu.device.create_texture_with_data(&gpu.queue, &descriptor, wgpu::util::TextureDataOrder::LayerMajor, &bytes)
 }

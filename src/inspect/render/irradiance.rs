@@ -1,34 +1,35 @@
-//! Irradiance as spherical harmonics, of which nine say all but a percent (Ramamoorthi and Hanrahan 2001).
+//! Light from all around as matte surfaces gather it: `shaders/pass_prefilter.wgsl` adds up what it is divided into.
 
 use std::f32::consts::PI;
 
-use glam::Vec3;
+use bytemuck::{Pod, Zeroable};
+use glam::{Vec3, Vec4};
 
-use super::cube_map::CubeMap;
+/// How many cells a cube around all directions has along each axis. Its sides meet 1,352 of them.
+const CELLS: usize = 16;
 
-/// Coefficients of 1, y, z, x, xy, yz, 3zz - 1, xz and xx - yy of a normal, in linear RGB. Their sum is the irradiance of a
-/// surface with that normal, divided by pi.
-pub(crate) type Irradiance = [Vec3; 9];
-
-/// The squares of the constants of the harmonics (equation 3), times what a cosine leaves of each degree, divided by pi
-/// (equation 8).
-const WEIGHTS: [f32; 9] = {
-    let (first, second) = (3.0 / (4.0 * PI) * (2.0 / 3.0), 15.0 / (4.0 * PI) * 0.25);
-    [1.0 / (4.0 * PI), first, first, first, second, second, second / 12.0, second, second / 4.0]
-};
-
-/// The irradiance of an environment.
-pub fn irradiance(map: &CubeMap) -> Irradiance {
-    let mut sums = Irradiance::default();
-    for (direction, solid_angle, light) in map.lights() {
-        for (sum, term) in sums.iter_mut().zip(terms(direction)) {
-            *sum += light * (term * solid_angle);
-        }
-    }
-    std::array::from_fn(|index| sums[index] * WEIGHTS[index])
+/// Twin of `LightPart` in `shaders/pass_prefilter.wgsl`. The fourth components are unused.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct LightPart {
+    pub direction: Vec4,
+    pub light: Vec4,
 }
 
-/// The polynomials that coefficients are for.
-pub(crate) fn terms(Vec3 { x, y, z }: Vec3) -> [f32; 9] {
-    [1.0, y, z, x, x * y, y * z, 3.0 * z * z - 1.0, x * z, x * x - y * y]
+/// Joins lights (unit direction, solid angle in sr, and linear RGB) whose directions lie in one cell. Of grey light, this changes
+/// only what surfaces get whose horizon crosses the cell: even a bright sun stays where it is, as directions count by their light.
+pub fn light_parts(lights: impl Iterator<Item = (Vec3, f32, Vec3)>) -> Vec<LightPart> {
+    let mut cells = vec![LightPart::default(); CELLS * CELLS * CELLS];
+    for (direction, solid_angle, light) in lights {
+        let place = (direction / direction.abs().max_element() + 1.0) * (0.5 * CELLS as f32);
+        let [x, y, z] = place.to_array().map(|along| (along as usize).min(CELLS - 1));
+        let (part, light) = (&mut cells[(z * CELLS + y) * CELLS + x], light.min(Vec3::MAX) * (solid_angle / PI));
+        part.light += light.extend(0.0);
+        part.direction += direction.extend(0.0) * light.element_sum();
+    }
+    let mut parts: Vec<_> = cells.into_iter().filter(|part| part.light != Vec4::ZERO).collect();
+    parts.iter_mut().for_each(|part| part.direction /= part.light.element_sum());
+    // A buffer can't be empty.
+    parts.push(LightPart::default());
+    parts
 }

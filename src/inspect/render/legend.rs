@@ -110,10 +110,10 @@ pub fn legend_side(scene: &Scene, camera: &Camera, settings: &Settings, [size, r
         let legend = [from_left, size[1].saturating_sub(room[1]), room[0], room[1]];
         let halves = SplitSide::BOTH.into_iter().zip(half_places(size, settings));
         let of_half = halves.filter_map(|(half, place)| {
-            let own = scene.half(half).filter(|_| settings.half(half).is_some())?;
-            let clip = clip_from_object(camera, viewport, &own.bounds, settings);
+            let (own, settings) = scene.half(half).zip(settings.half(half))?;
+            let clip = clip_from_object(camera, viewport, &own.bounds, &settings);
             let [_, _, width, height] =
-                intersection(legend, place.part(covered_area(&own.drawn_bounds(settings), clip, size)).area);
+                intersection(legend, place.part(covered_area(&own.drawn_bounds(&settings), clip, size)).area);
             Some(width * height)
         });
         of_half.sum()

@@ -108,7 +108,7 @@ impl Materials {
     }
 
     /// The bind groups of materials that a light shines on, and the lights of a file, if there are any; and a picture of what is
-    /// behind bodies that refract light.
+    /// behind layers that distort it.
     pub(super) fn lit_groups(
         &self,
         gpu: &Gpu,

@@ -70,7 +70,7 @@ pub use outlines_picture::{lay_over, outlines_picture};
 pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::{DraftPipelines, Renderer};
 pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale};
-pub use scene::{LineSegment, Scene};
+pub use scene::{LeftPose, LineSegment, Scene};
 pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
 pub use target::{Target, samples};
 pub use usual::{Usual, texel_density};

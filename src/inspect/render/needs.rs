@@ -3,7 +3,7 @@
 use crate::settings::{ColorSource, FileLights, Settings};
 use geometry::mesh::{Alpha, Look, MOST_LIGHTS, Material, Mesh, Slot};
 
-/// The bit of [`Needs::maps`] for the picture of what is behind a body; the same in `shaders/draw_material.wgsl`.
+/// The bit of [`Needs::maps`] for the picture of what is behind; the same in `shaders/draw_material.wgsl`.
 pub(super) const BEHIND: usize = Slot::COUNT;
 
 /// The switch of a part of materials, and which have it.
@@ -22,8 +22,8 @@ const PARTS: [Part; 5] = [
 /// What a mesh's materials need of the shader that lights them. What they don't need is left out of it when its pipeline is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Needs {
-    /// Bits of the images beside that of the base colour, by [`Slot`]; and [`BEHIND`] for what is behind a body that refracts
-    /// light. The shader has a place for each of them, in this order.
+    /// Bits of the images beside that of the base colour, by [`Slot`]; and [`BEHIND`] for what is behind a look that
+    /// distorts it. The shader has a place for each of them, in this order.
     pub maps: u32,
     /// Details of corners: colours, tangents, or further texture coordinates.
     pub details: bool,
@@ -72,7 +72,7 @@ impl Needs {
         for look in materials.iter().map(|material| &material.look) {
             let maps = Slot::ALL.into_iter().filter(|slot| look.maps[*slot as usize].is_some());
             needs.maps |= maps.map(|slot| 1 << slot as u32).sum::<u32>();
-            needs.maps |= u32::from(look.refracts()) << BEHIND;
+            needs.maps |= u32::from(look.distorts()) << BEHIND;
             needs.parts |= (0..).zip(PARTS).map(|(bit, (_, has))| u32::from(has(look)) << bit).sum::<u32>();
         }
         needs
@@ -183,13 +183,16 @@ mod tests {
         assert!(own(kind(1, false)).eq([false; 3]) && own(kind(4, true)).eq([false; 3]));
         assert!(!has_layers(&mesh));
         let mut glass = Material::plain("glass", [1.0; 4]);
-        glass.look.transmission = 1.0;
+        (glass.look.transmission, glass.look.roughness) = (1.0, 0.0);
         let mut painted = glass.clone();
         painted.look.unlit = true;
         mesh.materials = vec![painted];
         assert_eq!((needs(&mesh, &settings), has_layers(&mesh)), (NOTHING, false));
         mesh.materials.push(glass);
         assert_eq!((needs(&mesh, &settings), has_layers(&mesh)), (parts(&["HAS_TRANSMISSION"]), true));
+        // What is behind a rough one comes from a picture.
+        mesh.materials[1].look.roughness = 0.1;
+        assert_eq!(needs(&mesh, &settings), Needs { maps: 1 << BEHIND, ..parts(&["HAS_TRANSMISSION"]) });
         mesh.materials[1].look = Look { alpha: Alpha::Blend, ..Look::default() };
         assert_eq!((needs(&mesh, &settings), has_layers(&mesh)), (parts(&["HAS_MASK"]), true));
         let mut velvet = Material::plain("velvet", [1.0; 4]);

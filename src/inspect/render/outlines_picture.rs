@@ -3,9 +3,10 @@
 use glam::{Vec2, vec2};
 use image::{Pixel, Rgba, RgbaImage, imageops};
 
+use super::halves::half_places;
 use super::layout::OUTLINE_COLOR;
 use crate::measure::{OutlineDistance, OutlineOf, Silhouette};
-use crate::settings::Settings;
+use crate::settings::{ColorSource, Settings, SplitSide};
 
 /// sRGB colours of the outlines, in the order of [`OutlineOf::ALL`]. They are about equally far from a dark and from a light
 /// background, and people with any colour vision can tell them apart.
@@ -34,10 +35,14 @@ pub fn outlines_picture(silhouette: &Silhouette) -> RgbaImage {
     picture
 }
 
-/// Lays outlines over a picture of the same size, if that shows the view from where they are seen.
+/// Lays outlines over the halves of a picture of the same size that show them, if it shows the view from where they are seen.
 pub fn lay_over(picture: &mut RgbaImage, outlines: &RgbaImage, settings: &Settings) {
-    if !settings.moves_halves() {
-        imageops::overlay(picture, outlines, 0, 0);
+    let places = half_places(picture.dimensions().into(), settings);
+    for (half, place) in SplitSide::BOTH.into_iter().zip(places).filter(|_| !settings.moves_halves()) {
+        if settings.half(half).is_some_and(|own| own.overlays.colors.source() == ColorSource::Outlines) {
+            let [x, y, width, height] = place.area;
+            imageops::overlay(picture, &*imageops::crop_imm(outlines, x, y, width, height), x.into(), y.into());
+        }
     }
 }
 

@@ -45,8 +45,19 @@ pub struct Scene {
     pub matcap: Option<MatcapPicture>,
     /// The moment that the pose is of; none at rest.
     moment: Option<Moment>,
+    left_pose: LeftPose,
     /// What is left of the split: another tessellation, of the same mesh or another one.
     left: Option<Box<Scene>>,
+}
+
+/// The pose of the mesh left of a split.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LeftPose {
+    /// That of the right half.
+    #[default]
+    Same,
+    /// That of a moment of its own; without one, the pose at rest.
+    Own(Option<Moment>),
 }
 
 /// A line over the mesh, which is faintly visible through surfaces. If it starts and ends at the same place, it is a dot.
@@ -95,9 +106,10 @@ impl Scene {
     /// Makes a scene of the same mesh for [`Self::set_left`], on any thread. It shares the mesh, topology and images.
     pub fn sibling(&self, arena_bytes: u64) -> impl FnOnce() -> Result<Self, GpuError> + Send + use<> {
         let tessellator = self.tessellator.sibling(arena_bytes);
-        let (bounds, ulp, materials) = (self.bounds, self.ulp, self.materials.clone());
+        let (bounds, moment, ulp, materials) = (self.bounds, self.moment, self.ulp, self.materials.clone());
         let (lights, environment) = (self.lights.clone(), self.environment.clone());
-        move || Ok(Self { lights, environment, ..Self::at_rest(tessellator()?, bounds, ulp, materials) })
+        // It has the bounds of that moment's clip, and is posed before it is drawn.
+        move || Ok(Self { lights, environment, moment, ..Self::at_rest(tessellator()?, bounds, ulp, materials) })
     }
 
     fn at_rest(tessellator: Tessellator, bounds: Bounds, ulp: f32, materials: Vec<UploadedMaterial>) -> Self {
@@ -114,6 +126,7 @@ impl Scene {
             deviation: None,
             matcap: None,
             moment: None,
+            left_pose: LeftPose::Same,
             left: None,
         }
     }
@@ -133,12 +146,44 @@ impl Scene {
         self.half(half).is_some_and(|own| Arc::ptr_eq(own.tessellator.mesh(), self.tessellator.mesh()))
     }
 
-    /// Gives the left half the bounds and pose of the right one.
+    /// Whether a half shows this scene's mesh in its pose.
+    pub fn shares_pose(&self, half: SplitSide) -> bool {
+        half == SplitSide::Right || self.shares_mesh(half) && self.left_pose == LeftPose::Same
+    }
+
+    /// Sets the pose of the left half, also of one that is set later.
+    ///
+    /// # Errors
+    /// The mesh's rig needs larger buffers than the adapter can bind.
+    pub fn set_left_pose(&mut self, pose: LeftPose) -> Result<(), GpuError> {
+        let before = std::mem::replace(&mut self.left_pose, pose);
+        if before == pose { Ok(()) } else { self.follow() }
+    }
+
+    pub fn left_pose(&self) -> LeftPose {
+        self.left_pose
+    }
+
+    /// The pose of a half in words, if the halves have poses of their own.
+    pub fn pose_title(&self, half: SplitSide) -> Option<String> {
+        let own = self.half(half).filter(|_| self.left.is_some() && self.left_pose != LeftPose::Same)?;
+        let posed = own.clip_and_time().map(|(clip, time)| format!("{clip} at {} s", time as f32));
+        Some(posed.unwrap_or_else(|| "at rest".to_owned()))
+    }
+
+    /// The name of the clip that the pose is of, and the time in it in s; none at rest.
+    pub fn clip_and_time(&self) -> Option<(String, f64)> {
+        let (moment, rig) = self.moment.zip(self.tessellator.mesh().rig.as_ref())?;
+        Some((rig.clip_name(moment.clip), moment.time))
+    }
+
+    /// Gives the left half the bounds and pose of the right one, or of its own.
     fn follow(&mut self) -> Result<(), GpuError> {
-        let (is_same, moment) = (self.shares_mesh(SplitSide::Left), self.moment);
+        let is_same = self.shares_pose(SplitSide::Left);
         let Some(left) = &mut self.left else { return Ok(()) };
         if !is_same {
             let clips = left.tessellator.mesh().rig.as_ref().map_or(0, |rig| rig.clips.len());
+            let moment = if let LeftPose::Own(own) = self.left_pose { own } else { self.moment };
             let moment = moment.filter(|moment| moment.clip < clips);
             let clip = moment.map(|moment| moment.clip);
             if clip != left.moment.map(|moment| moment.clip) {
@@ -147,7 +192,7 @@ impl Scene {
             return left.set_moment(moment);
         }
         (left.bounds, left.ulp) = (self.bounds, self.ulp);
-        left.lights = self.lights.clone();
+        (left.lights, left.moment) = (self.lights.clone(), self.moment);
         left.tessellator.pose_as(self.tessellator.posed())
     }
 
@@ -178,9 +223,8 @@ impl Scene {
         self.bounds = bounds_through(self.tessellator.mesh(), clip);
         let largest = self.bounds.min.abs().max(self.bounds.max.abs()).max_element();
         self.ulp = if clip.is_some() { ulp_at(largest) } else { ulp(self.tessellator.topology()) } as f32;
-        if let Some(left) =
-            self.left.as_mut().filter(|left| Arc::ptr_eq(left.tessellator.mesh(), self.tessellator.mesh()))
-        {
+        let is_same = self.shares_pose(SplitSide::Left);
+        if let Some(left) = self.left.as_mut().filter(|_| is_same) {
             (left.bounds, left.ulp) = (self.bounds, self.ulp);
         }
     }

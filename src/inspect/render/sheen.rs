@@ -1,4 +1,4 @@
-//! The sheen of cloth: twin of `shaders/sheen.wgsl`, which explains it. The table of directional albedos is made with it.
+//! The sheen of cloth: functions of `shaders/sheen.wgsl`, which explains them. They make the table of directional albedos.
 
 use std::f32::consts::PI;
 
@@ -25,9 +25,4 @@ pub(crate) fn charlie_lambda(cosine: f32, alpha: f32) -> f32 {
         return charlie_curve(cosine, alpha).exp();
     }
     (2.0 * charlie_curve(0.5, alpha) - charlie_curve(1.0 - cosine, alpha)).exp()
-}
-
-/// Only tests use it here.
-pub fn charlie_visibility(lit: f32, facing: f32, alpha: f32) -> f32 {
-    0.25 / (facing * (1.0 + charlie_lambda(facing, alpha) + charlie_lambda(lit, alpha)))
 }

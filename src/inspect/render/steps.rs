@@ -63,19 +63,17 @@ pub(super) fn steps(scene: &Scene, settings: &Settings) -> Vec<Step> {
 
 /// The steps of one picture of these halves.
 fn steps_of(scene: &Scene, settings: &Settings, halves: &[SplitSide]) -> Vec<Step> {
-    let drawn = |half| settings.half(half).and(scene.half(half));
-    let chunks =
-        |half| (0..drawn(half).map_or(0, |drawn| drawn.tessellator.chunk_count())).map(move |chunk| (half, chunk));
-    let all: Vec<_> = halves.iter().copied().flat_map(chunks).collect();
-    let mut steps: Vec<_> = all.iter().map(|&(half, chunk)| Step::Surface(half, chunk)).collect();
-    if settings.shows_materials() {
-        let is_seen_through = |half| drawn(half).is_some_and(|own| has_layers(own.tessellator.mesh()));
-        let parts: Vec<_> = all.iter().copied().filter(|(half, _)| is_seen_through(*half)).collect();
-        steps.extend(layer_steps(&parts));
-    }
-    if settings.overlays.normals {
-        steps.extend(all.iter().map(|&(half, chunk)| Step::Normals(half, chunk)));
-    }
+    // The chunks of halves that show this.
+    let parts = |shows: fn(&Settings, &Scene) -> bool| -> Vec<_> {
+        let drawn = |half: &SplitSide| Some((*half, settings.half(*half)?, scene.half(*half)?));
+        let shown = halves.iter().filter_map(drawn).filter(|(_, settings, own)| shows(settings, own));
+        shown.flat_map(|(half, _, own)| (0..own.tessellator.chunk_count()).map(move |chunk| (half, chunk))).collect()
+    };
+    let surfaces = parts(|_, _| true).into_iter().map(|(half, chunk)| Step::Surface(half, chunk));
+    let layered = parts(|settings, own| settings.shows_materials() && has_layers(own.tessellator.mesh()));
+    let normals = parts(|settings, _| settings.overlays.normals).into_iter();
+    let mut steps: Vec<_> = surfaces.chain(layer_steps(&layered)).collect();
+    steps.extend(normals.map(|(half, chunk)| Step::Normals(half, chunk)));
     if matches!(steps.last(), None | Some(Step::Layer(_))) {
         steps.push(Step::Over);
     }

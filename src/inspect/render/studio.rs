@@ -74,9 +74,9 @@ fn room(direction: Vec3) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::super::cube_map::CubeMap;
-    use super::super::irradiance::irradiance;
+    use super::super::irradiance::light_parts;
     use super::*;
-    use crate::for_tests::environment::irradiance_of;
+    use crate::for_tests::prefiltered::gathered;
 
     #[test]
     fn the_light_is_positive_soft_and_nearly_grey() {
@@ -91,13 +91,13 @@ mod tests {
     /// curve, which darkens what is not bright, the studio looks about as bright if it is a third brighter.
     #[test]
     fn a_matte_white_sphere_is_a_third_brighter_than_under_the_lights_of_the_camera() {
-        let coefficients = irradiance(&CubeMap::new(64, studio_light));
+        let parts = light_parts(CubeMap::new(64, studio_light).lights());
         let (right, up, back) = (Vec3::X, Vec3::Y, Vec3::Z);
         let (key, fill) =
             ((up * 0.7 + back - right * 0.5).normalize(), (up * 0.8 + back * 0.4 + right * 0.5).normalize());
         let (mut studio, mut camera, mut count) = (0.0, 0.0, 0.0);
         for (normal, ..) in CubeMap::new(16, |_| Vec3::ZERO).lights().filter(|(normal, ..)| normal.z > 0.0) {
-            studio += irradiance_of(&coefficients, normal).element_sum() / 3.0 * normal.z;
+            studio += gathered(&parts, normal).element_sum() / 3.0 * normal.z;
             camera += (0.62 * normal.dot(key).max(0.0) + 0.22 * (0.5 + 0.5 * normal.dot(fill)) + 0.04) * normal.z;
             count += normal.z;
         }

@@ -28,7 +28,7 @@ pub struct Target {
     layer_depths: Lazy<[wgpu::TextureView; 2]>,
     /// Pictures of both halves, made when a difference is first drawn: see [`super::difference`].
     kept: Lazy<[wgpu::Texture; 2]>,
-    /// A picture of what is behind bodies that refract light, with mip levels. Made when such a body is first drawn.
+    /// A picture of what is behind layers that distort it, with mip levels. Made when such a layer is first drawn.
     behind: Lazy<wgpu::Texture>,
     /// Whether pictures have no background: where nothing is drawn they are transparent.
     pub(super) is_transparent: bool,
@@ -172,7 +172,7 @@ impl Target {
         Ok(())
     }
 
-    /// The picture of what is behind bodies that refract light. Its texture is made at the first call.
+    /// The picture of what is behind layers that distort it. Its texture is made at the first call.
     ///
     /// # Errors
     /// Out of memory, or a lost device.
@@ -185,7 +185,7 @@ impl Target {
         self.behind.get_or_make(gpu, || gpu.device.create_texture(&descriptor))
     }
 
-    /// Makes the picture that was drawn so far, and resolved, that of what is behind bodies.
+    /// Makes the picture that was drawn so far, and resolved, that of what is behind layers.
     ///
     /// # Errors
     /// The same.

@@ -159,11 +159,8 @@ pub(super) fn upload(
     texture: &Texture,
     image_use: ImageUse,
 ) -> Result<wgpu::TextureView, GpuError> {
-    let smaller =
-        std::iter::successors((!fits(gpu, texture.size)).then(|| halved(texture, image_use.filter)), |larger| {
-            (!fits(gpu, larger.size)).then(|| halved(larger, image_use.filter))
-        });
-    let smaller = smaller.last();
+    let next = |larger: &Texture| (!fits(gpu, larger.size)).then(|| halved(larger, image_use.filter));
+    let smaller = std::iter::successors(next(texture), next).last();
     let texture = smaller.as_ref().unwrap_or(texture);
     let on_device = gpu.attempt(|| first_level(gpu, texture, wgpu::TextureUsages::empty()))?;
     let first = on_device.create_view(&wgpu::TextureViewDescriptor {

@@ -6,6 +6,7 @@ pub use geometry::choice::{Choice, Description, descriptions};
 #[cfg(test)]
 mod tests {
     use geometry::mesh::UpAxis;
+    use geometry::mesh::subdivision::FaceVarying;
     use load::{LengthUnit, NormalSource};
 
     use super::super::{Colors, Lighting, NormalsAt, Overlay, SurfaceUnit, ToneCurve};
@@ -49,6 +50,7 @@ mod tests {
         check::<Colors>();
         check::<NormalSource>();
         check::<UpAxis>();
+        check::<FaceVarying>();
         check::<LengthUnit>();
     }
 }

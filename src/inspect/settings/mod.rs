@@ -78,8 +78,10 @@ with_defaults! {
         pub split: Option<f32> = None,
         /// How the halves of a split picture are shown.
         pub split_view: SplitView = SplitView::default(),
-        /// The tessellation left of the split, with all other settings the same.
+        /// The tessellation left of the split.
         pub left: Tessellation = Tessellation::untessellated(),
+        /// How the left half looks; none if as the right one does. All other settings are the same.
+        pub left_looks: Option<Looks> = None,
         /// The side of a section that is drawn; none for all of the mesh.
         pub section: Option<SectionAxis> = None,
         /// Where the section is between the least (0) and the largest (1) coordinate of the bounding box.
@@ -89,6 +91,34 @@ with_defaults! {
         /// How the geometry of the mesh's file is taken. The mesh is read again when it changes.
         pub import: Import = Import::default(),
     }
+}
+
+/// Declares those settings of a picture that its halves may differ in, beside the tessellation.
+macro_rules! looks {
+    ($($field:ident: $kind:ty),+ $(,)?) => {
+        /// How a half of a picture looks: the settings of [`options::LOOKS`].
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Looks {
+            $($field: $kind),+
+        }
+
+        impl Settings {
+            fn looks(&self) -> Looks {
+                Looks { $($field: self.$field),+ }
+            }
+
+            fn with_looks(&self, looks: Looks) -> Self {
+                Self { $($field: looks.$field,)+ ..*self }
+            }
+        }
+    };
+}
+
+looks! {
+    normals_at: NormalsAt, normal_maps: NormalMaps, overlays: Overlays, lighting: Lighting, lights: FileLights,
+    environment_brightness: f32, environment_background: bool, exposure: f32, tone_curve: ToneCurve, light_rotation: f32,
+    deviation_in: SurfaceUnit, curvature_kind: CurvatureKind, curvature_scale: Option<f32>, zebra_stripes: f32,
+    zebra_direction: f32, checker_squares: f32, texel_density_per: SurfaceUnit, matcap: Matcap,
 }
 
 /// The settings of what measures or compares tessellations: lit by the camera's lights, so that pictures depend on nothing but
@@ -242,8 +272,37 @@ impl Settings {
     /// The settings of one half of the picture; none where that half doesn't exist.
     pub fn half(&self, half: SplitSide) -> Option<Self> {
         match half {
-            SplitSide::Left => self.split.map(|_| self.with(self.left)),
+            SplitSide::Left => {
+                self.split.map(|_| self.with(self.left).with_looks(self.left_looks.unwrap_or(self.looks())))
+            }
             SplitSide::Right => Some(*self),
+        }
+    }
+
+    /// The settings of all halves that the picture has, the left one first.
+    pub fn halves(&self) -> impl DoubleEndedIterator<Item = Self> {
+        SplitSide::BOTH.into_iter().filter_map(|half| self.half(half))
+    }
+
+    /// Exchanges what is left and right of the split.
+    pub fn swap_halves(&mut self) {
+        std::mem::swap(&mut self.left, &mut self.tessellation);
+        self.swap_looks();
+    }
+
+    fn swap_looks(&mut self) {
+        if let Some(left) = self.left_looks {
+            *self = Self { left_looks: Some(self.looks()), ..self.with_looks(left) };
+        }
+    }
+
+    /// Changes how both halves look.
+    pub fn change_looks(&mut self, change: impl Fn(&mut Self)) {
+        change(self);
+        if self.left_looks.is_some() {
+            self.swap_looks();
+            change(self);
+            self.swap_looks();
         }
     }
 
@@ -278,7 +337,7 @@ impl Settings {
     #[must_use]
     pub(crate) fn drawn(&self) -> Self {
         let mut drawn = *self;
-        drawn.overlays.back_faces |= self.section.is_some();
+        drawn.change_looks(|own| own.overlays.back_faces |= own.section.is_some());
         drawn
     }
 

@@ -1,7 +1,7 @@
 //! Every option of [`Settings`], declared once.
 //!
 //! To add one: put a field into [`Settings`] or [`geometry::tessellate::Tessellation`], declare it here, in
-//! [`TESSELLATION`], [`PICTURE`] or [`IMPORT`].
+//! [`TESSELLATION`], [`LOOKS`], [`PICTURE`] or [`IMPORT`].
 
 use super::value::Field;
 use super::{
@@ -9,6 +9,7 @@ use super::{
     Range, SectionAxis, Settings, SplitView, SurfaceUnit, ToneCurve, Value, descriptions,
 };
 use geometry::mesh::UpAxis;
+use geometry::mesh::subdivision::FaceVarying;
 use geometry::tessellate::{
     Clip, Convention, CurvatureKind, Displacement, Edges, Lod, LodReads, Normals, Partitioning, Surface, Tessellation,
 };
@@ -24,7 +25,7 @@ pub const DISTANCE_RANGE: Range = Range::new(0.1, 1000.0, "r");
 
 /// All options.
 pub fn all() -> impl Iterator<Item = &'static Declaration> {
-    TESSELLATION.into_iter().chain(PICTURE).chain(IMPORT)
+    TESSELLATION.into_iter().chain(LOOKS).chain(PICTURE).chain(IMPORT)
 }
 
 /// A field of settings, by its path.
@@ -85,32 +86,39 @@ const NEAR_AND_FAR: Access = Access {
 
 /// All options of the tessellation left of the split. Those that aren't set are as in the right half.
 const LEFT: Access = Access {
-    get: |settings| {
-        if !settings.has_left_tessellation() {
-            return Value::Unset;
-        }
-        let left = settings.with(settings.left);
-        Value::Options(TESSELLATION.map(|option| (option.name, option.get(&left))).to_vec())
-    },
+    get: |settings| values(&TESSELLATION, settings.has_left_tessellation().then(|| settings.with(settings.left))),
     set: |settings, value| {
-        let Value::Options(values) = value else {
-            settings.left = Tessellation::untessellated();
-            return value == Value::Unset;
-        };
-        let mut left = *settings;
-        let mut set = |(name, value)| {
-            TESSELLATION
-                .into_iter()
-                .find(|option| option.name == name)
-                .is_some_and(|option| option.set(&mut left, value))
-        };
-        if !values.into_iter().all(&mut set) {
-            return false;
-        }
-        settings.left = left.tessellation;
+        let Some(left) = with_values(&TESSELLATION, settings, value) else { return false };
+        settings.left = left.map_or_else(Tessellation::untessellated, |left| left.tessellation);
         true
     },
 };
+
+/// The same for how it looks.
+const LEFT_LOOKS: Access = Access {
+    get: |settings| values(&LOOKS, settings.left_looks.map(|looks| settings.with_looks(looks))),
+    set: |settings, value| {
+        let Some(left) = with_values(&LOOKS, settings, value) else { return false };
+        settings.left_looks = left.map(|left| left.looks());
+        true
+    },
+};
+
+/// The values that these options have in settings of the left half, if it has settings of its own.
+fn values(options: &[&Declaration], left: Option<Settings>) -> Value {
+    let all = |left: Settings| options.iter().map(|option| (option.name, option.get(&left))).collect();
+    left.map_or(Value::Unset, |left| Value::Options(all(left)))
+}
+
+/// Settings with these values of options, or without any; none if one of them isn't taken.
+fn with_values(options: &[&Declaration], settings: &Settings, value: Value) -> Option<Option<Settings>> {
+    let Value::Options(values) = value else { return (value == Value::Unset).then_some(None) };
+    let mut left = *settings;
+    let mut set = |(name, value)| {
+        options.iter().find(|option| option.name == name).is_some_and(|option| option.set(&mut left, value))
+    };
+    values.into_iter().all(&mut set).then_some(Some(left))
+}
 
 /// Why LOD can't be chosen under subtriangulation.
 pub const LOD_IS_FIXED: &str = "Subtriangulation has the same number of segments everywhere. Another \
@@ -286,8 +294,17 @@ options! {
 }
 
 options! {
-    /// The options of commands that draw a picture.
-    pub static PICTURE;
+    /// The options of how the mesh looks in a picture. Halves of a split picture may differ in them, as in those of the tessellation.
+    pub static LOOKS;
+
+    OVERLAY: field!(overlays), Kind::Several(descriptions::<Overlay>) => {
+        name: "overlay",
+        label: "Overlays",
+        placeholder: "OVERLAY,..",
+        text: "What is drawn over the surface. At most one of clay, matcap, zebra, shading-normals, surface-normals, \
+               curvature, uv-checker, texel-density, barycentric, factors, triangle-size, low-factors, excess, deviation and silhouette, which colour all of it.",
+        saved_as: &["overlays"],
+    }
 
     NORMALS_AT: field!(normals_at), Kind::Choice(descriptions::<NormalsAt>) => {
         name: "normals-at",
@@ -303,15 +320,6 @@ options! {
         placeholder: "SWITCH",
         text: "Whether normal maps are drawn while the surface is displaced. Displacement alone shades the relief of the heights.",
         no_effect: |settings| not_displaced(settings).or(not_in_studio(settings)),
-    }
-
-    OVERLAY: field!(overlays), Kind::Several(descriptions::<Overlay>) => {
-        name: "overlay",
-        label: "Overlays",
-        placeholder: "OVERLAY,..",
-        text: "What is drawn over the surface. At most one of clay, matcap, zebra, shading-normals, surface-normals, \
-               curvature, uv-checker, texel-density, barycentric, factors, triangle-size, low-factors, excess, deviation and silhouette, which colour all of it.",
-        saved_as: &["overlays"],
     }
 
     LIGHTING: field!(lighting), Kind::Choice(descriptions::<Lighting>) => {
@@ -444,6 +452,11 @@ options! {
         text: "The lit sphere whose colours the matcap overlay shows.",
         no_effect: |settings| only_if(settings.overlays.colors == Colors::Matcap, "Only the matcap overlay shows a lit sphere."),
     }
+}
+
+options! {
+    /// The options of a picture as a whole.
+    pub static PICTURE;
 
     SPLIT: field!(split), Kind::Number(Range::new(0.0, 1.0, "")) => {
         name: "split",
@@ -468,6 +481,16 @@ options! {
         text: "The tessellation left of the split: a surface, and whatever else differs from the right half, such as \
                pn,lod=uniform,factor=8. The names are those of these options, and the scale of the deviation overlay is the same.",
         unset: Description::new("none", "Untessellated", "The mesh itself, with no tessellation."),
+        no_effect: not_split,
+    }
+
+    SPLIT_LOOKS: LEFT_LOOKS, Kind::Options(|| &LOOKS) => {
+        name: "split-looks",
+        label: "Left looks",
+        placeholder: "OVERLAY,..[,NAME=VALUE]",
+        text: "What is drawn left of the split, and in which light: overlays, and whatever else differs from the right half, such as \
+               zebra,wireframe,zebra-stripes=40; overlay= draws none. Outlines of the silhouette are always those of the right half.",
+        unset: Description::new("same", "The same", "The left half looks as the right one does."),
         no_effect: not_split,
     }
 
@@ -570,6 +593,14 @@ options! {
         placeholder: "N",
         text: "How often cages are refined. Each level has four times as many faces.",
         unset: Description::new("file", "As the file says", "As often as an FBX file says for its preview, or else twice."),
+    }
+
+    SUBDIVIDE_UVS: field!(import.subdivide_uvs), Kind::Choice(descriptions::<FaceVarying>) => {
+        name: "subdivide-uvs",
+        label: "Cage UVs",
+        placeholder: "RULE",
+        text: "How texture coordinates of cages are refined.",
+        unset: Description::new("file", "As the file says", "As tags in an OBJ file say, or else linearly."),
     }
 }
 

@@ -9,6 +9,7 @@ use super::{
     SplitView, SurfaceUnit, ToneCurve,
 };
 use geometry::mesh::UpAxis;
+use geometry::mesh::subdivision::FaceVarying;
 use geometry::tessellate::{Clip, Convention, CurvatureKind, Displacement, Edges, Lod, Normals, Partitioning, Surface};
 use load::import::Subdivide;
 use load::{FileUnit, LengthUnit, NormalSource};
@@ -106,8 +107,11 @@ impl Declaration {
 
     /// False, with settings unchanged, if the value isn't one of the option's.
     pub fn set(&self, settings: &mut Settings, value: Value) -> bool {
-        let is_taken = if value == Value::Unset { self.unset.is_some() } else { self.kind.takes(&value) };
-        is_taken && (self.access.set)(settings, value)
+        self.takes(&value) && (self.access.set)(settings, value)
+    }
+
+    fn takes(&self, value: &Value) -> bool {
+        if *value == Value::Unset { self.unset.is_some() } else { self.kind.takes(value) }
     }
 
     /// Its label and its value as the window shows them, such as "Tolerance 0.25 px".
@@ -117,6 +121,8 @@ impl Declaration {
                 let all = self.kind.descriptions();
                 all.iter().find(|value| value.name == name).map_or(name, |value| value.label).to_owned()
             }
+            Value::Unset => self.unset.map_or("", |unset| unset.label).to_owned(),
+            Value::Names(names) if names.is_empty() => "none".to_owned(),
             value => value.to_string(),
         };
         let unit = self.range().map_or("", |range| range.unit);
@@ -213,7 +219,7 @@ impl Kind {
             (Self::Pair(range), Value::Pair([a, b])) => range.contains(*a) && range.contains(*b) && a < b,
             (Self::Switch, Value::Switch(_)) | (Self::Color, Value::Color(_)) => true,
             (Self::Options(all), Value::Options(values)) => values.iter().all(|(name, value)| {
-                all().iter().find(|option| option.name == *name).is_some_and(|option| option.kind.takes(value))
+                all().iter().find(|option| option.name == *name).is_some_and(|option| option.takes(value))
             }),
             _ => false,
         }
@@ -256,14 +262,14 @@ impl Kind {
             Self::Options(all) => {
                 let names: Vec<_> = all().iter().map(|option| option.name).collect();
                 let (first, others) = (names[0], names[1..].join(", "));
-                format!("expected a {first}, and others of {others} with their values, such as pn,lod=uniform,factor=8")
+                format!("expected a value of {first}, and perhaps of others: NAME=VALUE, where NAME is {others}")
             }
         }
     }
 }
 
 /// Reads values of options: `name=value` after a comma each. The first may be without the name of the first option. A value that has
-/// a comma goes on after it.
+/// a comma goes on after it. An empty one unsets the option, or is a list of no names.
 ///
 /// # Errors
 /// What was expected instead of a value. None if no option has such a name.
@@ -272,6 +278,7 @@ fn options(all: &[&'static Declaration], text: &str) -> Result<Option<Value>, St
     for item in text.split(',') {
         match (item.split_once('='), given.last_mut()) {
             (Some((name, value)), _) => given.push((name.trim(), value.to_owned())),
+            (None, None) if item.is_empty() => return Ok(None),
             (None, None) => given.push((all[0].name, item.to_owned())),
             (None, Some((_, value))) => *value = format!("{value},{item}"),
         }
@@ -279,7 +286,11 @@ fn options(all: &[&'static Declaration], text: &str) -> Result<Option<Value>, St
     let mut values = Vec::new();
     for (name, value) in given {
         let Some(option) = all.iter().find(|option| option.name == name) else { return Ok(None) };
-        let value = option.kind.parse(&value).map_err(|expected| format!("{expected} as {name}"))?;
+        let value = match option.kind {
+            _ if value.is_empty() && option.unset.is_some() => Value::Unset,
+            Kind::Several(_) if value.is_empty() => Value::Names(Vec::new()),
+            _ => option.kind.parse(&value).map_err(|expected| format!("{expected} as {name}"))?,
+        };
         values.push((option.name, value));
     }
     Ok(Some(Value::Options(values)))
@@ -343,8 +354,8 @@ macro_rules! named_fields {
 }
 
 named_fields! {
-    Clip, Convention, CurvatureKind, Displacement, Edges, FileLights, Lighting, Lod, Matcap, NormalMaps, NormalSource, Normals,
-    NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
+    Clip, Convention, CurvatureKind, Displacement, Edges, FaceVarying, FileLights, Lighting, Lod, Matcap, NormalMaps,
+    NormalSource, Normals, NormalsAt, Partitioning, SectionAxis, SplitView, Subdivide, Surface, SurfaceUnit, ToneCurve, UpAxis,
 }
 
 impl Field for FileUnit {

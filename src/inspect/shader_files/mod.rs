@@ -96,18 +96,12 @@ fn check(language: Language, tessellation: &Tessellation) -> Result<(), ShaderEr
             "--lod uniform, distance, edge-length or paper",
         );
     }
-    let pattern = match tessellation.partitioning {
-        Partitioning::Rows => "rows",
-        Partitioning::Subtriangulation => "subtriangulation",
-        Partitioning::Integer | Partitioning::Pow2 | Partitioning::FractionalOdd | Partitioning::FractionalEven => {
-            return Ok(());
-        }
-    };
-    if language == Language::Wgsl {
+    let partitioning = tessellation.partitioning;
+    if language == Language::Wgsl || Partitioning::DIRECT3D.contains(&partitioning) {
         return Ok(());
     }
     refuse(
-        pattern,
+        partitioning.name(),
         "hardware tessellators don't have the pattern",
         "--language wgsl, or --partitioning integer, pow2, fractional-odd or fractional-even",
     )
@@ -218,17 +212,22 @@ impl Export<'_> {
         [&DOMAIN_ROOTS[..], displaced].concat()
     }
 
+    /// How both languages call the partitioning, which has this name if it isn't fractional.
+    fn spacing(&self, whole: &'static str) -> &'static str {
+        match self.tessellation.partitioning {
+            Partitioning::FractionalOdd => "fractional_odd",
+            Partitioning::FractionalEven => "fractional_even",
+            // `written_factor` has rounded the factors of pow2 already, and no stages have the patterns of our own.
+            Partitioning::Integer | Partitioning::Pow2 | Partitioning::Subtriangulation | Partitioning::Rows => whole,
+        }
+    }
+
     fn relief(&self) -> Relief {
         Relief::new(self.tessellation)
     }
 
     fn glsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
         let functions = |roots: &[&str]| self.functions(StageLanguage::Glsl, roots);
-        let spacing = match self.tessellation.partitioning {
-            Partitioning::FractionalOdd => "fractional_odd_spacing",
-            Partitioning::FractionalEven => "fractional_even_spacing",
-            _ => "equal_spacing",
-        };
         let across = match self.indices() {
             3 => "own",
             _ => "SideNormals(vertex_normal[3 + 2 * k], vertex_normal[4 + 2 * k])",
@@ -238,7 +237,7 @@ impl Export<'_> {
         let mut files = vec![
             ShaderFile { name: "patch.vert", text: self.filled(include_str!("templates/patch.vert"), "") },
             ShaderFile { name: "patch.tesc", text: control.replace("@ACROSS@", across) },
-            ShaderFile { name: "patch.tese", text: evaluation.replace("@SPACING@", spacing) },
+            ShaderFile { name: "patch.tese", text: evaluation.replace("@SPACING@", self.spacing("equal")) },
         ];
         if self.relief() == Relief::LodByView {
             let text = self.filled(include_str!("templates/levels.comp"), &functions(&LEVELS_ROOTS)?);
@@ -249,12 +248,6 @@ impl Export<'_> {
 
     fn hlsl(&self) -> Result<Vec<ShaderFile>, TranslationError> {
         let functions = |roots: &[&str]| self.functions(StageLanguage::Hlsl, roots);
-        let partitioning = match self.tessellation.partitioning {
-            Partitioning::FractionalOdd => "fractional_odd",
-            Partitioning::FractionalEven => "fractional_even",
-            // `written_factor` has rounded those of pow2 already.
-            _ => "integer",
-        };
         let (at_a, at_b) = match self.indices() {
             3 => ("own.at_a", "own.at_b"),
             _ => ("corners[3 + 2 * k].normal", "corners[4 + 2 * k].normal"),
@@ -262,7 +255,7 @@ impl Export<'_> {
         let roots = [self.hull_roots(), self.domain_roots()].concat();
         let text = self
             .filled(include_str!("templates/patch.hlsl"), &functions(&roots)?)
-            .replace("@PARTITIONING@", partitioning)
+            .replace("@PARTITIONING@", self.spacing("integer"))
             .replace("@ACROSS_A@", at_a)
             .replace("@ACROSS_B@", at_b);
         let mut files = vec![ShaderFile { name: "patch.hlsl", text }];

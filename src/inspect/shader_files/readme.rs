@@ -48,7 +48,7 @@ fn height_constants(own: &Tessellation) -> Vec<(u32, &'static str, String)> {
     vec![
         (0, "size", "2 whole numbers: width and height of the image's level 0, in px".to_owned()),
         (8, "levels", "whole number: how many mip levels it has".to_owned()),
-        (12, "repeats", "whole number: 1 if it repeats, 0 if the px at its border go on for ever".to_owned()),
+        (12, "wrap", "whole number: beyond it 0 border, 1 again, 2 mirrored; along u + 4 times along v".to_owned()),
         (16, "scale", scale),
         (20, "midlevel", format!("here {}: the height, 0 to 1, that stays where it is", own.midlevel)),
     ]

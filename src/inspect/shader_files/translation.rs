@@ -43,8 +43,8 @@ pub(super) fn translated(
         StageLanguage::Hlsl => hlsl_text(&module, &info).map_err(|error| fault(&error))?,
     };
     let text = without_temporaries(&text);
-    let precise = needed(all, precise_roots).into_iter().filter(|own| own.is_function).map(|own| own.name).collect();
-    Ok(Annotation { all, precise }.of(declared_part(&text)))
+    let precise = needed(all, precise_roots).into_iter().filter(|own| own.is_function);
+    Ok(annotated(declared_part(&text), all, &precise.map(|own| own.name).collect()))
 }
 
 fn glsl_text(module: &naga::Module, info: &naga::valid::ModuleInfo) -> Result<String, glsl::Error> {
@@ -127,54 +127,47 @@ fn temporary(line: &str) -> Option<(&str, &str)> {
     Some((temporary, base.trim_end_matches('_')))
 }
 
-/// What is added to naga's text.
-struct Annotation<'a> {
-    all: &'a [Declaration],
-    precise: BTreeSet<String>,
+/// naga's text with the comments of ours, and with `precise` in the functions of these names.
+fn annotated(text: &str, all: &[Declaration], precise_names: &BTreeSet<String>) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    let mut current: Option<&Declaration> = None;
+    for line in text.lines().map(str::trim_end) {
+        let line = &zeroed_array(line).or_else(|| constant_array(line)).unwrap_or_else(|| line.to_owned());
+        let starts = line.starts_with(|c: char| c.is_ascii_alphabetic());
+        if starts {
+            current = declared(line, all);
+            if line.starts_with("struct ") && lines.last().is_some_and(|last| !last.is_empty()) {
+                lines.push(String::new());
+            }
+            lines.extend(current.iter().flat_map(|own| own.comment.clone()));
+        }
+        let is_blank_twice = line.is_empty() && lines.last().is_some_and(String::is_empty);
+        if is_blank_twice || is_padding(line) && current.is_none_or(|own| !UNIFORMS.contains(&own.name.as_str())) {
+            continue;
+        }
+        match current {
+            Some(own) if own.is_function && precise_names.contains(&own.name) => lines.push(precise(line)),
+            Some(own) if !own.is_function && starts => lines.push(named_value(own, line)),
+            Some(own) if !own.is_function => {
+                lines.extend(member_comment(own, line).cloned());
+                lines.push(line.to_owned());
+            }
+            _ => lines.push(line.to_owned()),
+        }
+    }
+    lines.join("\n") + "\n"
 }
 
-impl Annotation<'_> {
-    fn of(&self, text: &str) -> String {
-        let mut lines: Vec<String> = Vec::new();
-        let mut current: Option<&Declaration> = None;
-        for line in text.lines().map(str::trim_end) {
-            let line = &zeroed_array(line).or_else(|| constant_array(line)).unwrap_or_else(|| line.to_owned());
-            let starts = line.starts_with(|c: char| c.is_ascii_alphabetic());
-            if starts {
-                current = self.declared(line);
-                if line.starts_with("struct ") && lines.last().is_some_and(|last| !last.is_empty()) {
-                    lines.push(String::new());
-                }
-                lines.extend(current.iter().flat_map(|own| own.comment.clone()));
-            }
-            let is_blank_twice = line.is_empty() && lines.last().is_some_and(String::is_empty);
-            if is_blank_twice || is_padding(line) && current.is_none_or(|own| !UNIFORMS.contains(&own.name.as_str())) {
-                continue;
-            }
-            match current {
-                Some(own) if own.is_function && self.precise.contains(&own.name) => lines.push(precise(line)),
-                Some(own) if !own.is_function && starts => lines.push(named_value(own, line)),
-                Some(own) if !own.is_function => {
-                    lines.extend(member_comment(own, line).cloned());
-                    lines.push(line.to_owned());
-                }
-                _ => lines.push(line.to_owned()),
-            }
-        }
-        lines.join("\n") + "\n"
-    }
-
-    /// The declaration that a line of naga's text begins: its struct, constant or function has the same name, except that names
-    /// that would be taken otherwise end in an underscore.
-    fn declared(&self, line: &str) -> Option<&Declaration> {
-        let names: Vec<_> = words(line).collect();
-        let name = match names.first()?.0 {
-            "struct" => names.get(1)?.0,
-            "const" | "static" => words(line.split(" = ").next()?).last()?.0,
-            _ => names.iter().find(|(_, is_called)| *is_called)?.0,
-        };
-        self.all.iter().find(|own| own.name == name || own.name == name.trim_end_matches('_'))
-    }
+/// The declaration that a line of naga's text begins: its struct, constant or function has the same name, except that names
+/// that would be taken otherwise end in an underscore.
+fn declared<'a>(line: &str, all: &'a [Declaration]) -> Option<&'a Declaration> {
+    let names: Vec<_> = words(line).collect();
+    let name = match names.first()?.0 {
+        "struct" => names.get(1)?.0,
+        "const" | "static" => words(line.split(" = ").next()?).last()?.0,
+        _ => names.iter().find(|(_, is_called)| *is_called)?.0,
+    };
+    all.iter().find(|own| own.name == name || own.name == name.trim_end_matches('_'))
 }
 
 /// Returns a line of naga's HLSL that fills an array with zeros as one with an initializer list: glslang doesn't know the cast.

@@ -5,6 +5,7 @@ use std::ffi::OsString;
 use std::fmt::{Display, Write};
 use std::path::Path;
 
+use super::ShotView;
 use super::turn::Turn;
 use crate::engine::Preparation;
 use crate::render::Camera;
@@ -14,20 +15,21 @@ use load::files::Limits;
 use load::import::Subdivide;
 use load::{HeightSource, Source};
 
+/// What stands for the pose without a clip where a clip is named.
+pub const AT_REST: &str = "rest";
+
 /// What a window shows, and from where.
 pub struct CopiedCommand<'a> {
     pub source: &'a Source,
     pub preparation: &'a Preparation,
     pub settings: &'a Settings,
-    pub camera: &'a Camera,
-    /// The camera that LOD and clipping are frozen for and its view's width and height in px, if they are.
-    pub lod_camera: Option<(&'a Camera, [u32; 2])>,
+    pub view: ShotView,
     /// The bounding radius of what is drawn, in object units. The command has the camera's distance in bounding radii.
     pub radius: f32,
-    /// The view's width and height, in px.
-    pub size: [u32; 2],
     /// A clip's name, and the time in it in s.
     pub animation: Option<(&'a str, f64)>,
+    /// The same left of the split, if that has a pose of its own: [`AT_REST`] for none.
+    pub left_animation: Option<(&'a str, f64)>,
     pub reference_shape: Option<&'a Source>,
     /// How the mesh's own cage is refined, if its limit is the reference surface.
     pub reference_subdivide: Option<Subdivide>,
@@ -45,10 +47,6 @@ pub struct CopiedCommand<'a> {
     pub environment: Option<&'a Path>,
     /// The selected triangle's number in the mesh, from 0.
     pub triangle: Option<u32>,
-    /// Whether nothing is behind the mesh, rather than the background's colour.
-    pub transparent: bool,
-    /// Whether the legend is drawn into the picture.
-    pub legend: bool,
     /// The file to write; without one, it is named after the mesh.
     pub output: Option<&'a Path>,
     /// The turn of a turntable, and whether it is a GIF; none for one picture.
@@ -102,7 +100,7 @@ impl CopiedCommand<'_> {
         scene.iter().for_each(|name| line.option("--scene", name));
         parts.hidden.iter().for_each(|name| line.option("--hide-part", name));
         parts.only.iter().for_each(|name| line.option("--show-part", name));
-        parts.styles.iter().for_each(|(name, style)| line.option("--part", format!("{name}:{style}")));
+        parts.style_texts().for_each(|text| line.option("--part", text));
         parts.morphs.iter().for_each(|(name, weight)| line.option("--morph", format!("{name}={weight}")));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
@@ -111,18 +109,22 @@ impl CopiedCommand<'_> {
 
     /// Writes every setting that has an effect and isn't at its default. A transparent picture has no colour behind the mesh.
     fn settings(&self, line: &mut Line) {
-        let background = self.settings.background.filter(|_| !self.transparent);
+        let background = self.settings.background.filter(|_| !self.view.transparent);
         // What takes the place of LOD takes none of its options.
         let Tessellation { lod, factor, .. } = Tessellation::default();
         let own = self.settings.tessellation;
         let has_lod = self.factors.is_none() && self.lod_shader.is_none();
         let tessellation = if has_lod { own } else { Tessellation { lod, factor, ..own } };
         let usual = Settings::default().under(tessellation.lod);
-        let usual = if has_lod {
+        let mut usual = if has_lod {
             usual.with(Tessellation { lod: Settings::usual().tessellation.lod, ..usual.tessellation })
         } else {
             usual
         };
+        if self.light_file().is_some() && self.settings.lighting != Lighting::Environment {
+            // The file is the light of both halves unless they say otherwise.
+            usual.lighting = Lighting::Environment;
+        }
         let shown = Settings { background, ..self.settings.with(tessellation) };
         let displaced = |displacement, of: &Settings| of.with(Tessellation { displacement, ..of.tessellation });
         let (own, usual) = match self.preparation.heights {
@@ -140,14 +142,13 @@ impl CopiedCommand<'_> {
         };
         // The left half is said by what differs from the right one, as whoever reads the command gets that.
         let mut said = usual;
-        options::TESSELLATION
-            .into_iter()
-            .filter(written)
-            .for_each(|option| _ = option.set(&mut said, option.get(&own)));
+        let of_halves = || options::TESSELLATION.into_iter().chain(options::LOOKS);
+        of_halves().filter(written).for_each(|option| _ = option.set(&mut said, option.get(&own)));
         let differs = |(name, value): &(&str, Value)| {
-            let option = options::TESSELLATION.into_iter().find(|option| option.name == *name);
+            let option = of_halves().find(|option| option.name == *name);
             // What these are without being said depends on others.
-            let always = [options::SURFACE.name, options::LOD.name, options::PARTITIONING.name];
+            let always =
+                [&options::SURFACE, &options::LOD, &options::PARTITIONING, &options::OVERLAY].map(|own| own.name);
             always.contains(name) || option.is_none_or(|option| option.get(&said) != *value)
         };
         for option in options::all().filter(written) {
@@ -165,14 +166,13 @@ impl CopiedCommand<'_> {
 
     /// Writes the files of factors, of shaders, of a matcap and of light, the reference surface, the selection, the pose and the camera.
     fn view(&self, line: &mut Line) {
-        let colors_are_of_matcap = self.settings.overlays.colors.source() == ColorSource::LitSphere;
-        let uses_file = self.settings.lighting == Lighting::Environment && self.settings.shows_materials();
+        let shows_matcap = self.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::LitSphere);
         let files = [
             ("--factors", self.factors),
             ("--lod-shader", self.lod_shader),
             ("--surface-shader", self.surface_shader),
-            ("--matcap-image", self.matcap_image.filter(|_| colors_are_of_matcap)),
-            ("--environment", self.environment.filter(|_| uses_file)),
+            ("--matcap-image", self.matcap_image.filter(|_| shows_matcap)),
+            ("--environment", self.light_file()),
         ];
         for (name, path) in files.into_iter().filter_map(|(name, path)| Some((name, path?))) {
             line.option(name, named(&Source::File(path.to_owned())));
@@ -180,7 +180,7 @@ impl CopiedCommand<'_> {
         if let Some(left) = self.left_mesh.filter(|_| self.settings.split.is_some()) {
             line.option("--split-with", named(left));
         }
-        if self.animation.is_none() {
+        if self.animation.is_none() && self.left_animation.is_none() {
             self.reference_shape.iter().for_each(|own| line.option("--reference-surface", named(own)));
             self.reference_subdivide.iter().for_each(|own| line.option("--reference-subdivide", own.name()));
         }
@@ -189,14 +189,27 @@ impl CopiedCommand<'_> {
             line.option("--animation", name);
             line.changed("--time", &time, &0.0);
         }
-        line.switch("--transparent", self.transparent);
-        line.switch("--legend", self.legend);
-        line.option("--size", Px(self.size));
-        self.camera(line, "", self.camera);
-        if let Some((camera, size)) = self.lod_camera.filter(|own| *own != (self.camera, self.size)) {
-            self.camera(line, "lod-", camera);
-            line.changed("--lod-size", &Px(size), &Px(self.size));
+        if let Some((name, time)) = self.left_animation {
+            line.option("--split-animation", name);
+            line.changed("--split-time", &time, &0.0);
         }
+        line.switch("--transparent", self.view.transparent);
+        line.switch("--legend", self.view.legend);
+        line.option("--size", Px(self.view.size));
+        let ShotView { camera, lod_camera, size, .. } = &self.view;
+        self.camera(line, "", camera);
+        let lod_camera = lod_camera.map(|(camera, viewport)| (camera, viewport.to_array().map(|side| side as u32)));
+        if let Some((lod_camera, lod_size)) = lod_camera.filter(|own| *own != (*camera, *size)) {
+            self.camera(line, "lod-", &lod_camera);
+            line.changed("--lod-size", &Px(lod_size), &Px(*size));
+        }
+    }
+
+    /// The file of light, if it shines in a half, or is said to.
+    fn light_file(&self) -> Option<&Path> {
+        let is_said = self.settings.left_looks.is_some();
+        let is_used = |own: Settings| own.lighting == Lighting::Environment && (own.shows_materials() || is_said);
+        self.environment.filter(|_| self.settings.halves().any(is_used))
     }
 
     /// Writes the options of a camera, whose names begin with `prefix`.

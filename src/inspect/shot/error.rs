@@ -2,6 +2,7 @@
 
 use geometry::progress::Cancelled;
 use gpu::GpuError;
+use load::LoadError;
 use thiserror::Error;
 
 use super::picture_comparison::CompareError;
@@ -14,6 +15,8 @@ use crate::plot::ChartError;
 pub enum ShotError {
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    #[error(transparent)]
+    Load(#[from] LoadError),
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     #[error(transparent)]
@@ -28,6 +31,8 @@ pub enum ShotError {
     Different { picture: String, reference: String, how: String, see: String },
     #[error("{path}, line {line}: {reason}")]
     Line { path: String, line: usize, reason: String },
+    #[error("{path}: {reason}")]
+    Clash { path: String, reason: String },
     #[error(
         "{path}: the factors of patch {triangle} are not all equal, as subtriangulation needs them: choose another \
          --partitioning"

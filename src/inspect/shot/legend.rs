@@ -31,7 +31,8 @@ const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
 const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
 const LEFT: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Center };
 
-/// Draws the legend into a lower corner, if the picture's colours have one, where it covers less of the scene.
+/// Draws the legend into a lower corner, if the picture's colours have one, where it covers less of the scene. In a split picture it is
+/// the right half's, or if that has none the left one's.
 ///
 /// # Errors
 /// The font can't be used.
@@ -42,7 +43,8 @@ pub(crate) fn draw_legend(
     settings: &Settings,
     distances: &Distances,
 ) -> Result<(), ChartError> {
-    let Some(legend) = legend_of(settings, &scene.usual(), distances) else { return Ok(()) };
+    let legend = settings.halves().rev().find_map(|own| legend_of(&own, &scene.usual(), distances));
+    let Some(legend) = legend else { return Ok(()) };
     let point = point_in(picture.dimensions(), inner_size(&legend), None);
     let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
     let taken = [plate.width(), plate.height()].map(|side| side + (2.0 * MARGIN * point) as u32);

@@ -24,7 +24,7 @@ use std::sync::Arc;
 use glam::Vec2;
 use image::RgbaImage;
 
-pub use copied_command::{CopiedCommand, given};
+pub use copied_command::{AT_REST, CopiedCommand, given};
 pub use error::ShotError;
 pub use factors_report::{FactorsFile, agreement_lines, read_factors, said};
 pub use judging::Numbers;
@@ -51,7 +51,7 @@ use crate::measure::{
 };
 use crate::reference_shape::ReferenceShape;
 use crate::render::{
-    Camera, Distances, LineSegment, Renderer, Scale, Scene, Target, axis_lines, bone_lines, crack_lines,
+    Camera, Distances, LeftPose, LineSegment, Renderer, Scale, Scene, Target, axis_lines, bone_lines, crack_lines,
     deviation_scale, lay_over, lod_camera_lines, outlines_picture, patch_lines, t_junction_lines, worst_lines,
 };
 use crate::settings::{ARENA_BYTES, ColorSource, Settings, SplitSide, SplitView};
@@ -70,6 +70,7 @@ pub struct Subject {
     /// The mesh left of a split, if it is another one.
     pub left: Option<Loaded>,
     pub moment: Option<Moment>,
+    pub left_pose: LeftPose,
     /// What takes the place of LOD: factors of a file, or a shader.
     pub given: Option<Given>,
     /// What takes the place of the surface, except left of a split.
@@ -145,7 +146,7 @@ impl Subject {
         Self { loaded, settings, arena_bytes: ARENA_BYTES, ..Self::default() }
     }
 
-    /// Gives a scene of the mesh its factors, its control points, its matcap and its pose.
+    /// Gives a scene of the mesh its factors, its control points, its matcap and its poses.
     ///
     /// # Errors
     /// The mesh's rig needs larger buffers than the adapter can bind.
@@ -154,6 +155,7 @@ impl Subject {
         scene.tessellator.give(self.given.clone())?;
         scene.tessellator.set_surface_shader(self.surface_shader.clone())?;
         scene.frame_clip(self.moment.map(|moment| moment.clip));
+        scene.set_left_pose(self.left_pose)?;
         scene.set_moment(self.moment)
     }
 }
@@ -295,6 +297,7 @@ impl Shot {
         let measured = self.results(half).and_then(|results| results.survey.as_ref());
         let facts = HalfFacts {
             mesh: meshes.map(|meshes| meshes[half as usize].source.title()),
+            pose: self.scene.pose_title(half),
             triangles: self.scene.half(half).map(|own| own.tessellator.totals().1),
             cracked_edges: measured.map(|measured| measured.cracks.cracked().len() as u64),
             ..HalfFacts::default()
@@ -337,16 +340,16 @@ impl Shot {
 
     /// Measures each half with one walk over its output: what the overlays show, and what the stats say.
     fn measure(&mut self, stats: Option<StatsWanted>, progress: &Progress) -> Result<(), ShotError> {
-        let (view, settings) = (self.view(), self.subject.settings);
+        let view = self.view();
         let reference_surface = self.subject.reference_surface.as_ref().map(|(_, own)| own);
-        let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
         // Both halves are compared with the same surface. The CPU doesn't know the limit surface of a shader.
         let limit = self.inputs(SplitSide::Right).filter(|_| self.subject.surface_shader.is_none());
         let limit = limit.map(|inputs| DeviationTarget::Limit(Box::new(inputs)));
-        let target = reference_surface.cloned().map(DeviationTarget::ReferenceShape).or(limit).filter(|_| is_shown);
+        let target = reference_surface.cloned().map(DeviationTarget::ReferenceShape).or(limit);
         for half in SplitSide::BOTH {
-            let inputs = self.inputs(half);
-            let Some((inputs, scene)) = inputs.as_ref().zip(self.scene.half_mut(half)) else { continue };
+            let own = self.inputs(half).zip(self.subject.settings.half(half));
+            let Some(((inputs, settings), scene)) = own.as_ref().zip(self.scene.half_mut(half)) else { continue };
+            let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
             let wanted = Measurements {
                 survey: settings.overlays.cracks || self.subject.selected.is_some() || stats.is_some(),
                 // The CPU doesn't know the surface of a shader.
@@ -354,7 +357,7 @@ impl Shot {
                     .filter(|_| scene.tessellator.surface_shader().is_none())
                     .is_some_and(|stats| stats.error)
                     .then_some(inputs),
-                deviation: target.as_ref(),
+                deviation: target.as_ref().filter(|_| is_shown),
                 accuracy: reference_surface
                     .filter(|_| stats.is_some())
                     .map(|reference_shape| (&**reference_shape, &inputs.view, AccuracyOptions::default())),
@@ -369,7 +372,7 @@ impl Shot {
 
     /// Compares outlines, if they are shown: those of the right half, in all of the picture.
     fn compare_outlines(&mut self, progress: &Progress) -> Result<(), ShotError> {
-        if self.subject.settings.overlays.colors.source() == ColorSource::Outlines {
+        if self.subject.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::Outlines) {
             let seen = self.view.camera.lod_view(self.target.viewport(), &self.scene.bounds);
             let view = SilhouetteView { size: self.target.size, seen, lod: self.lod_view };
             let tessellation = &self.subject.settings.tessellation;
@@ -411,7 +414,8 @@ impl Shot {
     }
 
     fn lines(&self, half: SplitSide, progress: &Progress) -> Result<Vec<LineSegment>, ShotError> {
-        let (settings, is_same) = (&self.subject.settings, self.scene.shares_mesh(half));
+        let settings = self.subject.settings.half(half).unwrap_or(self.subject.settings);
+        let is_same = self.scene.shares_pose(half);
         let other = self.scene.half(half).filter(|_| !is_same).map(|own| own.tessellator.topology());
         let topology = other.unwrap_or(&self.posed.topology);
         let results = self.results(half);

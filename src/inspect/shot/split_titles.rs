@@ -14,6 +14,8 @@ const DIVIDER: image::Rgba<u8> = image::Rgba([190, 190, 190, 255]);
 pub struct HalfFacts {
     /// The mesh's name, if the halves show different ones.
     pub mesh: Option<String>,
+    /// Its pose, if they have different ones.
+    pub pose: Option<String>,
     /// The name of a shader in place of the surface.
     pub shader: Option<String>,
     /// The largest distance from the reference surface.
@@ -33,16 +35,16 @@ pub fn surface_title(settings: &Settings, half: SplitSide) -> &'static str {
 
 /// The title of a half: the mesh and the surface, what else differs between the halves, and what was counted.
 pub fn half_title(settings: &Settings, half: SplitSide, facts: HalfFacts) -> String {
-    let HalfFacts { mesh, shader, largest, triangles, cracked_edges } = facts;
+    let HalfFacts { mesh, pose, shader, largest, triangles, cracked_edges } = facts;
     let name = shader.unwrap_or_else(|| surface_title(settings, half).to_owned());
-    let name = mesh.into_iter().chain([name]).collect::<Vec<_>>().join(", ");
+    let name = mesh.into_iter().chain(pose).chain([name]).collect::<Vec<_>>().join(", ");
     let first = largest.map_or_else(|| name.clone(), |largest| format!("{name}: {largest}"));
     let counts = [counted(triangles, "triangle"), counted(cracked_edges, "cracked edge")];
     let lines = [vec![first], differing(settings, half), counts.into_iter().flatten().collect()];
     lines.into_iter().filter(|line| !line.is_empty()).map(|line| line.join(", ")).collect::<Vec<_>>().join("\n")
 }
 
-/// What a half's tessellation has otherwise than the other half's, beside the surface.
+/// What a half has otherwise than the other one, beside the surface.
 fn differing(settings: &Settings, half: SplitSide) -> Vec<String> {
     let [left, right] = SplitSide::BOTH.map(|half| settings.half(half).unwrap_or(*settings));
     let own = if half == SplitSide::Left { &left } else { &right };
@@ -52,7 +54,7 @@ fn differing(settings: &Settings, half: SplitSide) -> Vec<String> {
             && (option.no_effect)(own).is_none()
     };
     let compared = options::TESSELLATION.into_iter().filter(|_| settings.has_left_tessellation());
-    compared.filter(differs).map(|option| option.shown(own)).collect()
+    compared.chain(options::LOOKS).filter(differs).map(|option| option.shown(own)).collect()
 }
 
 fn counted(count: Option<u64>, one: &str) -> Option<String> {

@@ -16,7 +16,7 @@ use crate::gates::{GateKind, Judgement};
 use crate::measure::{Measured, SeamTurns, Seams};
 use crate::render::Scene;
 use crate::settings::{Settings, SplitSide, Value, options};
-use geometry::mesh::{EdgeCounts, Moment, Rig, Topology};
+use geometry::mesh::{EdgeCounts, Topology};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::{ScreenView, ulp};
 use gpu::{GpuError, PassTime};
@@ -28,8 +28,10 @@ pub struct Stats {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub view: Option<String>,
     adapter: String,
-    settings: SettingsStats,
-    triangles_in: u64,
+    #[serde(flatten)]
+    right: HalfStats,
+    /// What parts and materials have in place of settings, as `--part` has it.
+    parts: Vec<String>,
     points: u64,
     corners: u64,
     edges: EdgeCounts,
@@ -43,25 +45,16 @@ pub struct Stats {
     patches_facing_away: u32,
     /// Patches drawn with factors that are all below 2, edges and inside.
     patches_below_factor_2: u32,
-    triangles_out: u64,
     /// Emitted triangles that are neither wholly outside one side of the view nor cut by its near plane.
     triangles_in_view: u64,
     /// Those of them that cover less than 4.5 px² (half of a square of 3 px).
     triangles_below_3_px: u64,
-    vertices_out: u64,
     bytes: Bytes,
-    cracks: CrackStats,
-    seams: SeamStats,
     /// Px through which one can see into the mesh; none if it is open, reaches the near plane, or patches that face away were
     /// left out.
     leaks: Option<u64>,
-    /// Triangles that face away from the side that their patch faces.
-    folds: u64,
     /// Vertices with a position or uv that is no finite number.
     not_finite: u64,
-    /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
-    /// nothing is in view.
-    max_error_px: Option<f64>,
     /// Patches that LOD by error shows as one triangle because their surface is flat, though its points slide: their error is
     /// the distance to the nearest point of the surface. None if errors weren't measured.
     patches_flat: Option<u64>,
@@ -77,16 +70,10 @@ pub struct Stats {
     lod_shader: Option<LodShaderStats>,
     /// What was found about the control points of a surface shader, if they came from one.
     surface_shader: Option<SurfaceShaderStats>,
-    /// The distance to the reference surface, if there is one.
-    accuracy: Option<AccuracyStats>,
-    /// What the deviation overlay shows, if it is on.
-    deviation: Option<DeviationStats>,
     /// How far the outline is from others, if the silhouette is shown.
     silhouette: Option<SilhouetteStats>,
     /// The left half of a split view; all else here is about the right half.
-    left: Option<LeftStats>,
-    /// None at rest.
-    animation: Option<AnimationStats>,
+    left: Option<HalfStats>,
     /// Where it is seen from.
     camera: Option<ViewStats>,
     /// How the picture differs from its reference, if it has one.
@@ -139,12 +126,6 @@ struct AnimationStats {
     name: String,
     /// s.
     time: f64,
-}
-
-impl AnimationStats {
-    fn new((Moment { clip, time }, rig): (Moment, &Rig)) -> Self {
-        Self { name: rig.clip_name(clip), time }
-    }
 }
 
 /// Memory, in bytes.
@@ -271,10 +252,11 @@ impl LodComparison {
     }
 }
 
-/// The stats of another tessellation left of the split.
+/// What is measured of either half of a split picture.
 #[derive(Debug, Serialize)]
-struct LeftStats {
-    /// The mesh, if it is another one.
+struct HalfStats {
+    /// The left half's mesh, if it is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
     mesh: Option<String>,
     settings: SettingsStats,
     triangles_in: u64,
@@ -282,10 +264,17 @@ struct LeftStats {
     vertices_out: u64,
     cracks: CrackStats,
     seams: SeamStats,
+    /// Triangles that face away from the side that their patch faces.
     folds: u64,
+    /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
+    /// nothing is in view.
     max_error_px: Option<f64>,
+    /// The distance to the reference surface, if there is one.
     accuracy: Option<AccuracyStats>,
+    /// What the deviation overlay shows, if it is on.
     deviation: Option<DeviationStats>,
+    /// None at rest.
+    animation: Option<AnimationStats>,
 }
 
 impl Shot {
@@ -295,7 +284,7 @@ impl Shot {
     /// # Errors
     /// The device was lost.
     pub fn stats(&mut self) -> Result<Option<Stats>, ShotError> {
-        let view = self.view();
+        let Some(right) = self.half_stats(SplitSide::Right) else { return Ok(None) };
         let (engine, target, scene) = (&self.engine, &self.target, &mut self.scene);
         let (settings, camera, lod_view) = (&self.subject.settings, &self.view.camera, self.lod_view);
         let Some(results) = &self.results[SplitSide::Right as usize] else { return Ok(None) };
@@ -308,13 +297,11 @@ impl Shot {
         let lod_shader = LodShaderStats::new(engine, scene)?;
         let surface_shader = SurfaceShaderStats::new(engine, scene)?;
         let bytes = Bytes::new(&self.posed, scene);
-        let (vertices_out, triangles_out) = scene.tessellator.totals();
-        let max_error_px = results.screen_error.map(|worst| worst.px);
-        let lod_comparison = match max_error_px.map(|px| px as f32).filter(|px| *px > 0.0) {
+        let lod_comparison = match right.max_error_px.map(|px| px as f32).filter(|px| *px > 0.0) {
             Some(px) => LodComparison::new(engine, scene, &settings.inputs(lod_view), px)?,
             None => None,
         };
-        let (scene, Loaded { mesh, topology, .. }) = (&self.scene, &self.posed);
+        let Loaded { mesh, topology, .. } = &self.posed;
         let mirrored = camera.is_mirrored().then_some(self.view.size[0]);
         Ok(Some(Stats {
             // The name of the view, the reference picture and the factors file are known to those who draw.
@@ -322,8 +309,8 @@ impl Shot {
             reference: None,
             factors_file: None,
             adapter: engine.gpu.info.name.clone(),
-            settings: SettingsStats::new(settings, scene.tessellator.surface_shader().is_some(), &self.judged),
-            triangles_in: mesh.triangles.len() as u64,
+            right,
+            parts: self.posed.preparation.parts.style_texts().collect(),
             points: topology.points.len() as u64,
             corners: mesh.corners.len() as u64,
             edges: topology.edge_counts(),
@@ -334,51 +321,45 @@ impl Shot {
             patches_out_of_view: measured.culled.out_of_view,
             patches_facing_away: measured.culled.facing_away,
             patches_below_factor_2: measured.patches_low,
-            triangles_out,
             triangles_in_view: results.sizes.map_or(0, |sizes| sizes.in_view),
             triangles_below_3_px: results.sizes.map_or(0, |sizes| sizes.small),
-            vertices_out,
             bytes,
-            cracks: CrackStats::new(measured, topology, view),
-            seams: SeamStats::new(&measured.seams),
             leaks,
-            folds: measured.folds,
             not_finite: measured.not_finite,
-            max_error_px,
             patches_flat: results.flat_patches,
             lod_comparison,
             factors_capped,
             lod_shader,
             surface_shader,
-            accuracy: self.accuracy(SplitSide::Right),
-            deviation: self.deviation(SplitSide::Right),
             silhouette: self.silhouette.as_ref().map(|silhouette| SilhouetteStats::new(silhouette, mirrored)),
-            left: self.left_stats(),
-            animation: self.subject.moment.zip(self.subject.loaded.mesh.rig.as_deref()).map(AnimationStats::new),
-            camera: Some(ViewStats::new(camera, self.view.size, &scene.bounds)),
+            left: self.half_stats(SplitSide::Left),
+            camera: Some(ViewStats::new(camera, self.view.size, &self.scene.bounds)),
             gates: self.judged.clone(),
             ms: milliseconds(&passes, &self.posed),
         }))
     }
 
-    /// The stats of another tessellation left of the split.
-    fn left_stats(&self) -> Option<LeftStats> {
-        let (scene, settings) = self.scene.half(SplitSide::Left).zip(self.subject.settings.half(SplitSide::Left))?;
-        let results = self.results(SplitSide::Left)?;
-        let measured = results.survey.as_ref()?;
-        let (vertices_out, triangles_out) = scene.tessellator.totals();
-        Some(LeftStats {
-            mesh: self.subject.left.as_ref().map(|left| left.source.to_string()),
-            triangles_in: scene.tessellator.mesh().triangles.len() as u64,
-            settings: SettingsStats::new(&settings, false, &[]),
+    fn half_stats(&self, half: SplitSide) -> Option<HalfStats> {
+        let settings = self.subject.settings.half(half)?;
+        let (scene, results) = self.scene.half(half).zip(self.results(half))?;
+        let (tessellator, measured) = (&scene.tessellator, results.survey.as_ref()?);
+        let (vertices_out, triangles_out) = tessellator.totals();
+        let is_right = half == SplitSide::Right;
+        let judged = if is_right { &self.judged[..] } else { &[] };
+        let topology = if is_right { &self.posed.topology } else { tessellator.topology() };
+        Some(HalfStats {
+            mesh: self.subject.left.as_ref().filter(|_| !is_right).map(|left| left.source.to_string()),
+            settings: SettingsStats::new(&settings, tessellator.surface_shader().is_some(), judged),
+            triangles_in: tessellator.mesh().triangles.len() as u64,
             triangles_out,
             vertices_out,
-            cracks: CrackStats::new(measured, scene.tessellator.topology(), self.view()),
+            cracks: CrackStats::new(measured, topology, self.view()),
             seams: SeamStats::new(&measured.seams),
             folds: measured.folds,
             max_error_px: results.screen_error.map(|worst| worst.px),
-            accuracy: self.accuracy(SplitSide::Left),
-            deviation: self.deviation(SplitSide::Left),
+            accuracy: self.accuracy(half),
+            deviation: self.deviation(half),
+            animation: scene.clip_and_time().map(|(name, time)| AnimationStats { name, time }),
         })
     }
 }

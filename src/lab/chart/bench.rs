@@ -57,8 +57,6 @@ impl Bench<'_> {
             return Ok(None);
         }
         let passes = engine.time(scene, target, camera, inputs.view, &settings, self.effort.runs)?;
-        let time = Time::new(&passes);
-        let mut probe = Probe { triangles, vertices, time, errors: None, max_error_px: None, triangles_by_error: None };
         let wanted = Measurements {
             accuracy: self.reference_shape.map(|reference_shape| (reference_shape, &inputs.view, self.effort.accuracy)),
             screen_error: Some(&inputs),
@@ -66,20 +64,22 @@ impl Bench<'_> {
         };
         let MeasurementResults { accuracy, screen_error, .. } = engine.measure_all(scene, &wanted)?;
         let own_px = screen_error.map(|worst| worst.px);
-        if let Some(px) = own_px.map(|px| px as f32).filter(|px| *px > 0.0) {
-            probe.triangles_by_error = engine.triangles_by_error(scene, &inputs, px)?;
-        }
+        let triangles_by_error = match own_px.map(|px| px as f32) {
+            Some(px) if px > 0.0 => engine.triangles_by_error(scene, &inputs, px)?,
+            _ => None,
+        };
         let from_reference = accuracy.and_then(|accuracy| accuracy.worst_px).map(|worst| worst.value);
-        probe.max_error_px = match self.reference_shape {
+        let max_error_px = match self.reference_shape {
             Some(_) => from_reference,
             None => own_px,
         };
-        probe.errors = accuracy.map(|accuracy| {
+        let errors = accuracy.map(|accuracy| {
             let distances = accuracy.relative(accuracy.both_ways());
             let normal_degrees = accuracy.normals.largest;
             Errors { largest: distances.largest, rms: distances.rms.value, normal_degrees }
         });
-        Ok(Some(probe))
+        let time = Time::new(&passes);
+        Ok(Some(Probe { triangles, vertices, time, errors, max_error_px, triangles_by_error }))
     }
 }
 

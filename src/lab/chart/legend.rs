@@ -19,8 +19,8 @@ pub(super) struct Entry {
 #[derive(Clone)]
 enum Sample {
     Marker(MethodStyle),
-    Line(Option<[f64; 2]>),
-    Front,
+    /// Its colour, its width in px, and its dashes, if it has some.
+    Line(RGBColor, f64, Option<[f64; 2]>),
 }
 
 /// The number of entries in a line of LODs, or of partitionings and normals.
@@ -63,9 +63,9 @@ pub(super) fn legend(subjects: &[Subject]) -> Vec<Vec<Entry>> {
         if variants.is_empty() {
             name += &format!(" ({})", method.partitioning.name());
         }
-        add(&mut lods, Sample::Line(dash(method.lod)), name);
+        add(&mut lods, Sample::Line(INK, 1.4, dash(method.lod)), name);
     }
-    add(&mut surfaces, Sample::Front, "nothing has less error at less cost".to_owned());
+    add(&mut surfaces, Sample::Line(FRONT, 9.0, None), "nothing has less error at less cost".to_owned());
     let mut pairs = Vec::new();
     for (index, method) in variants.iter().enumerate() {
         let style = MethodStyle { color: INK, shape: Shape::Disc, ..MethodStyle::new(*method, index) };
@@ -93,12 +93,8 @@ pub(super) fn draw_legend<DB: DrawingBackend>(pen: &Pen<DB>, entries: &[Entry], 
                 pen.marker([x + 6.0, y], style)?;
                 16.0
             }
-            Sample::Line(dash) => {
-                pen.line(&[[x, y], [x + 32.0, y]], INK, 1.4, *dash)?;
-                38.0
-            }
-            Sample::Front => {
-                pen.line(&[[x, y], [x + 32.0, y]], FRONT, 9.0, None)?;
+            Sample::Line(color, thick, dash) => {
+                pen.line(&[[x, y], [x + 32.0, y]], *color, *thick, *dash)?;
                 38.0
             }
         };

@@ -22,12 +22,12 @@ pub use pen::RADIUS;
 pub use picture::{bitmap, svg};
 pub use race::{Cost, front, has_converged};
 pub(crate) use race::{Race, Win};
-pub use save::{SaveError, save};
+pub use save::save;
 pub use setting::{LodKind, Method, Plan, Setting, coarse_first};
 
 use geometry::near::Interval;
 use geometry::tessellate::Vertex;
-use gpu::{DRAWING, PassTime};
+use gpu::{PassTime, ms_of};
 use inspect::settings::Choice;
 
 /// A column's name, and its text of a row.
@@ -113,10 +113,8 @@ const TESSELLATE: [&str; 7] = ["factors", "levels", "counts", "scan", "chunks", 
 
 impl Time {
     pub fn new(passes: &[PassTime]) -> Self {
-        let sum = |which: &dyn Fn(&str) -> bool| {
-            passes.iter().filter(|time| which(time.pass)).map(|time| time.ms).sum::<f64>()
-        };
-        Self { tessellate: sum(&|pass| TESSELLATE.contains(&pass)), draw: sum(&|pass| DRAWING.contains(&pass)) }
+        let tessellate = passes.iter().filter(|time| TESSELLATE.contains(&time.pass)).map(|time| time.ms).sum();
+        Self { tessellate, draw: ms_of(passes, true) }
     }
 
     pub fn total(&self) -> f64 {

@@ -13,6 +13,7 @@ use super::pen::{Drawn, FRONT, LEFT, MIDDLE, Pen, font, place_of, px, width};
 use super::{Cost, Method, Row, Subject};
 use geometry::names::wrapped;
 use inspect::plot::{self, ChartError, DENSITY, INK};
+use inspect::shot::ShotError;
 
 /// The picture's width in px: that of pictures in a README.
 const WIDTH: u32 = 960;
@@ -36,13 +37,13 @@ const GRID: RGBColor = RGBColor(236, 236, 236);
 const FINE_GRID: RGBColor = RGBColor(246, 246, 246);
 
 /// Draws charts as a bitmap.
-pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ChartError> {
+pub fn bitmap(subjects: &[Subject]) -> Result<RgbImage, ShotError> {
     let layout = Layout::from_subjects(subjects);
-    plot::bitmap([WIDTH, layout.height()], |area| layout.draw(area))
+    Ok(plot::bitmap([WIDTH, layout.height()], |area| layout.draw(area))?)
 }
 
 /// Draws charts as an SVG file. Its labels are text.
-pub fn svg(subjects: &[Subject]) -> Result<String, ChartError> {
+pub fn svg(subjects: &[Subject]) -> Result<String, ShotError> {
     plot::use_font()?;
     let layout = Layout::from_subjects(subjects);
     let (size, drawn) = ([WIDTH, layout.height()], [WIDTH, layout.height()].map(|side| side * DENSITY));

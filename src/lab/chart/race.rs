@@ -1,14 +1,17 @@
 //! Compares rows by their cost and error: which ones no other row beats, and which method reaches an error fastest.
 
 use super::{Method, Probe, Row, Subject, distinct};
+use geometry::choice::texts;
 use geometry::tessellate::Surface;
 
-/// A cost of a setting: time in ms, or triangles.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Cost {
-    #[default]
-    Ms,
-    Triangles,
+texts! {
+    /// A cost of a setting: time in ms, or triangles.
+    #[derive(Default)]
+    pub enum Cost, fn name {
+        #[default]
+        Ms => "Tessellation and drawing, ms",
+        Triangles => "Triangles",
+    }
 }
 
 impl Cost {
@@ -16,13 +19,6 @@ impl Cost {
         match self {
             Self::Ms => probe.time.total(),
             Self::Triangles => probe.triangles as f64,
-        }
-    }
-
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ms => "Tessellation and drawing, ms",
-            Self::Triangles => "Triangles",
         }
     }
 }

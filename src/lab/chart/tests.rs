@@ -312,7 +312,7 @@ fn the_ending_decides_how_a_chart_is_saved() {
     let shown = subject(Some("the exact surface"), some_rows());
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let saved = |name: &str| {
-        save(&folder.path().join(name), &shown).expect("it is written");
+        save(&folder.path().join(name), std::slice::from_ref(&shown)).expect("it is written");
         std::fs::read(folder.path().join(name)).expect("it is there")
     };
     assert!(saved("a.svg").starts_with(b"<svg "));
@@ -320,9 +320,10 @@ fn the_ending_decides_how_a_chart_is_saved() {
     let table = String::from_utf8(saved("a.csv")).expect("text");
     assert_eq!(table.lines().count(), 1 + shown.rows.len());
     assert_eq!(table.lines().next(), Some(&columns().join(",")[..]));
-    let other = save(&folder.path().join("a.txt"), &shown).map_err(|error| error.to_string());
+    let other = save(&folder.path().join("a.txt"), std::slice::from_ref(&shown)).map_err(|error| error.to_string());
     assert!(other.is_err_and(|text| text.contains(".svg, .png or .csv")));
-    let nowhere = save(&folder.path().join("nowhere/a.svg"), &shown).map_err(|error| error.to_string());
+    let nowhere =
+        save(&folder.path().join("nowhere/a.svg"), std::slice::from_ref(&shown)).map_err(|error| error.to_string());
     assert!(nowhere.is_err_and(|text| text.contains("a.svg")), "it says which file");
 }
 

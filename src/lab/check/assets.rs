@@ -1,19 +1,14 @@
 //! Finds the assets to check: files, shapes, and all meshes in folders.
 
 use std::collections::HashSet;
-use std::io;
 use std::path::{Path, PathBuf};
 
+use inspect::shot::ShotError;
+use inspect::shot::files::file_error;
 use load::Source;
+use load::files::file_reason;
 use load::format::Format;
 use walkdir::{DirEntry, WalkDir};
-
-/// A folder that can't be looked through.
-#[derive(Debug)]
-pub struct FolderError {
-    pub folder: PathBuf,
-    pub error: io::Error,
-}
 
 /// Returns the files and shapes as they are given, and in place of each folder the files in and below it whose names say that they
 /// are meshes, in the order of their paths. Hidden files and folders are left out, and links to folders in folders, which could
@@ -21,7 +16,7 @@ pub struct FolderError {
 ///
 /// # Errors
 /// A folder can't be looked through.
-pub fn assets(given: &[Source]) -> Result<Vec<Source>, FolderError> {
+pub fn assets(given: &[Source]) -> Result<Vec<Source>, ShotError> {
     let (mut all, mut known) = (Vec::new(), HashSet::new());
     for source in given {
         let found = match source {
@@ -37,12 +32,15 @@ pub fn assets(given: &[Source]) -> Result<Vec<Source>, FolderError> {
     Ok(all)
 }
 
-fn meshes_in(folder: &Path) -> Result<Vec<PathBuf>, FolderError> {
+fn meshes_in(folder: &Path) -> Result<Vec<PathBuf>, ShotError> {
+    let unreadable = |error: walkdir::Error| {
+        let place = error.path().unwrap_or(folder).to_owned();
+        file_error(&place, "read", &file_reason(&error.into()))
+    };
     let is_shown = |entry: &DirEntry| entry.depth() == 0 || !entry.file_name().as_encoded_bytes().starts_with(b".");
     let mut files = Vec::new();
     for entry in WalkDir::new(folder).sort_by_file_name().into_iter().filter_entry(is_shown) {
-        let entry = entry
-            .map_err(|error| FolderError { folder: error.path().unwrap_or(folder).to_owned(), error: error.into() })?;
+        let entry = entry.map_err(unreadable)?;
         let path = entry.path();
         // A link to a file that is gone is an asset that can't be opened.
         let is_lost = entry.path_is_symlink() && !path.exists();

@@ -17,14 +17,9 @@ const MOST_LISTED: usize = 10_000;
 #[derive(Clone, Debug)]
 pub struct Cache(PathBuf);
 
-/// What an asset's result depends on besides the contents of files.
-#[derive(Clone, Copy, Debug)]
-pub struct Inputs<'a> {
-    /// The asset's path.
-    pub path: &'a Path,
-    /// Everything of the configuration that holds for the asset, as text.
-    pub configuration: &'a str,
-}
+/// What an asset's result depends on besides the contents of files: its path, and everything of the configuration that holds
+/// for it, as text.
+pub type Inputs<'a> = (&'a Path, &'a str);
 
 /// A file of the cache.
 #[derive(Serialize, Deserialize)]
@@ -46,7 +41,7 @@ impl Cache {
     pub fn get(&self, inputs: Inputs) -> Option<Asset> {
         let record: Record = serde_json::from_slice(&std::fs::read(self.place(inputs)).ok()?).ok()?;
         let is_same = |(path, hash): &(PathBuf, String)| hash_of_file(path).is_ok_and(|own| own == *hash);
-        let is_same_folder = record.listing.is_none() || record.listing == listing(inputs.path);
+        let is_same_folder = record.listing.is_none() || record.listing == listing(inputs.0);
         let is_unchanged = is_same_folder && record.files.iter().all(is_same);
         is_unchanged.then_some(Asset { unchanged: true, ..record.asset })
     }
@@ -61,12 +56,12 @@ impl Cache {
         }
         let hashed = |path: &PathBuf| Ok((path.clone(), hash_of_file(path)?));
         let files = files.iter().map(hashed).collect::<io::Result<_>>()?;
-        let listing = if asset.warnings.is_empty() { None } else { Some(listing(inputs.path).unwrap_or_default()) };
+        let listing = if asset.warnings.is_empty() { None } else { Some(listing(inputs.0).unwrap_or_default()) };
         let record = Record { files, listing, asset: asset.clone() };
         write_whole(&self.place(inputs), &serde_json::to_vec(&record)?)
     }
 
-    fn place(&self, Inputs { path, configuration }: Inputs) -> PathBuf {
+    fn place(&self, (path, configuration): Inputs) -> PathBuf {
         let mut hasher = blake3::Hasher::new();
         for part in
             [env!("CARGO_PKG_VERSION").as_bytes(), path.as_os_str().as_encoded_bytes(), configuration.as_bytes()]
@@ -113,7 +108,7 @@ mod tests {
         write(&asset, "mesh");
         write(&image, "image");
         let cache = Cache::new(&folder.path().join("."));
-        let inputs = Inputs { path: &asset, configuration: "lod=error" };
+        let inputs = (&*asset, "lod=error");
         let found = Asset { path: "a.gltf".into(), ..Asset::default() };
         let files = [asset.clone(), image.clone()];
         assert_eq!(cache.get(inputs), None);
@@ -122,7 +117,7 @@ mod tests {
         let put = || cache.put(inputs, &files, SystemTime::now(), &found).expect("a writable folder");
         put();
         assert_eq!(cache.get(inputs), Some(Asset { unchanged: true, ..found.clone() }));
-        assert_eq!(cache.get(Inputs { configuration: "lod=paper", ..inputs }), None);
+        assert_eq!(cache.get((&asset, "lod=paper")), None);
         write(&image, "other");
         assert_eq!(cache.get(inputs), None);
         put();
@@ -139,14 +134,14 @@ mod tests {
         let asset = folder.path().join("a.gltf");
         std::fs::write(&asset, "mesh").expect("a writable folder");
         let cache = Cache::new(kept.path());
-        let inputs = Inputs { path: &asset, configuration: "" };
+        let inputs = (&*asset, "");
         let found = Asset { warnings: vec!["a.png is missing".into()], ..Asset::default() };
         cache.put(inputs, std::slice::from_ref(&asset), SystemTime::now(), &found).expect("a writable folder");
         assert!(cache.get(inputs).is_some());
         std::fs::write(folder.path().join("a.png"), "image").expect("a writable folder");
         assert_eq!(cache.get(inputs), None);
         let broken = Asset { error: Some("no mesh".into()), ..Asset::default() };
-        let other = Inputs { configuration: "other", ..inputs };
+        let other = (&*asset, "other");
         cache.put(other, &[], SystemTime::now(), &broken).expect("nothing is written");
         assert_eq!(cache.get(other), None);
     }

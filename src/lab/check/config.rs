@@ -4,12 +4,13 @@ use std::ops::Range;
 use std::path::Path;
 
 use strsim::levenshtein;
-use thiserror::Error;
 use toml::de::{DeTable, DeValue};
 
 use super::pattern::Pattern;
 use geometry::names::{shown, shown_path};
 use inspect::gates::Gate;
+use inspect::shot::ShotError;
+use inspect::shot::files::{file_error, read_text};
 use load::files::file_reason;
 
 /// The most bytes that a configuration may have.
@@ -17,17 +18,6 @@ const MOST_BYTES: u64 = 1 << 20;
 
 /// The keys that a configuration may have outside of its sections.
 const SECTION_KEYS: [&str; 5] = ["fail-on", "options", "cameras", "files", "golden"];
-
-/// What is wrong with a configuration.
-#[derive(Debug, Error)]
-pub enum ConfigError {
-    #[error("{path}, line {line}: {reason}")]
-    At { path: String, line: usize, reason: String },
-    #[error("{path}: {reason}")]
-    Clash { path: String, reason: String },
-    #[error("{path}: could not be read ({reason})")]
-    Unreadable { path: String, reason: String },
-}
 
 /// A configuration.
 #[derive(Clone, Debug, Default)]
@@ -68,22 +58,13 @@ pub struct OptionValue {
     pub line: usize,
 }
 
-/// The options that a configuration may have.
-#[derive(Clone, Copy, Debug)]
-struct KnownOptions<'a> {
-    all: &'a [String],
-    /// Those of them that a named view may have.
-    camera: &'a [&'a str],
-}
-
 impl Config {
     /// Reads a configuration.
     ///
     /// # Errors
     /// The file can't be read, is no TOML, or has an unknown key or a value of the wrong type.
-    pub fn read(path: &Path, options: &[String], camera: &[&str]) -> Result<Self, ConfigError> {
-        let shown = shown_path(path);
-        let unreadable = |reason: String| ConfigError::Unreadable { path: shown.clone(), reason };
+    pub fn read(path: &Path, options: &[String], camera: &[&str]) -> Result<Self, ShotError> {
+        let unreadable = |reason: String| file_error(path, "read", &reason);
         let about = std::fs::metadata(path).map_err(|error| unreadable(file_reason(&error)))?;
         if !about.is_file() {
             return Err(unreadable("it is no file; name a TOML file".to_owned()));
@@ -91,14 +72,12 @@ impl Config {
         if about.len() > MOST_BYTES {
             return Err(unreadable(format!("it has {} bytes, and at most {MOST_BYTES} are read", about.len())));
         }
-        let bytes = std::fs::read(path).map_err(|error| unreadable(file_reason(&error)))?;
-        let text = String::from_utf8(bytes).map_err(|_| unreadable("it isn't text in UTF-8".to_owned()))?;
-        Self::parse(&shown, &text, KnownOptions { all: options, camera })
+        Self::parse(&shown_path(path), &read_text(path)?, options, camera)
     }
 
     /// Reads a configuration from its text. `path` names it in messages.
-    fn parse(path: &str, text: &str, known: KnownOptions) -> Result<Self, ConfigError> {
-        let reader = Reader { path, text, known };
+    fn parse(path: &str, text: &str, options: &[String], camera: &[&str]) -> Result<Self, ShotError> {
+        let reader = Reader { path, text, options, camera };
         let table = DeTable::parse(text).map_err(|error| {
             let at = error.span().unwrap_or_default();
             reader.error(at, &format!("this is no TOML: {}", error.message()))
@@ -149,13 +128,13 @@ impl Config {
     }
 
     /// The error of an option that its command doesn't take.
-    pub fn wrong(&self, option: &OptionValue, reason: &str) -> ConfigError {
-        ConfigError::At { path: self.path.clone(), line: option.line, reason: reason.to_owned() }
+    pub fn wrong(&self, option: &OptionValue, reason: &str) -> ShotError {
+        ShotError::Line { path: self.path.clone(), line: option.line, reason: reason.to_owned() }
     }
 
     /// The error of options that can't be together.
-    pub fn clash(&self, reason: &str) -> ConfigError {
-        ConfigError::Clash { path: self.path.clone(), reason: reason.to_owned() }
+    pub fn clash(&self, reason: &str) -> ShotError {
+        ShotError::Clash { path: self.path.clone(), reason: reason.to_owned() }
     }
 }
 
@@ -165,7 +144,9 @@ type Value<'a> = toml::Spanned<DeValue<'a>>;
 struct Reader<'a> {
     path: &'a str,
     text: &'a str,
-    known: KnownOptions<'a>,
+    /// The options that a configuration may have, and those of them that a named view may have.
+    options: &'a [String],
+    camera: &'a [&'a str],
 }
 
 impl Reader<'_> {
@@ -173,11 +154,11 @@ impl Reader<'_> {
         1 + self.text.bytes().take(at.start).filter(|byte| *byte == b'\n').count()
     }
 
-    fn error(&self, at: Range<usize>, reason: &str) -> ConfigError {
-        ConfigError::At { path: self.path.to_owned(), line: self.line(at), reason: reason.to_owned() }
+    fn error(&self, at: Range<usize>, reason: &str) -> ShotError {
+        ShotError::Line { path: self.path.to_owned(), line: self.line(at), reason: reason.to_owned() }
     }
 
-    fn unknown(&self, at: Range<usize>, name: &str, known: &[&str]) -> ConfigError {
+    fn unknown(&self, at: Range<usize>, name: &str, known: &[&str]) -> ShotError {
         let nearest = known.iter().min_by_key(|other| levenshtein(name, other));
         let meant = nearest.filter(|other| levenshtein(name, other) <= 1 + name.chars().count() / 3);
         let meant = meant.map(|other| format!("; did you mean {other}?")).unwrap_or_default();
@@ -185,11 +166,11 @@ impl Reader<'_> {
     }
 
     /// Takes a key that every section may have. False if it is none of these.
-    fn take(&self, name: &str, value: &Value, section: &mut Section) -> Result<bool, ConfigError> {
+    fn take(&self, name: &str, value: &Value, section: &mut Section) -> Result<bool, ShotError> {
         match name {
             "fail-on" => section.gates = Some(self.gates(value)?),
             "options" => {
-                let all: Vec<&str> = self.known.all.iter().map(String::as_str).collect();
+                let all: Vec<&str> = self.options.iter().map(String::as_str).collect();
                 section.options = self.options(value, &all)?;
             }
             "cameras" => {
@@ -204,7 +185,7 @@ impl Reader<'_> {
                         camera,
                         "a table of camera options, such as [cameras.front] with camera = [0, 10] below it",
                     )?;
-                    let options = self.options(camera, self.known.camera)?;
+                    let options = self.options(camera, self.camera)?;
                     section.cameras.push((key.get_ref().to_string(), options));
                 }
             }
@@ -213,7 +194,7 @@ impl Reader<'_> {
         Ok(true)
     }
 
-    fn files(&self, value: &Value) -> Result<Vec<Files>, ConfigError> {
+    fn files(&self, value: &Value) -> Result<Vec<Files>, ShotError> {
         let expected = "expected sections that begin with [[files]]";
         let Some(sections) = value.get_ref().as_array() else { return Err(self.error(value.span(), expected)) };
         let mut files = Vec::new();
@@ -239,16 +220,16 @@ impl Reader<'_> {
         Ok(files)
     }
 
-    fn table<'a, 'b>(&self, value: &'a Value<'b>, expected: &str) -> Result<&'a DeTable<'b>, ConfigError> {
+    fn table<'a, 'b>(&self, value: &'a Value<'b>, expected: &str) -> Result<&'a DeTable<'b>, ShotError> {
         value.get_ref().as_table().ok_or_else(|| self.error(value.span(), &format!("expected {expected}")))
     }
 
-    fn text(&self, value: &Value) -> Result<String, ConfigError> {
+    fn text(&self, value: &Value) -> Result<String, ShotError> {
         let text = value.get_ref().as_str().map(str::to_owned);
         text.ok_or_else(|| self.error(value.span(), "expected a text in quotation marks"))
     }
 
-    fn gates(&self, value: &Value) -> Result<Vec<Gate>, ConfigError> {
+    fn gates(&self, value: &Value) -> Result<Vec<Gate>, ShotError> {
         let expected = "expected a list of gates, such as [\"cracks\", \"triangles:100000\"]";
         let all = value.get_ref().as_array().ok_or_else(|| self.error(value.span(), expected))?;
         let gate = |value: &Value| {
@@ -258,7 +239,7 @@ impl Reader<'_> {
         all.iter().map(gate).collect()
     }
 
-    fn options(&self, value: &Value, known: &[&str]) -> Result<Vec<OptionValue>, ConfigError> {
+    fn options(&self, value: &Value, known: &[&str]) -> Result<Vec<OptionValue>, ShotError> {
         let mut options = Vec::new();
         for (key, value) in self.table(value, "options of `pnaen render`, such as tolerance = 0.5")? {
             let name = key.get_ref().as_ref();
@@ -277,7 +258,7 @@ impl Reader<'_> {
     }
 
     /// What follows an option on the command line. Numbers of a list belong together, and texts of a list are given one by one.
-    fn values(&self, value: &Value) -> Result<Vec<Option<String>>, ConfigError> {
+    fn values(&self, value: &Value) -> Result<Vec<Option<String>>, ShotError> {
         match value.get_ref() {
             DeValue::Boolean(true) => Ok(vec![None]),
             DeValue::Boolean(false) => Ok(Vec::new()),
@@ -292,7 +273,7 @@ impl Reader<'_> {
         }
     }
 
-    fn scalar(&self, value: &Value) -> Result<String, ConfigError> {
+    fn scalar(&self, value: &Value) -> Result<String, ShotError> {
         match value.get_ref() {
             DeValue::String(text) => Ok(text.to_string()),
             DeValue::Integer(number) => Ok(number.as_str().to_owned()),
@@ -308,9 +289,9 @@ impl Reader<'_> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Config, ConfigError> {
+    fn read(text: &str) -> Result<Config, ShotError> {
         let all = ["tolerance", "lod", "camera", "overlay", "cull-back-faces", "hide-part"].map(str::to_owned);
-        Config::parse("pnaen.toml", text, KnownOptions { all: &all, camera: &["camera"] })
+        Config::parse("pnaen.toml", text, &all, &["camera"])
     }
 
     #[test]

@@ -10,9 +10,9 @@ mod pattern;
 mod report;
 mod sarif;
 
-pub use assets::{FolderError, assets};
+pub use assets::assets;
 pub use cache::{Cache, Inputs};
-pub use config::{Config, ConfigError, OptionValue, Section};
+pub use config::{Config, OptionValue, Section};
 pub use junit::junit;
 pub use page::{PICTURES, page, pictures};
 pub use report::{Asset, GOLDEN, GateResult, Report, View};

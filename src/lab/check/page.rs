@@ -60,7 +60,7 @@ fn file_name(picture: &str) -> String {
 pub fn page(report: &Report) -> String {
     let mut text = begin("pnaen check", STYLE);
     let _ = write!(text, "<h1>pnaen check</h1>\n<p>{}.</p>{FILTER}\n", escaped(&report.summary()));
-    for status in [Status::Broken, Status::Failed, Status::Passed] {
+    for status in Status::ALL.into_iter().rev() {
         report.assets.iter().filter(|asset| asset.status() == status).for_each(|asset| text += &section(asset));
     }
     text + END

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
+use geometry::choice::texts;
 use geometry::numbers::{counted, grouped};
 use inspect::gates::{GateKind, Judgement, Place};
 use inspect::settings::Choice;
@@ -75,23 +76,14 @@ pub struct GateResult {
 pub const GOLDEN: [&str; 2] = ["golden", "The view is the same as its golden picture."];
 pub(super) const OPENS: [&str; 2] = ["opens", "The asset can be opened and measured."];
 
-/// The result of an asset.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Status {
-    Passed,
-    /// A gate failed.
-    Failed,
-    /// It couldn't be checked.
-    Broken,
-}
-
-impl Status {
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Passed => "passed",
-            Self::Failed => "failed",
-            Self::Broken => "broken",
-        }
+texts! {
+    /// The result of an asset.
+    pub enum Status, fn name {
+        Passed => "passed",
+        /// A gate failed.
+        Failed => "failed",
+        /// It couldn't be checked.
+        Broken => "broken",
     }
 }
 
@@ -150,10 +142,8 @@ impl Report {
     pub fn summary(&self) -> String {
         let number = |count: usize| grouped(count as u64);
         let all = counted(self.assets.len() as u64, "asset");
-        let [passed, failed, broken] =
-            [Status::Passed, Status::Failed, Status::Broken].map(|status| self.count(status));
-        let mut text =
-            format!("{all}: {} passed, {} failed, {} broken", number(passed), number(failed), number(broken));
+        let counts = Status::ALL.map(|status| format!("{} {}", number(self.count(status)), status.name()));
+        let mut text = format!("{all}: {}", counts.join(", "));
         let unchanged = self.assets.iter().filter(|asset| asset.unchanged).count();
         for (count, words) in
             [(unchanged, "unchanged and not measured again"), (self.left_out, "left out because of the interruption")]
@@ -182,30 +172,28 @@ impl Report {
     }
 
     /// The report as JSON.
-    pub fn json(&self) -> serde_json::Result<String> {
-        let assets = self.assets.iter().map(asset_json).collect::<serde_json::Result<Vec<_>>>()?;
-        let report = serde_json::json!({
+    pub fn json(&self) -> Value {
+        json!({
             "pnaen": env!("CARGO_PKG_VERSION"),
             "passed": self.count(Status::Passed),
             "failed": self.count(Status::Failed),
             "broken": self.count(Status::Broken),
             "left_out": self.left_out,
-            "assets": assets,
-        });
-        serde_json::to_string_pretty(&report).map(|text| text + "\n")
+            "assets": self.assets.iter().map(asset_json).collect::<Vec<_>>(),
+        })
     }
 }
 
 /// An asset as JSON, without its pictures.
-fn asset_json(asset: &Asset) -> serde_json::Result<serde_json::Value> {
+fn asset_json(asset: &Asset) -> Value {
     let mut plain = asset.clone();
     for view in &mut plain.views {
         view.picture = None;
         view.gates.iter_mut().for_each(|gate| gate.evidence = None);
     }
-    let mut json = serde_json::to_value(plain)?;
+    let mut json = json!(plain);
     json["status"] = asset.status().name().into();
-    Ok(json)
+    json
 }
 
 /// A report with an asset of each kind.
@@ -266,7 +254,7 @@ mod tests {
 
     #[test]
     fn a_report_as_json_has_every_gate_and_no_picture() {
-        let json: serde_json::Value = serde_json::from_str(&sample().json().expect("JSON")).expect("JSON");
+        let json = sample().json();
         assert!(["passed", "failed", "broken"].into_iter().all(|key| json[key] == 1), "{json}");
         assert_eq!(json.pointer("/assets/1/views/0/gates/0/where/triangles"), Some(&serde_json::json!([3, 7])));
         assert_eq!(json.pointer("/assets/0/unchanged"), Some(&true.into()));

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::{Value, json};
 
 use super::report::{Asset, GOLDEN, OPENS, Report, gate_title};
@@ -10,13 +11,13 @@ use inspect::gates::GateKind;
 use inspect::settings::Choice;
 
 /// Writes the report.
-pub fn sarif(report: &Report) -> serde_json::Result<String> {
+pub fn sarif(report: &Report) -> Value {
     let rule = |name: &str, text: &str| json!({ "id": name, "shortDescription": { "text": text } });
     let gates = GateKind::ALL.map(|kind| rule(kind.name(), kind.text()));
     let others = [GOLDEN, OPENS].map(|[name, text]| rule(name, text));
     let rules: Vec<Value> = gates.into_iter().chain(others).collect();
     let results: Vec<Value> = report.assets.iter().flat_map(results).collect();
-    let sarif = json!({
+    json!({
         "$schema": "https://json.schemastore.org/sarif-2.1.0.json",
         "version": "2.1.0",
         "runs": [{
@@ -24,8 +25,7 @@ pub fn sarif(report: &Report) -> serde_json::Result<String> {
             "invocations": [{ "executionSuccessful": report.left_out == 0 }],
             "results": results,
         }],
-    });
-    serde_json::to_string_pretty(&sarif).map(|text| text + "\n")
+    })
 }
 
 fn results(asset: &Asset) -> Vec<Value> {
@@ -56,6 +56,9 @@ fn fingerprint(parts: [&str; 3]) -> String {
     blake3::hash(parts.join("\n").as_bytes()).to_hex()[..32].to_owned()
 }
 
+/// The characters that are written as bytes in a path.
+const OTHERS: &AsciiSet = &NON_ALPHANUMERIC.remove(b'/').remove(b'-').remove(b'.').remove(b'_').remove(b'~');
+
 /// A path as a URI reference (RFC 3986): relative paths stay relative, and other characters than the unreserved ones are bytes in
 /// hexadecimal digits.
 fn uri(path: &str) -> String {
@@ -65,16 +68,9 @@ fn uri(path: &str) -> String {
         (true, false) => "file:///",
         (false, _) => "",
     };
-    let mut text = String::from(start);
-    for byte in path.strip_prefix("./").unwrap_or(path).bytes() {
-        match byte {
-            b'\\' if cfg!(windows) => text.push('/'),
-            b'/' | b'-' | b'.' | b'_' | b'~' => text.push(char::from(byte)),
-            byte if byte.is_ascii_alphanumeric() => text.push(char::from(byte)),
-            byte => text += &format!("%{byte:02X}"),
-        }
-    }
-    text
+    let path = path.strip_prefix("./").unwrap_or(path);
+    let path = if cfg!(windows) { path.replace('\\', "/") } else { path.to_owned() };
+    format!("{start}{}", utf8_percent_encode(&path, OTHERS))
 }
 
 #[cfg(test)]
@@ -84,7 +80,7 @@ mod tests {
 
     #[test]
     fn failed_gates_and_broken_assets_are_results() {
-        let sarif: Value = serde_json::from_str(&sarif(&sample()).expect("JSON")).expect("JSON");
+        let sarif = sarif(&sample());
         let run = &sarif["runs"][0];
         let ids: Vec<_> =
             run["tool"]["driver"]["rules"].as_array().expect("rules").iter().map(|rule| &rule["id"]).collect();

@@ -28,9 +28,6 @@ pub(super) struct Overlaid<'a> {
     pub fit: f64,
 }
 
-/// How most of their triangles are wound: 1 as the patches that they lie on, -1 the other way.
-type Winding = f64;
-
 /// Their triangles, patch by patch.
 pub(super) struct Assignment<'a> {
     pub overlaid: &'a Overlaid<'a>,
@@ -109,8 +106,8 @@ impl<'a> Overlaid<'a> {
         self.locator.as_ref().and_then(|locator| locator.patch(middle)).unwrap_or_default()
     }
 
-    /// How most of their triangles are wound that lie on the nearest patch.
-    fn winding(&self) -> Winding {
+    /// How most of their triangles are wound that lie on the nearest patch: 1 as the patch, -1 the other way.
+    fn winding(&self) -> f64 {
         let triangles = &self.theirs.triangles;
         let fit = |triangle: [u32; 3]| self.fit_on(self.nearest_patch(triangle), triangle, 1.0);
         let fits = spread(triangles.len(), WOUND).map(|index| fit(triangles[index])).filter(|fit| fit.corners == 3);
@@ -118,7 +115,7 @@ impl<'a> Overlaid<'a> {
         if turned.len() > alike.len() { -1.0 } else { 1.0 }
     }
 
-    fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: Winding) -> Fit {
+    fn fit_on(&self, patch: u32, triangle: [u32; 3], winding: f64) -> Fit {
         let places = triangle.map(|corner| self.place_on(corner, patch));
         let corners = places.iter().filter(|place| place.distance <= self.fit).count();
         let is_good = corners == 3 && winding * domain_area(places.map(|place| place.weights)) > 0.0;
@@ -128,7 +125,7 @@ impl<'a> Overlaid<'a> {
 
     /// Returns the patch that a triangle lies on: the one on whose surface most of its corners are, and on which it is wound as
     /// most are.
-    fn patch_of(&self, triangle: [u32; 3], winding: Winding) -> u32 {
+    fn patch_of(&self, triangle: [u32; 3], winding: f64) -> u32 {
         let nearest = self.nearest_patch(triangle);
         let [a, b, c] = triangle.map(|corner| self.places[corner as usize].patch);
         let near = [nearest, a, b, c];

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::assignment::Part;
-use super::domain_points::{DomainPoints, pattern_points, pattern_triangles};
+use super::domain_points::{DomainPoints, pattern_points};
 use super::matching::Match;
 use super::our_mesh::{OurPatch, is_thin, sorted};
 use geometry::tessellate::{Convention, HullFactors, Partitioning, weight_corner};
@@ -54,7 +54,7 @@ impl CornerOrder {
             points.nearest([weights[0], weights[1]], REACH).map(|vertex| own.firsts[vertex as usize])
         };
         let vertices: Vec<_> = pattern_points(factors, Convention::D3d11).into_iter().map(of_own).collect();
-        let pattern = triples(pattern_triangles(factors), |vertex| vertices[vertex as usize]);
+        let pattern = triples(factors.triangles(), |vertex| vertices[vertex as usize]);
         let theirs = triples(part.triangles.iter().copied(), |vertex| {
             found.our_vertices[vertex as usize].map(|vertex| own.firsts[vertex as usize])
         });

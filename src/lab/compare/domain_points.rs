@@ -1,9 +1,6 @@
 //! Points of a patch's domain, and which of them is nearest to a place.
 
-use geometry::tessellate::{
-    Convention, FIXED_ONE, PatchFactors, corner_weights, domain_plan, domain_point, domain_triangle, point_count,
-    triangle_count,
-};
+use geometry::tessellate::{Convention, FIXED_ONE, PatchFactors, corner_weights};
 
 /// Points of one patch, as the weights of its corners 0 and 1.
 #[derive(Clone, Debug, Default)]
@@ -41,16 +38,8 @@ impl DomainPoints {
 
 /// The tessellator's points of a patch with these factors, as the weights of the patch's corners 0 and 1.
 pub(super) fn pattern_points(factors: PatchFactors, convention: Convention) -> Vec<[f64; 2]> {
-    let plan = domain_plan(factors);
-    let point =
-        |i| corner_weights(convention, domain_point(&plan, i)).map(|weight| f64::from(weight) / f64::from(FIXED_ONE));
-    (0..point_count(factors)).map(point).collect()
-}
-
-/// The tessellator's triangles of a patch with these factors: indices of its points.
-pub(super) fn pattern_triangles(factors: PatchFactors) -> Vec<[u32; 3]> {
-    let plan = domain_plan(factors);
-    (0..triangle_count(factors)).map(|t| domain_triangle(&plan, t)).collect()
+    let place = |weight| f64::from(weight) / f64::from(FIXED_ONE);
+    factors.points().into_iter().map(|point| corner_weights(convention, point).map(place)).collect()
 }
 
 #[cfg(test)]

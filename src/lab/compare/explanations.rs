@@ -8,6 +8,7 @@ use super::cuts::cuts_of;
 use super::domain_points::{DomainPoints, pattern_points};
 use super::foreign::spread;
 use super::matching::Reach;
+use geometry::choice::texts;
 use geometry::tessellate::{
     Convention, HullFactors, Inputs, Partitioning, PatchFactors, Tessellation, domain_side, factor_side,
 };
@@ -33,13 +34,14 @@ pub enum Rule {
     All(f32),
 }
 
-/// How an inside factor follows from those of the edges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum InsideRule {
-    Least,
-    Mean,
-    Largest,
-    One,
+texts! {
+    /// How an inside factor follows from those of the edges.
+    pub enum InsideRule, fn text {
+        Least => "the least of the edges' factors",
+        Mean => "the mean of the edges' factors",
+        Largest => "the largest of the edges' factors",
+        One => "1",
+    }
 }
 
 /// Factors that give their points.
@@ -87,8 +89,6 @@ impl Rule {
 }
 
 impl InsideRule {
-    const ALL: [Self; 4] = [Self::Least, Self::Mean, Self::Largest, Self::One];
-
     fn apply(self, sides: [f32; 3]) -> f32 {
         match self {
             Self::Least => sides.into_iter().fold(f32::INFINITY, f32::min),

@@ -4,11 +4,11 @@ use glam::DVec3;
 use thiserror::Error;
 
 use super::corner_orders::CornerOrder;
-use super::explanations::{Explanation, InsideRule, Rule};
+use super::explanations::{Explanation, Rule};
 use super::matching::Farthest;
 use super::net_mistakes::NetMistake;
 use super::spaces::{Alignment, Space, SpaceKind};
-use geometry::numbers::{counted, exact, grouped, short};
+use geometry::numbers::{counted, exact, grouped, numbered, short};
 use geometry::tessellate::{Convention, Displacement, Partitioning, Tessellation};
 use inspect::settings::Choice;
 
@@ -38,7 +38,7 @@ pub enum Finding {
     /// A few vertices aren't where ours are.
     #[error(
         "{} moved, by up to {} object units: the farthest at {}, in triangle {triangle}.",
-        plural(*vertices, "vertex is", "vertices are"),
+        numbered(*vertices, "# [vertex is|vertices are]"),
         short(*distance),
         point(*farthest)
     )]
@@ -68,14 +68,14 @@ pub enum Finding {
     /// Patches with triangles of theirs, though we emit none.
     #[error(
         "{} triangles, though our tessellation leaves {} out: {}.",
-        plural(*patches, "patch has", "patches have"),
+        numbered(*patches, "# [patch has|patches have]"),
         if *patches == 1 { "it" } else { "them" },
         listed(triangles, *patches)
     )]
     AdditionalPatches { patches: u64, triangles: Vec<u32> },
-    #[error("{} missing, in {}.", plural(*count, "triangle is", "triangles are"), counted(*patches, "patch"))]
+    #[error("{} missing, in {}.", numbered(*count, "# [triangle is|triangles are]"), counted(*patches, "patch"))]
     MissingTriangles { count: u64, patches: u64 },
-    #[error("{} there more than once, in {}.", plural(*count, "triangle is", "triangles are"), counted(*patches, "patch"))]
+    #[error("{} there more than once, in {}.", numbered(*count, "# [triangle is|triangles are]"), counted(*patches, "patch"))]
     Doubled { count: u64, patches: u64 },
     #[error("{}", flipped_text(*count, *of))]
     Flipped { count: u64, of: u64 },
@@ -84,7 +84,7 @@ pub enum Finding {
     OtherTriangles { count: u64, patches: u64, order: Option<CornerOrder> },
     #[error(
         "{} a coordinate that is NaN or infinite, and {} compared.",
-        plural(*count, "triangle has", "triangles have"),
+        numbered(*count, "# [triangle has|triangles have]"),
         if *count == 1 { "isn't" } else { "aren't" }
     )]
     NotFinite { count: u64 },
@@ -181,11 +181,6 @@ impl Finding {
     }
 }
 
-/// A number and its noun.
-pub fn plural(count: u64, one: &str, more: &str) -> String {
-    format!("{} {}", grouped(count), if count == 1 { one } else { more })
-}
-
 pub fn point(place: DVec3) -> String {
     let [x, y, z] = (place + DVec3::ZERO).to_array().map(|coordinate| exact(coordinate as f32));
     format!("({x}, {y}, {z})")
@@ -228,7 +223,8 @@ fn space_text(space: &Space) -> String {
             (format!("{by_camera}, and divided by w"), unapplied)
         }
         SpaceKind::Turned { axis, degrees, scale, offset, is_mirrored } => {
-            let turned = turned_text(*axis, *degrees, *is_mirrored);
+            let mirrored = if *is_mirrored { "mirrored at the origin and " } else { "" };
+            let turned = format!("{mirrored}turned by {} degrees about {}", short(*degrees), rounded(*axis));
             (turned + &moved_part(*scale, *offset), unapplied("a model matrix is"))
         }
     };
@@ -265,11 +261,6 @@ fn axes_hint(alignment: &Alignment) -> &'static str {
         }
         _ => " Look at the convention of axes with which the mesh is imported.",
     }
-}
-
-fn turned_text(axis: DVec3, degrees: f64, is_mirrored: bool) -> String {
-    let mirrored = if is_mirrored { "mirrored at the origin and " } else { "" };
-    format!("{mirrored}turned by {} degrees about {}", short(degrees), rounded(axis))
 }
 
 /// Three numbers without what rounding leaves of 0.
@@ -350,16 +341,12 @@ fn explanation_text(explanation: Explanation, ours: Partitioning, convention: Co
     let Explanation { partitioning, rule } = explanation;
     let cut = (partitioning != ours)
         .then(|| format!("Its partitioning is {}, and ours is {}", partitioning.name(), ours.name()));
-    let of_edges = |which: &str| format!("Its inside factors are the {which} of the edges' factors");
     let rule = match rule {
         Rule::Same => None,
         Rule::Sides(sides) => Some(order_text(rule, sides, convention)),
         Rule::Down => Some("Its factors are rounded down to whole numbers".to_owned()),
         Rule::Nearest => Some("Its factors are rounded to the nearest whole numbers".to_owned()),
-        Rule::Inside(InsideRule::Least) => Some(of_edges("least")),
-        Rule::Inside(InsideRule::Mean) => Some(of_edges("mean")),
-        Rule::Inside(InsideRule::Largest) => Some(of_edges("largest")),
-        Rule::Inside(InsideRule::One) => Some("Its inside factors are 1".to_owned()),
+        Rule::Inside(rule) => Some(format!("Its inside factors are {}", rule.text())),
         Rule::Times(times) => Some(format!("Its factors are {times} times ours")),
         Rule::AtMost(most) => Some(format!("Its factors are limited to {most}")),
         Rule::All(all) => Some(format!("All its factors are {all}")),
@@ -386,7 +373,7 @@ fn unknown_text(found: &UnknownFactors) -> String {
         (0, inside) => format!(", inside {} and never on an edge", counted(inside, "patch")),
         (sides, 0) => format!(", with other cuts on {}", counted(sides, "side")),
         (sides, inside) => {
-            let [sides, inside] = [counted(sides, "side"), plural(inside, "patch differs", "patches differ")];
+            let [sides, inside] = [counted(sides, "side"), numbered(inside, "# [patch differs|patches differ]")];
             format!(", with other cuts on {sides}; {inside} inside alone")
         }
     };
@@ -402,7 +389,7 @@ fn unknown_text(found: &UnknownFactors) -> String {
 }
 
 fn triangles_text(count: u64, patches: u64, order: Option<CornerOrder>) -> String {
-    let (join, patches) = (plural(count, "triangle joins", "triangles join"), counted(patches, "patch"));
+    let (join, patches) = (numbered(count, "# [triangle joins|triangles join]"), counted(patches, "patch"));
     let start = format!("The points are the same, but {join} other points than ours, in {patches}");
     let turned = match order.map(CornerOrder::convention) {
         None => "diagonals are turned".to_owned(),

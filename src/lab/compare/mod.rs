@@ -25,7 +25,7 @@ mod twins;
 
 use glam::{DMat4, DVec3, Vec3};
 
-pub use findings::{Finding, plural, point};
+pub use findings::{Finding, point};
 pub use foreign::ForeignMesh;
 pub use matching::Farthest;
 pub use outcomes::SideDifference;

@@ -6,11 +6,11 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 
 use geometry::mesh::weld::weld_alike;
-use geometry::tessellate::{PatchFactors, Tessellated, Vertex, point_count, triangle_count, unpack_normal};
+use geometry::tessellate::{Tessellated, Vertex, point_count, triangle_count, unpack_normal};
 
 /// Our tessellation, patch by patch.
 pub(super) struct OurMesh<'a> {
-    tessellated: &'a Tessellated,
+    pub tessellated: &'a Tessellated,
     /// For each vertex the number of its point. Vertices that can't be told apart have the same.
     points: Vec<u32>,
     /// The first vertex and the first triangle of each patch, and the ends.
@@ -65,19 +65,6 @@ impl<'a> OurMesh<'a> {
             starts.push(end);
         }
         Self { tessellated, points, starts }
-    }
-
-    /// All triangles: indices of vertices.
-    pub(super) fn triangles(&self) -> &[[u32; 3]] {
-        &self.tessellated.triangles
-    }
-
-    pub(super) fn vertices(&self) -> &'a [Vertex] {
-        &self.tessellated.vertices
-    }
-
-    pub(super) fn factors(&self, patch: u32) -> PatchFactors {
-        self.tessellated.patch_factors[patch as usize]
     }
 
     /// Whether we emit triangles for a patch whose corners can be told apart.

@@ -73,12 +73,6 @@ pub struct SideCut {
     pub factor: f64,
 }
 
-impl SideCut {
-    fn new(cut: &Cut) -> Self {
-        Self { segments: cut.segments() as u64, factor: cut.factor() }
-    }
-}
-
 impl SideDifference {
     /// By how much the factors differ, as a ratio that is at least 1.
     fn ratio(&self) -> f64 {
@@ -283,14 +277,15 @@ impl<'a> Outcomes<'a> {
     fn side_differences(&self, patch: u32, theirs: &[Cut; 3]) -> Vec<SideDifference> {
         let (own, reach) = (self.our_mesh.patch(patch), self.reaches[patch as usize].domain);
         let positions = self.ours.topology.patch_positions(patch);
+        let shown = |cut: &Cut| SideCut { segments: cut.segments() as u64, factor: cut.factor() };
         let difference = |side: usize| {
             let own = Cut::new(side, own.weights.iter().copied(), reach);
             (!theirs[side].is_like(&own, reach)).then(|| SideDifference {
                 triangle: self.triangle(patch),
                 side: side as u32,
                 ends: [positions[side], positions[(side + 1) % 3]].map(|end| end.to_array()),
-                theirs: SideCut::new(&theirs[side]),
-                ours: SideCut::new(&own),
+                theirs: shown(&theirs[side]),
+                ours: shown(&own),
             })
         };
         (0..3).filter_map(difference).collect()
@@ -420,7 +415,7 @@ fn exact_reach(ours: &OurTessellation, patch: u32, exact: f64) -> f64 {
 
 /// The largest number of segments into which we cut a side, or the inside, of a patch.
 fn segments_of(our_mesh: &OurMesh, patch: u32) -> f64 {
-    let factors = our_mesh.factors(patch);
+    let factors = our_mesh.tessellated.patch_factors[patch as usize];
     let outside = factors.outside.into_iter().map(segments).max().unwrap_or(1);
     f64::from(outside.max((factors.inside & FACTOR_VALUE).div_ceil(1 << 16)).max(1))
 }

@@ -62,7 +62,8 @@ impl<'a> Twins<'a> {
         let (_, points) = weld_alike(own.len() + positions.len(), |i| (at(i), 0), tolerance);
         let (our_points, their_points) = points.split_at(own.len());
         let of = |triangle: &[u32; 3], points: &[u32]| triangle.map(|vertex| points[vertex as usize]);
-        let our_triangles = Triangle::sorted(ours.triangles().iter().map(|triangle| of(triangle, our_points)));
+        let our_triangles =
+            Triangle::sorted(ours.tessellated.triangles.iter().map(|triangle| of(triangle, our_points)));
         let their_triangles = Triangle::sorted(theirs.triangles.iter().map(|triangle| of(triangle, their_points)));
         let mut corners = vec![None; theirs.triangles.len()];
         let mut our_groups = our_triangles.chunk_by(|a, b| a.points == b.points).peekable();
@@ -72,7 +73,7 @@ impl<'a> Twins<'a> {
             let Some(our_group) = our_groups.next_if(|own| compared(own) == Ordering::Equal) else { continue };
             let their_corners = |their: u32| theirs.triangles[their as usize].map(|vertex| vertex as usize);
             let twin = |their: u32, own: u32| {
-                let corners = ours.triangles()[own as usize];
+                let corners = ours.tessellated.triangles[own as usize];
                 let corner =
                     |vertex: usize| corners.into_iter().find(|own| our_points[*own as usize] == their_points[vertex]);
                 let [a, b, c] = their_corners(their).map(corner);
@@ -90,7 +91,7 @@ impl<'a> Twins<'a> {
         let is_thin = theirs.triangles.iter().map(|triangle| is_thin(of(triangle, their_points))).collect();
         let mut at_points = vec![None; points.iter().max().map_or(0, |last| *last as usize + 1)];
         (0..).zip(our_points).for_each(|(vertex, point)| at_points[*point as usize] = Some(vertex));
-        let mut twins = Self { own: ours.vertices(), corners, places: Vec::new(), is_thin };
+        let mut twins = Self { own: &ours.tessellated.vertices, corners, places: Vec::new(), is_thin };
         let place = |point: &u32| at_points[*point as usize].map(|twin: u32| twins.place(twin));
         let mut places: Vec<Option<Place>> = their_points.iter().map(place).collect();
         for (triangle, corners) in theirs.triangles.iter().zip(&twins.corners) {

@@ -43,10 +43,6 @@ impl Tile {
             crease_band: 0.0,
         }
     }
-
-    fn named(self, name: &str, about: &str) -> Self {
-        Self { name: name.to_owned(), about: about.to_owned(), ..self }
-    }
 }
 
 /// All exhibits, in the order of the steps in which a patch is made: surface, creases, normals, pattern, heights.
@@ -74,7 +70,8 @@ fn surfaces() -> Exhibit {
 
 fn creases() -> Exhibit {
     let of = |surface| Tile::new(surface, Tessellation { surface, ..usual() });
-    let band = Tile { crease_band: 0.02, ..of(Surface::Pn) };
+    let (name, about) = ("pn --crease-band 0.02", "A crease band, for PN triangles (Vlachos et al. 2001).");
+    let band = Tile { name: name.to_owned(), about: about.to_owned(), crease_band: 0.02, ..of(Surface::Pn) };
     Exhibit {
         name: "creases",
         title: "Creases",
@@ -83,12 +80,7 @@ fn creases() -> Exhibit {
                 planes share; or take the mean of both sides' control points.",
         shape: Shape::Cylinder,
         overlays: Overlays { cracks: true, ..Overlays::default() },
-        tiles: vec![
-            of(Surface::Pn),
-            band.named("pn --crease-band 0.02", "A crease band, for PN triangles (Vlachos et al. 2001)."),
-            of(Surface::PnCrease),
-            of(Surface::PnAen),
-        ],
+        tiles: vec![of(Surface::Pn), band, of(Surface::PnCrease), of(Surface::PnAen)],
     }
 }
 

@@ -9,7 +9,6 @@ use std::sync::Arc;
 
 use glam::Vec3;
 use image::RgbImage;
-use thiserror::Error;
 
 pub(crate) use exhibits::Tile;
 pub use exhibits::{Exhibit, exhibits};
@@ -22,22 +21,12 @@ use geometry::tessellate::{Surface, Tessellation, displacement_reach};
 use gpu::{GpuError, Timing};
 use inspect::engine::{Engine, Loaded, Preparation, load};
 use inspect::measure::EmittedChunk;
-use inspect::plot::{ChartError, contact_sheet};
+use inspect::plot::contact_sheet;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Settings};
+use inspect::shot::ShotError;
 use load::{LoadError, Source};
 use tile::draw_tile;
-
-/// Why there is no gallery.
-#[derive(Debug, Error)]
-pub enum GalleryError {
-    #[error(transparent)]
-    Load(#[from] LoadError),
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    #[error(transparent)]
-    Chart(#[from] ChartError),
-}
 
 /// Width and height of one tile, in px.
 const TILE: [u32; 2] = [300, 240];
@@ -87,7 +76,7 @@ impl<'a> Gallery<'a> {
         &mut self,
         exhibit: &Exhibit,
         mut starting: impl FnMut(usize),
-    ) -> Result<(RgbImage, Vec<TileResults>), GalleryError> {
+    ) -> Result<(RgbImage, Vec<TileResults>), ShotError> {
         let engine = self.engine;
         let target = Target::new(&engine.gpu, TILE)?;
         let camera = self.camera(exhibit, &target)?;
@@ -111,7 +100,7 @@ impl<'a> Gallery<'a> {
     }
 
     /// The warnings about the mesh that the user named: see [`load::LoadedMesh::warnings`].
-    pub fn warnings(&mut self) -> Result<Vec<String>, GalleryError> {
+    pub fn warnings(&mut self) -> Result<Vec<String>, ShotError> {
         match self.options.source.clone() {
             Some(source) => Ok(self.load(source, 0.0)?.warnings.clone()),
             None => Ok(Vec::new()),
@@ -120,7 +109,7 @@ impl<'a> Gallery<'a> {
 
     /// The camera for all tiles of an exhibit, so that they can be compared. The mesh with all surfaces of the exhibit fits
     /// into its picture, with room for displacement.
-    fn camera(&mut self, exhibit: &Exhibit, target: &Target) -> Result<Camera, GalleryError> {
+    fn camera(&mut self, exhibit: &Exhibit, target: &Target) -> Result<Camera, ShotError> {
         let loaded = self.prepared(exhibit, 0.0)?;
         let mut scene = self.engine.scene(&loaded, ARENA_BYTES)?;
         let framing = Camera::framing(&scene.bounds, target.viewport());

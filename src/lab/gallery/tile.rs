@@ -3,7 +3,7 @@
 use image::{DynamicImage, RgbImage};
 
 use geometry::tessellate::{Inputs, Tessellation};
-use gpu::{DRAWING, GpuError, PassTime, Timing};
+use gpu::{GpuError, Timing, ms_of};
 use inspect::engine::{Engine, Loaded, MeasurementResults, Measurements, Runs};
 use inspect::measure::{CrackedEdge, Measured};
 use inspect::render::layout::{CRACK_COLOR, linear};
@@ -87,8 +87,8 @@ pub(super) fn draw_tile(
         max_gap: measured.cracks.max_gap(),
         different_normals: measured.cracks.different_normals,
         folds: measured.folds,
-        tessellation_ms: ms(&passes, |pass| !DRAWING.contains(&pass)),
-        draw_ms: ms(&passes, |pass| DRAWING.contains(&pass)),
+        tessellation_ms: ms_of(&passes, false),
+        draw_ms: ms_of(&passes, true),
     };
     Ok((DynamicImage::from(target.read(&engine.gpu)?).to_rgb8(), results))
 }
@@ -103,8 +103,4 @@ fn crack_lines(measured: &Measured, loaded: &Loaded, gap_px: impl Fn(&CrackedEdg
     let [visible_width, narrow_width] = HALF_WIDTHS;
     lines.iter_mut().for_each(|line| line.half_width = if line.color == narrow { narrow_width } else { visible_width });
     lines
-}
-
-fn ms(passes: &[PassTime], which: impl Fn(&str) -> bool) -> f64 {
-    passes.iter().filter(|time| which(time.pass)).map(|time| time.ms).sum()
 }

@@ -37,7 +37,7 @@ impl Case {
     /// The case, ready to run.
     pub fn subject(&self) -> Subject {
         let Self { name, about, mesh, weld, probe, view } = *self;
-        Subject { name: name.to_owned(), about: about.to_owned(), mesh: mesh(), weld, probe, view }
+        Subject { about: about.to_owned(), probe, view, ..Subject::new(name.to_owned(), mesh(), weld) }
     }
 }
 

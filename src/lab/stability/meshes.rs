@@ -65,8 +65,8 @@ pub(super) fn parts() -> Mesh {
     let part = |triangle: u32| (triangle / 2 + triangle / 16 + triangle / 128 * 3) % count;
     let ranges = (0..shape.triangles.len() as u32).map(|own| PartRange { triangles: own..own + 1, part: part(own) });
     let styles = Surface::ALL.into_iter().zip([0.25, 1.0, 2.0].into_iter().cycle());
-    let styles = styles.map(|(surface, detail)| PartStyle { surface: Some(surface), detail: Some(detail) });
-    Mesh { part_ranges: ranges.collect(), part_styles: styles.collect(), ..shape }
+    let style = |(surface, detail)| PartStyle { surface: Some(surface), detail: Some(detail), ..PartStyle::default() };
+    Mesh { part_ranges: ranges.collect(), part_styles: styles.map(style).collect(), ..shape }
 }
 
 /// An icosphere in which every third triangle is wound the other way.

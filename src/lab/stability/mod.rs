@@ -37,6 +37,8 @@ pub struct Subject {
     pub mesh: Mesh,
     /// The weld tolerance, as a part of the bounding diagonal.
     pub weld: f32,
+    /// Those of loading it.
+    pub warnings: Vec<String>,
     pub probe: Probe,
     pub view: CaseView,
 }
@@ -44,7 +46,8 @@ pub struct Subject {
 impl Subject {
     /// A mesh that is no case: only the agreement of edges is measured.
     pub fn new(name: String, mesh: Mesh, weld: f32) -> Self {
-        Self { name, about: String::new(), mesh, weld, probe: Probe::Edges, view: DEFAULT_VIEW }
+        let (about, warnings) = (String::new(), Vec::new());
+        Self { name, about, mesh, weld, warnings, probe: Probe::Edges, view: DEFAULT_VIEW }
     }
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::{Quantity, Row, Subject};
+use geometry::choice::texts;
 use load::markdown;
 
 /// The results of one method on one case: for each quantity, the worst number over devices and partitionings.
@@ -14,26 +15,20 @@ pub struct Line {
     pub verdict: Verdict,
 }
 
-/// The verdict on one method and case.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
-    /// Everything measured holds.
-    Holds,
-    /// Something doesn't hold, but this program doesn't promise it: a published method fails there.
-    Fails,
-    /// Something doesn't hold that this program promises.
-    BreaksPromise,
+texts! {
+    /// The verdict on one method and case.
+    #[derive(PartialOrd, Ord)]
+    pub enum Verdict, fn text {
+        /// Everything measured holds.
+        Holds => "holds",
+        /// Something doesn't hold, but this program doesn't promise it: a published method fails there.
+        Fails => "fails",
+        /// Something doesn't hold that this program promises.
+        BreaksPromise => "BREAKS A PROMISE",
+    }
 }
 
 impl Verdict {
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Holds => "holds",
-            Self::Fails => "fails",
-            Self::BreaksPromise => "BREAKS A PROMISE",
-        }
-    }
-
     fn new(row: &Row) -> Self {
         match (row.holds, row.promised) {
             (true, _) => Self::Holds,
@@ -105,7 +100,7 @@ fn number(x: f64) -> String {
 }
 
 /// What the columns mean.
-pub const LEGEND: &str = "points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
+pub const LEGEND: &str = "Points: edge points whose positions differ between sides in at least one bit; factors: edges whose \
      sides got different factors; normals: edge points whose normals differ although the mesh's normals agree; not finite: \
      vertices with infinite or NaN coordinates; leaks: pixels that show the inside of a closed mesh (- where they can't be counted). Each \
      number is the worst over factors, views, partitionings and devices.";
@@ -148,7 +143,7 @@ pub fn page(sections: &[(&Subject, Option<String>)], rows: &[Row]) -> String {
          violet, T-junctions yellow.\n\n{}\n",
         devices.join(", "),
         super::Method::all().into_iter().map(super::Method::name).collect::<Vec<_>>().join(", "),
-        capitalised(LEGEND)
+        LEGEND
     );
     let lines = lines(rows);
     for (Subject { name, about, .. }, picture) in sections {
@@ -171,11 +166,6 @@ pub fn page(sections: &[(&Subject, Option<String>)], rows: &[Row]) -> String {
         text.push('\n');
     }
     text
-}
-
-fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 #[cfg(test)]

@@ -121,13 +121,11 @@ impl<'a> Running<'a> {
         topology: Arc<Topology>,
         engine: Option<&'a Engine>,
     ) -> Result<Self, GpuError> {
-        let device = match engine {
-            Some(engine) => {
-                let scene = engine.scene_of(mesh.clone(), topology.clone(), ARENA_BYTES)?;
-                Some((engine, scene, Target::new(&engine.gpu, views::SIZE)?))
-            }
-            None => None,
+        let on = |engine: &'a Engine| -> Result<_, GpuError> {
+            let scene = engine.scene_of(mesh.clone(), topology.clone(), ARENA_BYTES)?;
+            Ok((engine, scene, Target::new(&engine.gpu, views::SIZE)?))
         };
+        let device = engine.map(on).transpose()?;
         let bounds = bounds_through(&mesh, Some(0));
         Ok(Self { case, mesh, topology, bounds, device })
     }

@@ -34,10 +34,6 @@ const fn px(length: i32) -> i32 {
     length * DENSITY as i32
 }
 
-fn font(size: i32) -> TextStyle<'static> {
-    plot::font(px(size))
-}
-
 fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     picture.fill(&WHITE)?;
     let (low, high) = (f64::from(FACTOR_RANGE.least), f64::from(FACTOR_RANGE.most));
@@ -60,7 +56,7 @@ fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperRight)
-        .label_font(font(14))
+        .label_font(plot::font(px(14)))
         .legend_area_size(px(40))
         .margin(px(8))
         .background_style(WHITE.mix(0.9))
@@ -92,8 +88,8 @@ fn axes(chart: &mut Chart, sweeps: &[Sweep]) -> Drawn {
         .configure_mesh()
         .x_desc("Tessellation factor (segments an edge)")
         .y_desc(format!("{jump} (mesh diagonals)"))
-        .axis_desc_style(font(15))
-        .label_style(font(14))
+        .axis_desc_style(plot::font(px(15)))
+        .label_style(plot::font(px(14)))
         .x_labels(7)
         .y_labels(10)
         .x_label_formatter(&|factor| format!("{factor:.0}"))

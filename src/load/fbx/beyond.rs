@@ -107,12 +107,10 @@ pub(super) fn within<T: Copy>(
     let mut all = [keys, samples].concat();
     // A stable sort: of a key frame and a sample at the same time the key frame comes first.
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let start = all.partition_point(|key| key.0 < span.begin);
+    let mut start = all.partition_point(|key| key.0 < span.begin);
     if start > 0 && all.get(start).is_none_or(|key| key.0 > span.begin) {
-        all[start - 1] = (span.begin, at(span.begin));
-        all.drain(..start - 1);
-    } else {
-        all.drain(..start);
+        start -= 1;
+        all[start] = (span.begin, at(span.begin));
     }
-    all
+    all.split_off(start)
 }

@@ -4,8 +4,7 @@
 use std::collections::HashMap;
 
 use ufbx::{
-    AnimLayer, AnimOpts, AnimStack, BakeOpts, BakedAnim, BakedNode, BakedVec3, BlendChannel, ElementType, ErrorType,
-    Scene,
+    AnimLayer, AnimOpts, AnimStack, BakeOpts, BakedAnim, BakedNode, BakedVec3, BlendChannel, ElementType, Scene,
 };
 
 use super::beyond::{Curves, Span, within};
@@ -108,12 +107,12 @@ impl Reader<'_> {
         });
         let some = some.transpose()?;
         let anim = some.as_deref().unwrap_or(&stack.anim);
-        let baked = match ufbx::bake_anim(self.scene, anim, options) {
+        let baked = match ufbx::bake_anim(self.scene, anim, options).map_err(|error| refused(&error, self.budget)) {
             Ok(baked) => baked,
-            Err(error) if is_too_large(&error) => {
+            Err(ReadError::TooLarge { .. }) => {
                 return Ok(Err("its samples take more memory than is left (--max-memory allows more)".to_owned()));
             }
-            Err(error) => return Err(refused(&error, self.budget)),
+            Err(error) => return Err(error),
         };
         let bytes = baked.metadata.result_memory_used as u64;
         self.budget.hold(bytes)?;
@@ -292,25 +291,15 @@ fn interpolated(keys: &[(f64, f64)], time: f64) -> Option<f64> {
     Some(from.1 + part * (to.1 - from.1))
 }
 
-/// Whether ufbx needed more memory than it may take.
-fn is_too_large(error: &ufbx::Error) -> bool {
-    matches!(error.type_, ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory)
-}
-
 /// Returns the times at which a channel's weight passes that of a shape in between, where its shapes' weights have a bend.
 fn crossings(channel: &BlendChannel, keys: &[(f64, f64)]) -> Vec<f64> {
-    let mut times = Vec::new();
     // At 0 a channel bends too, if it has shapes on both sides.
     let bends = channel.keyframes.iter().map(|key| key.target_weight).chain([0.0]);
     let bends: Vec<f64> = if channel.keyframes.len() > 1 { bends.collect() } else { Vec::new() };
-    for pair in keys.windows(2) {
-        let [from, to] = [pair[0], pair[1]];
-        for bend in &bends {
-            let part = (bend - from.1) / (to.1 - from.1);
-            if part > 0.0 && part < 1.0 {
-                times.push(from.0 + part * (to.0 - from.0));
-            }
-        }
-    }
-    times
+    let crossed = |[from, to]: &[(f64, f64); 2]| {
+        let parts = bends.iter().map(|bend| (bend - from.1) / (to.1 - from.1));
+        let parts = parts.filter(|part| *part > 0.0 && *part < 1.0);
+        parts.map(|part| from.0 + part * (to.0 - from.0)).collect::<Vec<_>>()
+    };
+    keys.array_windows().flat_map(crossed).collect()
 }

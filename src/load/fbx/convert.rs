@@ -20,6 +20,11 @@ pub(super) fn quaternion(q: &ufbx::Quat) -> DQuat {
     DQuat::from_xyzw(q.x, q.y, q.z, q.w)
 }
 
+/// Returns what a list has for a corner of a mesh; none if an index leads nowhere.
+pub(super) fn at_corner<'a, T>(values: &'a [T], indices: &[u32], corner: usize) -> Option<&'a T> {
+    indices.get(corner).and_then(|&index| values.get(index as usize))
+}
+
 /// The matrix's fourth row is (0, 0, 0, 1).
 pub(super) fn matrix(m: &ufbx::Matrix) -> DMat4 {
     DMat4::from_cols(

@@ -7,17 +7,15 @@ use crate::notes::{Notes, counted};
 
 /// Adds a warning for each kind of thing that is left out.
 pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
-    let [curves, surfaces] = without_polygons(scene);
-    let caches = scene.cache_deformers.len() + scene.cache_files.len();
     let meshes = |has: fn(&Mesh) -> bool| scene.meshes.into_iter().filter(|mesh| has(mesh)).count();
     let dual = |method| matches!(method, SkinningMethod::DualQuaternion | SkinningMethod::BlendedDqLinear);
     let dual = scene.skin_deformers.into_iter().filter(|skin| dual(skin.skinning_method)).count();
     notes.extend(counted([
         (scene.cameras.len() + scene.stereo_cameras.len(), "cameras, which aren't read"),
         (scene.lights.len(), "lights, which aren't read"),
-        (curves, "lines and curves, left out"),
-        (surfaces, "NURBS and procedural surfaces, which aren't read"),
-        (caches, "geometry caches, which aren't read"),
+        (curves(scene), "lines and curves, left out"),
+        (scene.procedural_geometries.len(), "procedural surfaces, which aren't read"),
+        (scene.cache_deformers.len() + scene.cache_files.len(), "geometry caches, which aren't read"),
         (scene.constraints.len(), "constraints, left out; the animation shows what the exporter has baked"),
         (dual, "skins for dual quaternions, whose joints are blended linearly"),
         (meshes(|mesh| mesh.skin_deformers.len() > 1), "meshes with several skins, of which the first is used"),
@@ -29,10 +27,8 @@ pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
     }
 }
 
-/// Returns how many curves a file has, and how many surfaces that have no polygons.
-fn without_polygons(scene: &Scene) -> [usize; 2] {
-    let curves = scene.nurbs_curves.len() + scene.line_curves.len();
-    [curves, scene.nurbs_surfaces.len() + scene.procedural_geometries.len()]
+fn curves(scene: &Scene) -> usize {
+    scene.nurbs_curves.len() + scene.line_curves.len()
 }
 
 /// Returns what the parser did; none if nobody needs to know.
@@ -56,14 +52,14 @@ fn repaired(warning: WarningType) -> Option<&'static str> {
 
 /// Returns what the file holds, for the error that says that there are no triangles.
 pub(super) fn holds(scene: &Scene, placed: &Placed) -> String {
-    let [curves, surfaces] = without_polygons(scene);
+    let surfaces = scene.nurbs_surfaces.len() + scene.procedural_geometries.len();
     let convert = "(export them as polygons)";
     let kinds = [
         (scene.nodes.len(), "nodes", ""),
         (scene.meshes.len(), "meshes", ""),
         (placed.hidden, "nodes with meshes that it hides", "(--show-hidden shows them)"),
         (surfaces, "NURBS and procedural surfaces", convert),
-        (curves, "lines and curves", convert),
+        (curves(scene), "lines and curves", convert),
     ];
     let held = kinds.into_iter().filter(|(count, what, _)| *count > 0 || *what == "meshes");
     let held: Vec<_> = held.map(|(count, what, help)| format!("{count} {what} {help}").trim_end().to_owned()).collect();

@@ -132,6 +132,12 @@ impl<'a> LookSource<'a> {
         filters.into_iter().filter_map(|(map, filter)| Some((map?.texture, filter)))
     }
 
+    /// Returns the set of texture coordinates of each map.
+    pub(super) fn sets(&self) -> impl Iterator<Item = usize> {
+        let maps = [self.base, self.normal, self.roughness, self.metalness, self.emission, self.occlusion, self.height];
+        maps.into_iter().flatten().map(|map| map.uvs.set)
+    }
+
     /// Whether its corners need more than position, normal and the base colour's texture coordinates.
     pub(super) fn needs_details(&self) -> bool {
         let others = [&self.roughness, &self.metalness, &self.emission, &self.occlusion];

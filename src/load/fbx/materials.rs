@@ -1,6 +1,6 @@
 //! Makes the mesh's materials: each when a polygon first uses it.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
 use ufbx::{Mesh, Node, RefList};
@@ -25,8 +25,6 @@ pub(super) struct Materials<'a> {
     heights: ModelImages<'a, u32>,
     /// How many object units one unit of the file is.
     unit: f32,
-    /// By what isn't drawn, the names of the materials that have it.
-    undrawn: BTreeMap<&'static str, Vec<String>>,
     notes: Notes,
 }
 
@@ -50,7 +48,6 @@ impl<'a> Materials<'a> {
             resolved: HashMap::new(),
             heights: ModelImages::new(files),
             unit,
-            undrawn: BTreeMap::new(),
             notes: Notes::default(),
         }
     }
@@ -67,11 +64,16 @@ impl<'a> Materials<'a> {
         self.heights.reserved = reserved;
         let mut seen = HashSet::new();
         let sources = meshes.flat_map(|(node, mesh)| {
-            let is_new = seen.insert(mesh.element.typed_id);
+            let is_new = seen.insert(std::ptr::from_ref(mesh));
             let own = mesh.materials.iter().filter(move |_| is_new);
             node.materials.iter().chain(own).map(move |material| LookSource::new(material, mesh))
         });
-        let images: Vec<_> = sources.flat_map(|source| source.images().collect::<Vec<_>>()).collect();
+        let mut images = Vec::new();
+        for source in sources {
+            // Textures can be scaled down to the room that heights leave.
+            self.height(&source)?;
+            images.extend(source.images());
+        }
         Ok(self.textures.read(images.into_iter(), reserved)?)
     }
 
@@ -86,37 +88,25 @@ impl<'a> Materials<'a> {
         mesh: &Mesh,
         faces: &mut FaceBuilder,
     ) -> Result<Resolved, ReadError> {
-        let Some(material) = of_node(node, mesh, index) else {
-            let key = (None, Vec::new());
-            return match self.resolved.get(&key) {
-                Some(&resolved) => Ok(resolved),
-                None => self.add(key, Material::plain("default", [1.0; 4]), MapUvs::default(), faces),
-            };
-        };
-        let source = LookSource::new(material, mesh);
-        let maps = [&source.base, &source.normal, &source.roughness, &source.metalness, &source.emission];
-        let sets =
-            maps.into_iter().chain([&source.occlusion, &source.height]).flatten().map(|map| map.uvs.set).collect();
-        let key = (Some(material.element.typed_id), sets);
+        // Nodes may have others than their mesh.
+        let own = node.materials.get(index as usize).or_else(|| mesh.materials.get(index as usize));
+        let source = own.map(|own| LookSource::new(own, mesh));
+        let sets = source.iter().flat_map(LookSource::sets).collect();
+        let key = (own.map(|own| own.element.typed_id), sets);
         if let Some(&resolved) = self.resolved.get(&key) {
             return Ok(resolved);
         }
         self.budget.hold(size_of::<Material>() as u64)?;
-        for what in &source.undrawn {
-            self.undrawn.entry(what).or_default().push(source.name.clone());
-        }
-        let height = self.height(&source)?;
-        let material = Material { height, ..self.make(&source) };
-        self.add(key, material, source.own_uvs(), faces)
-    }
-
-    fn add(
-        &mut self,
-        key: (Option<u32>, Vec<usize>),
-        material: Material,
-        own: MapUvs,
-        faces: &mut FaceBuilder,
-    ) -> Result<Resolved, ReadError> {
+        let (material, own) = match &source {
+            Some(source) => {
+                let undrawn = source.undrawn.iter();
+                let said = |what| format!("material \"{}\" has {what}, which isn't drawn.", source.name);
+                self.notes.extend(undrawn.map(said));
+                let height = self.height(source)?;
+                (Material { height, ..self.make(source) }, source.own_uvs())
+            }
+            None => (Material::plain("default", [1.0; 4]), MapUvs::default()),
+        };
         let sets = material.look.uv_sets();
         let resolved = Resolved { index: faces.material(material)?, own, sets };
         self.resolved.insert(key, resolved);
@@ -145,8 +135,7 @@ impl<'a> Materials<'a> {
             look.emissive = [0.0; 3];
         }
         let LookSource { name, base_color, double_sided, .. } = source;
-        let (name, base_color, double_sided) = (name.clone(), *base_color, *double_sided);
-        Material { name, base_color, texture, sampling, double_sided, look, height: None, triangles: 0..0 }
+        Material { texture, sampling, double_sided: *double_sided, look, ..Material::plain(name, *base_color) }
     }
 
     fn height(&mut self, source: &LookSource) -> Result<Option<HeightMap>, ReadError> {
@@ -155,9 +144,8 @@ impl<'a> Materials<'a> {
         };
         let names = [&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name];
         let is_elsewhere = map.uvs != source.own_uvs();
-        let read = self.heights.read(file.file_index, names, is_elsewhere, || self.textures.bytes(file))?;
-        let amount = HeightAmount::from_factor(source.height_factor * self.unit, 0.0);
-        Ok(read.map(|map| map.with_amount(amount)))
+        let used = (HeightAmount::from_factor(source.height_factor * self.unit, 0.0), sampling(map.texture).wrap);
+        Ok(self.heights.read(file.file_index, names, used, is_elsewhere, || self.textures.bytes(file))?)
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.
@@ -211,9 +199,8 @@ impl<'a> Materials<'a> {
             _ if map.uvs == source.own_uvs() => MapUv::Own,
             0 | 1 => MapUv::Set(set, transform),
             _ => {
-                let (name, said) = (&source.name, "only the first two sets are read for it; the first is used");
-                let has = format!("the {what} of material \"{name}\" has a third set of texture coordinates");
-                self.notes.push(format!("{has}, but {said}."));
+                let has = format!("the {what} of material \"{}\" has a third set of texture coordinates", source.name);
+                self.notes.push(format!("{has}, but only the first two sets are read for it; the first is used."));
                 MapUv::Set(0, transform)
             }
         };
@@ -223,37 +210,20 @@ impl<'a> Materials<'a> {
 
     /// Returns what was repaired or left out.
     pub(super) fn into_notes(self) -> Notes {
-        const NAMED: usize = 5;
         let mut notes = self.notes;
         notes.extend(self.heights.warnings);
-        for (what, materials) in self.undrawn {
-            let mut names: Vec<_> = materials.iter().take(NAMED).map(|name| format!("\"{name}\"")).collect();
-            if materials.len() > NAMED {
-                names.push(format!("and {} more", materials.len() - NAMED));
-            }
-            notes.push(format!("materials with {what}, which isn't drawn: {}.", names.join(", ")));
-        }
         notes
     }
 }
 
-/// Returns a material of a node's mesh by its index there. Nodes may have others than their mesh.
-fn of_node<'a>(node: &'a Node, mesh: &'a Mesh, index: u32) -> Option<&'a ufbx::Material> {
-    let own = node.materials.get(index as usize).or_else(|| mesh.materials.get(index as usize));
-    own.map(AsRef::as_ref)
-}
-
 /// Whether corners of the meshes of these nodes need more than position, normal and the base colour's texture coordinates.
-pub(super) fn need_details<'a>(meshes: impl Iterator<Item = (&'a Node, &'a Mesh)>) -> bool {
+pub(super) fn need_details<'a>(mut meshes: impl Iterator<Item = (&'a Node, &'a Mesh)>) -> bool {
     let needed = |materials: &RefList<ufbx::Material>, mesh: &Mesh| {
         materials.into_iter().any(|material| LookSource::new(material, mesh).needs_details())
     };
     let mut seen = HashSet::new();
-    for (node, mesh) in meshes {
-        let is_new = seen.insert(mesh.element.typed_id);
-        if needed(&node.materials, mesh) || is_new && (mesh.vertex_color.exists || needed(&mesh.materials, mesh)) {
-            return true;
-        }
-    }
-    false
+    meshes.any(|(node, mesh)| {
+        let is_new = seen.insert(std::ptr::from_ref(mesh));
+        needed(&node.materials, mesh) || is_new && (mesh.vertex_color.exists || needed(&mesh.materials, mesh))
+    })
 }

@@ -30,9 +30,7 @@ fn channel_name(channel: &BlendChannel) -> String {
 /// Returns the weights of a mesh's targets at rest.
 pub(super) fn rest_weights(mesh: &Mesh, selected: &Selection) -> Vec<f32> {
     let mut weights = Vec::new();
-    for channel in channels(mesh) {
-        shape_weights(channel, rest_weight(channel, selected), &mut weights);
-    }
+    channels(mesh).for_each(|channel| shape_weights(channel, rest_weight(channel, selected), &mut weights));
     weights
 }
 

@@ -7,13 +7,14 @@ use ufbx::{Element, Mesh, Node, Scene};
 
 use super::convert::placement;
 use super::morphs;
+use super::nurbs::Meshes;
 use crate::attachment::{LocalTransform, SceneNodes};
 use crate::memory_budget::Budget;
 use crate::model_file::ModelFile;
 use crate::notes::Notes;
 use crate::parts::level_names;
 use crate::read_error::ReadError;
-use geometry::mesh::rig::{Clip, Placement};
+use geometry::mesh::rig::Clip;
 
 /// How many corners, vertices, joints and shapes all nodes may have, and how many more for each byte of the file.
 const MOST_ITEMS: u64 = 1 << 24;
@@ -39,17 +40,22 @@ impl Placed {
     ///
     /// # Errors
     /// [`ReadError::TooMany`] if so many nodes have large meshes that reading them would take very long.
-    pub(super) fn new(scene: &Scene, file: &ModelFile, budget: &Budget, notes: &mut Notes) -> Result<Self, ReadError> {
-        check_instances(scene, budget)?;
+    pub(super) fn new(
+        meshes: &Meshes,
+        file: &ModelFile,
+        budget: &Budget,
+        notes: &mut Notes,
+    ) -> Result<Self, ReadError> {
+        check_instances(meshes, budget)?;
+        let scene = meshes.scene;
         let nodes = &scene.nodes;
         let parents: Vec<Option<usize>> =
             nodes.into_iter().map(|node| node.parent.as_ref().map(|parent| index(parent))).collect();
         let mut order: Vec<usize> = (0..nodes.len()).collect();
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
-        let rest: Vec<Placement> = nodes.into_iter().map(|node| placement(&node.local_transform)).collect();
         let is_hidden = hidden(scene, file.selected.import.show_hidden, &order, &parents);
-        let with_mesh = || (0..nodes.len()).filter(|&node| nodes[node].mesh.is_some());
+        let with_mesh = || (0..nodes.len()).filter(|&node| meshes.of(&nodes[node]).is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
         if hidden > 0 {
@@ -57,12 +63,12 @@ impl Placed {
         }
         let carries = carries_shown(scene, &shown, &order, &parents);
         let carries_mesh = SceneNodes::carrying(with_mesh(), &order, &parents);
-        let morphed = shown.iter().filter_map(|&node| {
+        let with_weights = |&node: &usize| {
             let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?, &file.selected);
             (!rest.is_empty()).then_some((node, rest))
-        });
-        let morphed = morphed.collect();
-        let local = rest.into_iter().map(LocalTransform::Placement).collect();
+        };
+        let morphed = shown.iter().filter_map(with_weights).collect();
+        let local = nodes.into_iter().map(|node| LocalTransform::Placement(placement(&node.local_transform))).collect();
         let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
         let levels = groups.flat_map(|group| group.children.into_iter().enumerate().skip(1));
         let levels = levels.map(|(number, level)| (index(level), number)).collect();
@@ -80,7 +86,7 @@ impl Placed {
 
 /// Adds up what is read for every node with a mesh: corners, vertices, joints, materials, shapes and their offsets. A small file may
 /// have many nodes that share a large mesh.
-fn check_instances(scene: &Scene, budget: &Budget) -> Result<(), ReadError> {
+fn check_instances(meshes: &Meshes, budget: &Budget) -> Result<(), ReadError> {
     let of_mesh = |mesh: &Mesh| {
         let keys = || morphs::channels(mesh).flat_map(|channel| channel.keyframes.iter());
         let offsets = keys().fold(0_u64, |sum, key| sum.saturating_add(1 + key.shape.offset_vertices.len() as u64));
@@ -88,16 +94,14 @@ fn check_instances(scene: &Scene, budget: &Budget) -> Result<(), ReadError> {
         let lists = mesh.num_indices + mesh.num_vertices + joints + mesh.materials.len();
         offsets.saturating_add(lists as u64).saturating_add(morphs::channels(mesh).count() as u64)
     };
-    let costs: Vec<u64> = scene.meshes.into_iter().map(of_mesh).collect();
+    let costs: Vec<u64> = meshes.scene.meshes.into_iter().map(of_mesh).collect();
     let limit = MOST_ITEMS.saturating_add(budget.files().saturating_mul(ITEMS_A_BYTE));
-    let meshes = scene.nodes.into_iter().filter_map(|node| node.mesh.as_ref());
-    let cost = |mesh: &Mesh| costs.get(mesh.element.typed_id as usize).copied().unwrap_or_default();
-    match meshes.fold(0_u64, |sum, mesh| sum.saturating_add(cost(mesh))) {
-        all if all > limit => {
-            Err(ReadError::TooMany { limit, what: "corners, vertices, joints and shapes in all copies of meshes" })
-        }
-        _ => Ok(()),
-    }
+    let shown = meshes.scene.nodes.into_iter().filter_map(|node| meshes.of(node));
+    // Polygons of surfaces aren't in the scene's list.
+    let cost = |mesh: &Mesh| costs.get(mesh.element.typed_id as usize).copied().unwrap_or_else(|| of_mesh(mesh));
+    let all = shown.fold(0_u64, |sum, mesh| sum.saturating_add(cost(mesh)));
+    let what = "corners, vertices, joints and shapes in all copies of meshes";
+    if all > limit { Err(ReadError::TooMany { limit, what }) } else { Ok(()) }
 }
 
 /// Returns a node's index in the scene.

@@ -27,11 +27,9 @@ impl<'a> Skin<'a> {
     pub(super) fn new(node: &Node, mesh: &'a Mesh, global: &[DMat4]) -> Option<Self> {
         let deformer = mesh.skin_deformers.into_iter().next()?;
         let placed = |node: &Node| global[nodes::index(node)] * matrix(&node.geometry_to_node);
-        let place = match mesh.element.instances.first() {
-            Some(first) if nodes::index(first) != nodes::index(node) => placed(node) * placed(first).inverse(),
-            _ => DMat4::IDENTITY,
-        };
-        let place = if place.is_finite() { place } else { DMat4::IDENTITY };
+        let first = mesh.element.instances.first().filter(|first| nodes::index(first) != nodes::index(node));
+        let place = first.map(|first| placed(node) * placed(first).inverse()).filter(DMat4::is_finite);
+        let place = place.unwrap_or(DMat4::IDENTITY);
         let mut joints = SkinJoints { nodes: Vec::new(), inverse_binds: Vec::new(), place };
         let joint_of = deformer.clusters.into_iter().map(|cluster| {
             let bone = cluster.bone_node.as_ref()?;

@@ -1,11 +1,12 @@
 //! Reads the polygons of all meshes that a scene shows.
 
-use glam::{DMat3, Vec2, Vec3, Vec4};
-use ufbx::{Face, Mesh, Node, Scene, SubdivisionBoundary, SubdivisionDisplayMode, VertexVec2};
+use glam::{Vec2, Vec3, Vec4};
+use ufbx::{Face, Mesh, Node, SubdivisionBoundary, SubdivisionDisplayMode, VertexVec2};
 
-use super::convert::{vec2, vec4};
+use super::convert::{at_corner, vec2, vec4};
 use super::materials::{self, Materials, Resolved};
 use super::nodes::Placed;
+use super::nurbs::{Meshes, Polygons};
 use super::skin::Skin;
 use super::vertices::{PosedCorner, Vertices};
 use crate::cage_faces::CageFaces;
@@ -23,7 +24,7 @@ use geometry::casts::{to_f32, to_u32, to_usize};
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::rig::Delta;
 use geometry::mesh::subdivision::Boundary;
-use geometry::mesh::{Borrowed, CornerDetail};
+use geometry::mesh::{Borrowed, CornerDetail, PartStyle};
 use geometry::progress::Progress;
 
 /// How many polygons are read before the job asks whether it was cancelled.
@@ -34,7 +35,7 @@ const PER_CORNER: u64 = 32;
 
 /// Collects polygons.
 pub(super) struct Surfaces<'s, 'a> {
-    scene: &'s Scene,
+    meshes: &'s Meshes<'s>,
     placed: &'s Placed,
     budget: &'a Budget,
     materials: Materials<'a>,
@@ -61,20 +62,21 @@ impl<'s, 'a> Surfaces<'s, 'a> {
     /// # Errors
     /// [`ReadError::TooLarge`].
     pub(super) fn new(
-        scene: &'s Scene,
+        meshes: &'s Meshes<'s>,
         placed: &'s Placed,
         file: &ModelFile,
         files: &'a Files<'a>,
         binder: Option<RigBuilder>,
     ) -> Result<Self, ReadError> {
         let budget = files.budget;
-        let meshes = || {
+        let scene = meshes.scene;
+        let shown = || {
             let nodes = placed.shown.iter().map(|&node| &scene.nodes[node]);
-            nodes.filter_map(|node| Some((node, node.mesh.as_deref()?)))
+            nodes.filter_map(|node| Some((node, meshes.of(node)?)))
         };
-        let is_detailed = materials::need_details(meshes());
+        let is_detailed = materials::need_details(shown());
         let mut faces = FaceBuilder::new(file, budget);
-        let triangles = meshes().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
+        let triangles = shown().fold(0_usize, |sum, (_, mesh)| sum.saturating_add(mesh.num_triangles));
         // Many copies of a mesh are refused before any is read.
         let memory = (triangles as u64).saturating_mul(12);
         budget.check(memory)?;
@@ -82,15 +84,15 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         // Placed nodes are in metres, unless another unit was chosen.
         let unit = if file.selected.import.unit.is_none() { scene.settings.unit_meters } else { 1.0 };
         let mut materials = Materials::new(files, to_f32(unit));
-        let corners = meshes().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
+        let corners = shown().fold(0_u64, |sum, (_, mesh)| sum.saturating_add(mesh.num_indices as u64));
         let details = if is_detailed { DetailTable::bytes_for(to_usize(corners)) } else { 0 };
         // What the parsed file takes has been freed when the edges are made.
         let parsed = scene.metadata.result_memory_used as u64;
         let edges = edge_bytes(corners, triangles as u64).saturating_sub(parsed);
         let ahead = corners.saturating_mul(PER_CORNER).saturating_add(memory);
-        materials.read_images(meshes(), ahead.max(edges).saturating_add(details))?;
+        materials.read_images(shown(), ahead.max(edges).saturating_add(details))?;
         Ok(Self {
-            scene,
+            meshes,
             placed,
             budget,
             materials,
@@ -104,42 +106,35 @@ impl<'s, 'a> Surfaces<'s, 'a> {
 
     /// Adds the polygons of a node's mesh.
     pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<(), ReadError> {
-        let node = &self.scene.nodes[index];
-        let Some(mesh) = node.mesh.as_ref() else { return Ok(()) };
+        let (meshes, placed) = (self.meshes, self.placed);
+        let nodes = &meshes.scene.nodes;
+        let node = &nodes[index];
+        let Some(mesh) = meshes.of(node) else { return Ok(()) };
         let _scope = Borrowed::from(self.budget);
-        let global = &self.placed.global;
+        let global = &placed.global;
         let skin = Skin::new(node, mesh, global);
-        let vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
-        let is_without_normals = vertices.is_without_normals();
-        let binder = self.binder.as_mut().map(|binder| {
+        let above = std::iter::successors(Some(index), |&node| placed.scene.parents[node]);
+        let own = |node: usize| (&*nodes[node].element.name, false);
+        let named = |node: usize| placed.levels.get(&node).map_or_else(|| own(node), |level| (level.as_str(), true));
+        // The scene's root isn't one of the file's nodes.
+        let (path, level) = node_path(above.filter(|&node| !nodes[node].is_root).map(named));
+        self.faces.enter_part(path.as_bytes(), level)?;
+        let mut vertices = Vertices::new(node, mesh, global[index], skin.as_ref(), selected, self.budget)?;
+        vertices.surface = meshes.surface(node);
+        let own = self.faces.parts.style(self.faces.parts.current(), PartStyle::default());
+        let is_told = self.faces.import.makes_normals_of(own) || own.crease_angle.is_some();
+        let misses_normals = vertices.is_without_normals() && !is_told;
+        let mut rig = self.binder.take();
+        let binder = rig.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
             Binder::new(binder, &vertices)
         });
-        let above = std::iter::successors(Some(index), |&node| self.placed.scene.parents[node]);
-        let levels = &self.placed.levels;
-        let own = |node: usize| (&*self.scene.nodes[node].element.name, false);
-        let named = |node: usize| levels.get(&node).map_or_else(|| own(node), |level| (level.as_str(), true));
-        // The scene's root isn't one of the file's nodes.
-        let (path, level) = node_path(above.filter(|&node| !self.scene.nodes[node].is_root).map(named));
-        self.faces.enter_part(path.as_bytes(), level)?;
-        let mut reader = MeshReader {
-            node,
-            mesh,
-            vertices,
-            binder,
-            budget: self.budget,
-            materials: &mut self.materials,
-            faces: &mut self.faces,
-            details: self.details.as_mut(),
-            found: &mut self.found,
-            resolved: Vec::new(),
-            influences: Vec::new(),
-            deltas: Vec::new(),
-        };
+        let moves = binder.is_some();
+        let (resolved, influences, deltas) = (Vec::new(), Vec::new(), Vec::new());
+        let mut reader = MeshReader { all: self, node, mesh, vertices, binder, resolved, influences, deltas };
         let subdivision = reader.subdivision();
-        self.without_normals += usize::from(is_without_normals && subdivision.is_none());
-        let moves = reader.binder.is_some();
-        reader.faces.cage = subdivision.map(|own| CageFaces::new(own, &reader.faces.import, moves));
+        reader.all.without_normals += usize::from(misses_normals && subdivision.is_none());
+        reader.all.faces.cage = subdivision.map(|own| CageFaces::new(own).of_vertices(moves));
         let mut corners = Vec::new();
         for (i, face) in mesh.faces.iter().enumerate() {
             if i % POLYGONS == 0 {
@@ -150,9 +145,10 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         if subdivision.is_some() {
             reader.creases()?;
         }
-        reader.faces.is_hole = false;
-        let rig = reader.binder.as_mut().map(|binder| &mut *binder.node.binder);
-        reader.faces.end_cage(reader.details, rig, progress)
+        self.faces.is_hole = false;
+        self.faces.end_cage(self.details.as_mut(), rig.as_mut(), progress)?;
+        self.binder = rig;
+        Ok(())
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
@@ -165,16 +161,13 @@ impl<'s, 'a> Surfaces<'s, 'a> {
 }
 
 /// Reads the polygons of one mesh.
-struct MeshReader<'a, 'b, 'f> {
+struct MeshReader<'a, 'b, 's, 'f> {
+    /// All meshes; the binder is lent to this one.
+    all: &'b mut Surfaces<'s, 'f>,
     node: &'a Node,
     mesh: &'a Mesh,
     vertices: Vertices<'a>,
     binder: Option<Binder<'b>>,
-    budget: &'a Budget,
-    materials: &'b mut Materials<'f>,
-    faces: &'b mut FaceBuilder<'f>,
-    details: Option<&'b mut DetailTable>,
-    found: &'b mut Counts,
     /// The mesh's materials, once they are used.
     resolved: Vec<Option<Resolved>>,
     /// The joints of the corner that is being read, and its displacements.
@@ -182,22 +175,22 @@ struct MeshReader<'a, 'b, 'f> {
     deltas: Vec<Delta>,
 }
 
-impl MeshReader<'_, '_, '_> {
+impl MeshReader<'_, '_, '_, '_> {
     /// How the mesh is refined. One that joints move in part isn't: the rest of it isn't in the same space.
     fn subdivision(&mut self) -> Option<Subdivision> {
-        let (import, mesh) = (self.faces.import, self.mesh);
+        let (import, mesh) = (self.all.faces.import, self.mesh);
         let mode = mesh.subdivision_display_mode;
         let is_smooth = matches!(mode, SubdivisionDisplayMode::HullAndSmooth | SubdivisionDisplayMode::Smooth);
         let is_marked = is_smooth && mesh.subdivision_preview_levels > 0;
         let is_wanted = match import.subdivide {
             Subdivide::Off => false,
             Subdivide::File => is_marked,
-            Subdivide::CatmullClark | Subdivide::Loop => true,
+            Subdivide::CatmullClark | Subdivide::Loop | Subdivide::Butterfly => true,
         };
         if !is_wanted || self.moves_in_part() {
             if is_wanted || is_marked {
-                self.found.cages += 1;
-                self.faces.is_refined = Some(false);
+                self.all.found.cages += 1;
+                self.all.faces.is_refined = Some(false);
             }
             return None;
         }
@@ -206,7 +199,9 @@ impl MeshReader<'_, '_, '_> {
             _ => Boundary::EdgesAndCorners,
         };
         let levels = import.levels_or(if is_marked { mesh.subdivision_preview_levels } else { 2 });
-        Some(Subdivision { levels, boundary, ..import.subdivision().unwrap_or_default() })
+        // ufbx reads no rule for texture coordinates.
+        let face_varying = import.subdivide_uvs.unwrap_or_default();
+        Some(Subdivision { levels, boundary, face_varying, ..import.subdivision().unwrap_or_default() })
     }
 
     /// Whether clips move the mesh, and joints some of its vertices but not all.
@@ -232,19 +227,15 @@ impl MeshReader<'_, '_, '_> {
         for ([a, b], sharpness) in sharp {
             let places = [self.posed(a as usize)?, self.posed(b as usize)?];
             let places = places.map(|(vertex, posed, _)| (posed.corner.position, vertex));
-            match &mut self.faces.cage {
-                Some(cage) if a == b => cage.sharpen(places[0], sharpness),
-                Some(cage) => cage.crease(places, sharpness),
-                None => {}
-            }
+            self.all.faces.cage.iter_mut().for_each(|cage| cage.sharpen(places, sharpness));
         }
         Ok(())
     }
 
     fn face(&mut self, i: usize, face: Face, corners: &mut Vec<NumberedCorner>) -> Result<(), ReadError> {
-        self.faces.is_hole = self.mesh.face_hole.get(i) == Some(&true);
-        self.found.holes += usize::from(self.faces.is_hole);
-        if self.faces.is_hole && self.faces.cage.is_none() {
+        self.all.faces.is_hole = self.mesh.face_hole.get(i) == Some(&true);
+        self.all.found.holes += usize::from(self.all.faces.is_hole);
+        if self.all.faces.is_hole && self.all.faces.cage.is_none() {
             return Ok(());
         }
         if face.num_indices as usize > MAX_CORNERS {
@@ -252,6 +243,7 @@ impl MeshReader<'_, '_, '_> {
             return Err(FilePosition::Everywhere.error(reason));
         }
         let material = self.material(i)?;
+        self.vertices.makes_normals = self.all.faces.import.makes_normals_of(self.all.faces.style(material.index));
         corners.clear();
         let mut is_mirrored = false;
         for corner in (face.index_begin as usize..).take(face.num_indices as usize) {
@@ -259,10 +251,10 @@ impl MeshReader<'_, '_, '_> {
             corners.push(read);
             is_mirrored = mirrored;
         }
-        if is_mirrored {
+        if is_mirrored != self.vertices.surface.is_some_and(Polygons::is_turned) {
             corners.reverse();
         }
-        self.faces.add(material.index, corners, FilePosition::Everywhere)
+        self.all.faces.add(material.index, corners, FilePosition::Everywhere)
     }
 
     fn material(&mut self, face: usize) -> Result<Resolved, ReadError> {
@@ -275,7 +267,7 @@ impl MeshReader<'_, '_, '_> {
         if let Some(resolved) = self.resolved[slot] {
             return Ok(resolved);
         }
-        let resolved = self.materials.resolve(to_u32(slot), self.node, self.mesh, self.faces)?;
+        let resolved = self.all.materials.resolve(to_u32(slot), self.node, self.mesh, &mut self.all.faces)?;
         self.resolved[slot] = Some(resolved);
         Ok(resolved)
     }
@@ -292,23 +284,22 @@ impl MeshReader<'_, '_, '_> {
     /// Reads a corner. Also returns whether its transform mirrors.
     fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
         let (vertex, mut posed, has_more) = self.posed(corner)?;
-        self.found.many_joints += usize::from(has_more);
+        self.all.found.many_joints += usize::from(has_more);
         posed.corner.uv = self.own_uv(corner, material);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
             // Blend shapes are at rest, unless a clip weighs them.
             let start = if binder.first_weight.is_some() { posed.undeformed } else { posed.morphed };
             let at = (start, &posed.corner);
-            number = binder.bind(at, &self.influences, &mut self.deltas, self.budget)?;
+            number = binder.bind(at, &self.influences, &mut self.deltas, self.all.budget)?;
         }
-        if let Some(table) = self.details.take() {
-            let detail = self.detail(corner, material);
-            number = table.number(detail, number, self.budget)?;
-            self.details = Some(table);
+        let detail = self.all.details.is_some().then(|| self.detail(corner, material));
+        if let Some((table, detail)) = self.all.details.as_mut().zip(detail) {
+            number = table.number(detail, number, self.all.budget)?;
         }
         // Where it isn't refined, a vertex may have several corners.
-        let vertex = self.faces.cage.is_some().then_some([vertex, 0, 0]);
-        Ok((NumberedCorner { corner: posed.corner, number, vertex }, mirrors(&posed.linear)))
+        let vertex = self.all.faces.cage.is_some().then_some([vertex, 0, 0]);
+        Ok((NumberedCorner { corner: posed.corner, number, vertex }, posed.linear.determinant() < 0.0))
     }
 
     fn own_uv(&mut self, corner: usize, material: &Resolved) -> Vec2 {
@@ -323,9 +314,10 @@ impl MeshReader<'_, '_, '_> {
             Some(set) if set.vertex_uv.exists => &set.vertex_uv,
             _ => return Vec2::ZERO,
         };
-        let uv = list.indices.get(corner).and_then(|&index| list.values.get(index as usize));
-        let uv = uv.map(|uv| vec2(uv).as_vec2()).filter(|uv| uv.is_finite());
-        self.found.bad_uvs += usize::from(uv.is_none());
+        let uv = at_corner(&list.values, &list.indices, corner).map(vec2);
+        let uv = uv.map(|uv| self.vertices.surface.map_or(uv, |surface| surface.uv(uv)).as_vec2());
+        let uv = uv.filter(|uv| uv.is_finite());
+        self.all.found.bad_uvs += usize::from(uv.is_none());
         uv.map_or(Vec2::ZERO, |uv| Vec2::new(uv.x, 1.0 - uv.y))
     }
 
@@ -339,15 +331,11 @@ impl MeshReader<'_, '_, '_> {
         if !list.exists {
             return Vec4::ONE;
         }
-        let color = list.indices.get(corner).and_then(|&index| list.values.get(index as usize));
+        let color = at_corner(&list.values, &list.indices, corner);
         let color = color.map(|color| vec4(color).as_vec4()).filter(|color| color.is_finite());
-        self.found.bad_colors += usize::from(color.is_none());
+        self.all.found.bad_colors += usize::from(color.is_none());
         color.map_or(Vec4::ONE, |color| color.clamp(Vec4::ZERO, Vec4::ONE))
     }
-}
-
-fn mirrors(linear: &DMat3) -> bool {
-    linear.determinant() < 0.0
 }
 
 /// Binds the corners of one mesh to joints and morph targets.

@@ -3,6 +3,7 @@
 pub(crate) mod documents;
 mod hidden;
 mod moving;
+mod nurbs;
 mod shapes;
 mod spans;
 mod surfaces;

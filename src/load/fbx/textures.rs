@@ -78,15 +78,14 @@ pub(super) fn of_file(texture: &ufbx::Texture) -> Option<&ufbx::Texture> {
 /// Returns where a texture's file may be, below the model's folder: at its relative path, or beside the model. Paths are mostly
 /// those of the machine that wrote the file.
 fn names(texture: &ufbx::Texture) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for path in [&texture.relative_filename, &texture.filename, &texture.absolute_filename] {
+    let paths = [&texture.relative_filename, &texture.filename, &texture.absolute_filename];
+    let names = paths.into_iter().flat_map(|path| {
         let path = path.as_ref().replace('\\', "/");
         let last = path.rsplit('/').next().unwrap_or_default().to_owned();
         let is_below = !path.starts_with('/') && !path.contains(':') && !path.split('/').any(|part| part == "..");
-        names.extend([Some(path).filter(|_| is_below), Some(last)].into_iter().flatten());
-    }
-    names.retain(|name| !name.is_empty());
-    names
+        [Some(path).filter(|_| is_below), Some(last)]
+    });
+    names.flatten().filter(|name| !name.is_empty()).collect()
 }
 
 /// Returns how a texture is sampled.

@@ -3,8 +3,9 @@
 use glam::{DMat3, DMat4, DVec3, Vec3};
 use ufbx::{Mesh, Node};
 
-use super::convert::{matrix, vec3};
+use super::convert::{at_corner, matrix, vec3};
 use super::morphs::{Morphs, rest_weights};
+use super::nurbs::Polygons;
 use super::skin::Skin;
 use super::{looks, smoothing};
 use crate::binding_space::turned;
@@ -17,6 +18,8 @@ use geometry::mesh::rig::Delta;
 /// The vertices of a node's mesh.
 pub(super) struct Vertices<'a> {
     pub mesh: &'a Mesh,
+    /// The NURBS surface whose polygons the mesh is.
+    pub surface: Option<&'a Polygons<'a>>,
     pub skin: Option<&'a Skin<'a>>,
     pub morphs: Morphs<'a>,
     /// The weights of its morph targets.
@@ -27,8 +30,8 @@ pub(super) struct Vertices<'a> {
     pub to_node: DMat4,
     /// The normals of corners that the file doesn't have, but says how smooth they are.
     made: Option<Vec<Vec3>>,
-    /// Whether all normals are made, whatever the file has.
-    makes_normals: bool,
+    /// Whether normals are made of the corners that are read next, whatever the file has.
+    pub makes_normals: bool,
 }
 
 /// A corner in its rest pose, and as it was before.
@@ -55,24 +58,23 @@ impl<'a> Vertices<'a> {
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let makes_normals = selected.import.makes_normals();
-        let is_told = mesh.vertex_normal.exists || makes_normals;
-        let made = if is_told { None } else { smoothing::normals(mesh, budget)? };
+        let made = if mesh.vertex_normal.exists { None } else { smoothing::normals(mesh, budget)? };
         Ok(Self {
             mesh,
+            surface: None,
             skin,
             morphs: Morphs::new(mesh, budget)?,
             rest: rest_weights(mesh, selected),
             rigid: at * to_node,
             to_node,
             made,
-            makes_normals,
+            makes_normals: false,
         })
     }
 
-    /// Returns whether its corners get normals that are computed from angles although nobody asked for them.
+    /// Returns whether neither the file has its normals, nor says how smooth it is.
     pub(super) fn is_without_normals(&self) -> bool {
-        !self.mesh.vertex_normal.exists && self.made.is_none() && !self.makes_normals
+        !self.mesh.vertex_normal.exists && self.made.is_none()
     }
 
     /// Returns the vertex of a corner.
@@ -118,14 +120,12 @@ impl<'a> Vertices<'a> {
     }
 
     fn normal(&self, corner: usize) -> Option<Vec3> {
-        if self.makes_normals {
-            return None;
-        }
-        if let Some(made) = &self.made {
-            return made.get(corner).copied();
-        }
         let normals = &self.mesh.vertex_normal;
-        let normal = normals.indices.get(corner).and_then(|&index| normals.values.get(index as usize));
-        normal.map(|normal| vec3(normal).as_vec3())
+        match (self.surface, &self.made) {
+            _ if self.makes_normals => None,
+            (Some(surface), _) => Some(surface.normal(corner)),
+            (None, Some(made)) => made.get(corner).copied(),
+            (None, None) => at_corner(&normals.values, &normals.indices, corner).map(|normal| vec3(normal).as_vec3()),
+        }
     }
 }

@@ -181,12 +181,7 @@ impl MaterialSource {
                 self.undrawn.push(crate::uri::shown(name));
             }
         }
-        // Metal lets no light through.
-        let is_metal = self.look.metallic >= 1.0 && self.maps[Slot::MetallicRoughness as usize].is_none();
-        if self.look.transmits() && !self.look.refracts() && self.look.roughness > 0.0 && !is_metal {
-            self.undrawn.push("blur of what is behind rough thin surfaces (KHR_materials_transmission)".to_owned());
-        }
-        let most_maps = Look::MOST_IMAGES - usize::from(self.look.refracts());
+        let most_maps = Look::MOST_IMAGES - usize::from(self.look.distorts());
         if self.maps.iter().flatten().count() > most_maps {
             self.undrawn.push(format!("a map beyond the first {most_maps}"));
         }

@@ -17,7 +17,6 @@ use super::uv_transform::UvTransform;
 use super::{Accessors, GltfError};
 use crate::heights::ModelImages;
 use crate::images::texture_size;
-use crate::memory_budget::Budget;
 use crate::packing::roughness;
 use crate::texture_room::{LEFT_OUT, ReadImage, read_images};
 use crate::uri::Files;
@@ -53,7 +52,6 @@ pub(super) struct Materials<'a> {
     lists: &'a MaterialLists,
     accessors: &'a Accessors<'a>,
     files: &'a Files<'a>,
-    budget: &'a Budget,
     /// Those that are used, by the index in the document; none for the default material.
     sources: HashMap<Option<usize>, MaterialSource>,
     resolved: HashMap<Option<usize>, Resolved>,
@@ -65,8 +63,6 @@ pub(super) struct Materials<'a> {
     rough: HashMap<(*const Texture, u32), Arc<Texture>>,
     /// By the image's index.
     heights: ModelImages<'a, usize>,
-    /// The memory that the rest of the load takes, in bytes.
-    reserved: u64,
     /// For what isn't drawn, the names of the first few materials that have it, and how many have it.
     undrawn: BTreeMap<String, (Vec<String>, usize)>,
     notes: RefCell<Notes>,
@@ -88,14 +84,12 @@ impl<'a> Materials<'a> {
             lists,
             accessors,
             files,
-            budget: accessors.budget,
             sources: HashMap::new(),
             resolved: HashMap::new(),
             textures: HashMap::new(),
             images: HashMap::new(),
             rough: HashMap::new(),
             heights: ModelImages::new(files),
-            reserved: 0,
             undrawn: BTreeMap::new(),
             notes: RefCell::default(),
         };
@@ -110,7 +104,7 @@ impl<'a> Materials<'a> {
             return Ok(());
         }
         let bytes = size_of::<MaterialSource>() + size_of::<Material>();
-        self.budget.hold(bytes as u64).map_err(GltfError::too_large("its materials"))?;
+        self.files.budget.hold(bytes as u64).map_err(GltfError::too_large("its materials"))?;
         let value = index.and_then(|index| Some((index, self.lists.materials.get(index)?)));
         let members = value.and_then(|(i, value)| Members::new(value, format!("/materials/{i}"), &self.notes));
         let source = MaterialSource::new(members.as_ref(), self.lists.textures.len());
@@ -135,13 +129,15 @@ impl<'a> Materials<'a> {
     /// # Errors
     /// [`GltfError::Cancelled`].
     pub(super) fn read_images(&mut self, reserved: u64) -> Result<(), GltfError> {
-        (self.reserved, self.heights.reserved) = (reserved, reserved);
+        self.heights.reserved = reserved;
         let mut keys: Vec<_> = self.sources.keys().copied().collect();
         keys.sort_unstable();
         let mut found: Vec<(usize, MipFilter)> = Vec::new();
         let mut seen = HashSet::new();
         for key in keys {
             let Some(source) = self.sources.get(&key).cloned() else { continue };
+            // Textures can be scaled down to the room that heights leave.
+            self.height(&source, &name(&source, key));
             let base = source.base_map.map(|map| (map.texture, MipFilter::from_base_color(source.look.alpha)));
             let maps = Slot::ALL.into_iter().zip(source.maps);
             let maps = maps.filter_map(|(slot, map)| Some((map?.texture, MipFilter::from_map(slot))));
@@ -149,8 +145,8 @@ impl<'a> Materials<'a> {
                 let Some(TextureSource { images, .. }) = self.texture_source(texture) else { continue };
                 self.files.progress.check()?;
                 // The first one that looks right; if it turns out not to be, the next one is read when it is needed.
-                let looks_right = |image: &usize| {
-                    borrowing(self.budget, || self.bytes(*image).is_ok_and(|bytes| texture_size(&bytes).is_some()))
+                let looks_right = |own: &usize| {
+                    borrowing(self.files.budget, || self.bytes(*own).is_ok_and(|bytes| texture_size(&bytes).is_some()))
                 };
                 let image = images.into_iter().find(looks_right).filter(|image| seen.insert(*image));
                 found.extend(image.map(|image| (image, filter)));
@@ -161,7 +157,7 @@ impl<'a> Materials<'a> {
 
     fn read(&mut self, images: &[(usize, MipFilter)]) -> Result<(), Cancelled> {
         let bytes = |(image, filter)| Ok((self.bytes(image)?, filter));
-        let read = read_images(images, bytes, self.reserved, self.budget, self.files.progress)?;
+        let read = read_images(images, bytes, self.heights.reserved, self.files.budget, self.files.progress)?;
         self.images.extend(images.iter().map(|(image, _)| *image).zip(read));
         Ok(())
     }
@@ -203,8 +199,8 @@ impl<'a> Materials<'a> {
         let (uvs, tangents) = (source.own_uvs(), look.tangent_uv().is_some());
         let needs = DetailNeeds { sets: look.uv_sets(), tangents };
         let MaterialSource { base_color, double_sided, .. } = source;
-        let triangles = 0..0;
-        let made = Material { name, base_color, texture, sampling, double_sided, look, height, triangles };
+        let plain = Material::plain(&name, base_color);
+        let made = Material { texture, sampling, double_sided, look, height, ..plain };
         let resolved = Resolved { index: builder.material(made), scale, uvs, needs };
         self.resolved.insert(key, resolved);
         resolved
@@ -229,12 +225,12 @@ impl<'a> Materials<'a> {
 
     fn height(&mut self, source: &MaterialSource, material: &str) -> Option<HeightMap> {
         let (map, amount) = source.height?;
-        let image = *self.texture_source(map.texture)?.images.last()?;
+        let TextureSource { images, sampling } = self.texture_source(map.texture)?;
+        let image = *images.last()?;
         let bytes = || texture_source::image(&self.lists.images, image, self.accessors, self.files);
         let names = [&*format!("/images/{image}"), material];
         // If it was cancelled, what follows ends too.
-        let read = self.heights.read(image, names, map.uvs != source.own_uvs(), bytes).ok()?;
-        read.map(|map| map.with_amount(amount))
+        self.heights.read(image, names, (amount, sampling.wrap), map.uvs != source.own_uvs(), bytes).ok()?
     }
 
     /// Gives a material a map of roughness, made of the glossiness in the image of its specular colour, times this factor.
@@ -243,7 +239,7 @@ impl<'a> Materials<'a> {
         let key = (Arc::as_ptr(&specular.texture), factor.to_bits());
         let made = match self.rough.get(&key) {
             Some(known) => Ok(known.clone()),
-            None => roughness(&specular.texture, factor, self.budget).map(Arc::new),
+            None => roughness(&specular.texture, factor, self.files.budget).map(Arc::new),
         };
         match made {
             Ok(texture) => {

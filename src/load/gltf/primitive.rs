@@ -20,7 +20,7 @@ use crate::import::Import;
 use geometry::casts::to_u32;
 use geometry::cores::in_ranges;
 use geometry::mesh::detail_table::DetailTable;
-use geometry::mesh::{MemoryRefused, Repairs};
+use geometry::mesh::{MemoryRefused, PartStyle, Repairs};
 
 use super::vertex_repairs::VertexRepairs;
 pub(super) use super::vertices::NodePose;
@@ -57,6 +57,8 @@ pub(super) struct Job<'a, 'b> {
     pub mesh: &'a Mesh<'a>,
     pub primitive: &'a Primitive<'a>,
     pub pose: &'a NodePose<'a>,
+    /// What its triangles have in place of what is said for all.
+    pub style: PartStyle,
     pub material: Resolved,
     pub accessors: &'a Accessors<'a>,
     pub builder: &'b mut MeshBuilder,
@@ -147,11 +149,11 @@ impl PrimitiveReader {
     /// # Errors
     /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
     pub(super) fn read(&mut self, job: Job, mut binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
-        let Job { mesh, primitive, pose, material, accessors, builder, details } = job;
+        let Job { mesh, primitive, pose, style, material, accessors, builder, details } = job;
         let name = name(mesh, primitive);
         let unpacked = accessors.unpacked.get(&[mesh.index(), primitive.index()]);
-        let source =
-            PrimitiveData { primitive, name: &name, accessors, unpacked, makes_normals: self.import.makes_normals() };
+        let makes_normals = self.import.makes_normals_of(style);
+        let source = PrimitiveData { primitive, name: &name, accessors, unpacked, makes_normals };
         let is_morphing = animated_vertices::may_morph(binder.as_deref_mut(), primitive);
         let (is_detailed, repairs, budget) = (details.is_some(), self.repairs, accessors.budget);
         let mut vertices = Vertices::new(source, pose, material, is_detailed, is_morphing, repairs, &mut self.notes)?;
@@ -164,6 +166,9 @@ impl PrimitiveReader {
         drop(used);
         let (mode, count) = (primitive.mode(), indices.count);
         self.repairs = vertices.repairs;
+        // Where it was chosen how they are made, none are missed.
+        let are_missed = !makes_normals && style.crease_angle.is_none() && !source.has_normals(vertices.count);
+        self.repairs.without_normals += usize::from(are_missed && vertices.count > 0);
         self.read += 1;
         if mode == Mode::Triangles {
             self.left_out.left_over += count % 3;

@@ -180,7 +180,6 @@ impl<'a> Vertices<'a> {
         let count = positions.count();
         let positions = source.list(&positions, "POSITION", count)?;
         let normals = source.normals(count, notes)?;
-        repairs.without_normals += usize::from(normals.is_none() && count > 0);
         let uvs = source.detail(Semantic::TexCoords(material.uvs.set), count, notes);
         let details = is_detailed.then(|| VertexDetails::new(source, count, material.needs, &mut repairs, notes));
         let mut vertices = Self {

@@ -3,55 +3,46 @@
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, Limits};
 use png::{BitDepth, DecodingError};
 
 use super::HeightError;
 use crate::environment_file::unpacking_bytes;
 use crate::files::{self, FileError, file_reason, read_file};
-use crate::images::{check_size, decoding_bytes, metadata_limits, png_header};
+use crate::images::{check_size, decode_halved, decoded_bytes, decoder, decoding_bytes, is_image, png_header};
+use crate::ktx2::is_ktx2;
 use crate::memory_budget::Budget;
 use crate::watched_bytes::watched;
 use crate::webp;
 use geometry::casts::to_usize;
 use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
 use geometry::mesh::heights::{HeightMap, MAX_KEPT};
+use geometry::mesh::mipmap::MipFilter;
 use geometry::progress::{Cancelled, Progress};
 
 /// The bytes of a file at most: more than the largest image takes without compression.
 const LARGEST_FILE: u64 = 4 << 30;
 
 /// What is said of a file of another kind.
-const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TIFF or EXR image";
+const NO_IMAGE: &str = "choose a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image";
 
 /// The largest height, positive or negative. Images with floating-point numbers may have heights beyond black and white.
 const MOST_HEIGHT: f32 = 65504.0;
 
-/// Reads a PNG, JPEG, WebP, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more memory than its file
-/// and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
+/// Reads a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image. A PNG is decoded row by row, so that a large image takes no more
+/// memory than its file and its map; any other, and an interlaced PNG, is decoded whole. The file's size is added to the budget.
 ///
 /// # Errors
 /// If the file isn't such an image, or the image is too large, or `progress` was cancelled.
 pub(super) fn read_map(path: &Path, budget: &Budget, progress: &Progress) -> Result<HeightMap, HeightError> {
     let image = ImageFile { path, reserved: 0, budget, progress };
     let check = |start: &[u8]| {
-        image::guess_format(start).map_err(|_| image.fail(NO_IMAGE.to_owned()))?;
+        is_image(start).then_some(()).ok_or_else(|| image.fail(NO_IMAGE.to_owned()))?;
         image.check(png_header(start).map_or([0; 2], |(size, _)| size)).map(|_| ())
     };
     let bytes = read_file(path, &files::Limits { file: LARGEST_FILE, memory: 0 }, check, progress)?;
     budget.allow(bytes.len() as u64);
     image.decode(&bytes)
-}
-
-/// The same of an image in memory, which errors call `name`. `reserved` is the memory that the rest of the load takes, in bytes.
-pub(super) fn map_of_bytes(
-    name: &Path,
-    bytes: &[u8],
-    reserved: u64,
-    budget: &Budget,
-    progress: &Progress,
-) -> Result<HeightMap, HeightError> {
-    ImageFile { path: name, reserved, budget, progress }.decode(bytes)
 }
 
 impl From<FileError> for HeightError {
@@ -112,11 +103,13 @@ fn brightness([r, g, b]: [f32; 3]) -> f32 {
 }
 
 /// An image file that is being read, with what reading it needs.
-struct ImageFile<'a> {
-    path: &'a Path,
-    reserved: u64,
-    budget: &'a Budget,
-    progress: &'a Progress,
+pub(super) struct ImageFile<'a> {
+    /// What errors call it.
+    pub path: &'a Path,
+    /// The memory that the rest of the load takes, in bytes.
+    pub reserved: u64,
+    pub budget: &'a Budget,
+    pub progress: &'a Progress,
 }
 
 impl ImageFile<'_> {
@@ -128,11 +121,25 @@ impl ImageFile<'_> {
         check_size("it", size).map(|()| size).map_err(|reason| self.fail(reason))
     }
 
-    fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
-        match png_header(bytes) {
+    /// Reads an image in memory; errors are those of [`read_map`].
+    pub(super) fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        let held = self.budget.held();
+        let read = match png_header(bytes) {
             Some((_, false)) => self.read_rows(bytes),
+            _ if is_ktx2(bytes) => self.read_texture(bytes),
             _ => self.read_whole(bytes),
-        }
+        };
+        // A broken image takes no room from others.
+        read.inspect_err(|_| self.budget.release(self.budget.held() - held))
+    }
+
+    /// Reads a KTX2 image.
+    fn read_texture(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        let texture = decode_halved(bytes, 0, MipFilter::Numbers, self.budget).map_err(|reason| self.fail(reason))?;
+        let px = decoded_bytes(texture.size);
+        self.budget.release(px);
+        self.afford(texture.size, bytes, px, 0)?;
+        Ok(map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, self.progress)?)
     }
 
     /// Reads a PNG image that isn't interlaced.
@@ -158,29 +165,29 @@ impl ImageFile<'_> {
 
     /// Reads any image by decoding all its pixels at once.
     fn read_whole(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
+        let format = image::guess_format(bytes).ok();
+        let is_deep = matches!(format, Some(ImageFormat::Tiff | ImageFormat::OpenExr | ImageFormat::Hdr));
         // Cancelling stops the decoder with some error.
         let undecoded = |error: ImageError| match (self.progress.check(), error) {
             (Err(cancelled), _) => cancelled.into(),
-            (_, ImageError::Unsupported(_)) if image::guess_format(bytes).is_err() => self.fail(NO_IMAGE.to_owned()),
+            _ if !is_image(bytes) => self.fail(NO_IMAGE.to_owned()),
+            // Floating-point numbers of one channel, say, aren't decoded.
+            (_, error) if is_deep => {
+                self.fail(format!("{error}; save it with red, green and blue, or as a 16-bit PNG"))
+            }
             (_, error) => self.fail(error.to_string()),
         };
         webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
-        let watched = ImageReader::new(watched(bytes, self.progress.part(0.0, 0.6)));
-        let mut reader = watched.with_guessed_format().map_err(|error| undecoded(error.into()))?;
         let borrowed = Borrowed::from(self.budget);
-        let format = reader.format();
-        if format == Some(ImageFormat::Png) {
-            reader.limits(metadata_limits(self.budget));
-        }
-        let mut decoder = reader.into_decoder().map_err(undecoded)?;
+        let watched = watched(bytes, self.progress.part(0.0, 0.6));
+        let mut decoder = decoder(watched, bytes, self.budget).map_err(undecoded)?;
         let size = self.check(decoder.dimensions().into())?;
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
-        let has_copy = matches!(format, Some(ImageFormat::Tiff | ImageFormat::OpenExr | ImageFormat::Hdr));
         let blocks = match format {
             Some(ImageFormat::OpenExr) => unpacking_bytes(bytes).map_err(|fault| self.fail(fault.to_string()))?,
             _ => 0,
         };
-        let decoding = (decoding_bytes(&decoder) - count).saturating_add(if has_copy { count } else { 0 });
+        let decoding = (decoding_bytes(&decoder) - count).saturating_add(if is_deep { count } else { 0 });
         // What decoding takes is freed before a map is made from the pixels.
         self.afford(size, bytes, count, decoding.saturating_add(blocks))?;
         let mut limits = Limits::default();
@@ -282,6 +289,59 @@ mod tests {
         assert!(progress.fraction() > 0.8, "{}", progress.fraction());
         progress.cancel();
         assert!(matches!(read_map(&file, &Budget::unlimited(), &progress), Err(HeightError::Cancelled(Cancelled))));
+    }
+
+    #[test]
+    fn tga_bmp_and_ktx2_images_are_read() {
+        let image: DynamicImage = RgbImage::from_fn(9, 5, |x, y| Rgb([(20 * x) as u8, (40 * y) as u8, 7])).into();
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        let budget = Budget::unlimited();
+        for format in [image::ImageFormat::Tga, image::ImageFormat::Bmp] {
+            let mut bytes = Cursor::new(Vec::new());
+            image.write_to(&mut bytes, format).expect("an image in memory");
+            let file = write(&folder, "px", bytes.get_ref());
+            assert_eq!(read_map(&file, &budget, &Progress::new()).expect("an image"), of(&image), "{format:?}");
+        }
+        // 37 is RGBA of 8 bits.
+        let held = budget.held();
+        let rgba = crate::ktx2::tests::plain(37, [9, 5], image.to_rgba8().as_raw());
+        let file = write(&folder, "px", &rgba);
+        assert_eq!(read_map(&file, &budget, &Progress::new()).expect("an image"), of(&image));
+        assert_eq!(budget.held() - held, HeightMap::bytes_to_build([9, 5]), "the map alone");
+        let file = write(&folder, "cut", &rgba[..rgba.len() / 2]);
+        assert!(read_map(&file, &budget, &Progress::new()).is_err());
+    }
+
+    #[test]
+    fn floating_point_images_of_one_channel_are_refused_with_advice() {
+        // TIFF 6.0: eleven numbers about one px, each with its tag, its type (3 for 16 bits), how many there are, and itself.
+        let tags = [256, 257, 258, 259, 262, 273, 277, 278, 279, 284, 339];
+        let values = [1, 1, 32, 1, 1, 146, 1, 1, 4, 1, 3];
+        let mut bytes = b"II\x2a\0\x08\0\0\0\x0b\0".to_vec();
+        for (tag, value) in tags.into_iter().zip(values) {
+            bytes.extend([tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).as_flattened());
+        }
+        bytes.extend([0; 4]);
+        bytes.extend(0.5_f32.to_le_bytes());
+        let folder = tempfile::tempdir().expect("a writable temporary folder");
+        let file = write(&folder, "gray.tif", &bytes);
+        let said = read_map(&file, &Budget::unlimited(), &Progress::new()).expect_err("one channel").to_string();
+        assert!(said.ends_with("; save it with red, green and blue, or as a 16-bit PNG"), "{said}");
+    }
+
+    #[test]
+    fn a_broken_image_takes_no_room_from_the_next() {
+        let noise = |x: u32, y: u32| Rgb([(x + 64 * y).wrapping_mul(2_654_435_769).to_be_bytes()[0]; 3]);
+        let bytes = png(&RgbImage::from_fn(64, 64, noise).into());
+        // Room for one, with its file.
+        let room = HeightMap::bytes_to_build([64, 64]) + bytes.len() as u64;
+        let (budget, progress) = (Budget::new(0, room), Progress::new());
+        let image = ImageFile { path: Path::new("noise"), reserved: 0, budget: &budget, progress: &progress };
+        let said = image.decode(&bytes[..bytes.len() / 2]).expect_err("half an image").to_string();
+        assert!(!said.contains("memory"), "{said}");
+        assert_eq!(budget.held(), 0);
+        assert!(image.decode(&bytes).is_ok());
+        assert!(image.decode(&bytes).is_err(), "two don't fit");
     }
 
     #[test]

@@ -13,7 +13,7 @@ use crate::fbx::tests::tree::text;
 use crate::files::Limits;
 use crate::loaded_mesh::LoadedMesh;
 use crate::mesh_file::{LoadError, read};
-use crate::selection::Selection;
+use crate::selection::{Selection, ShownParts};
 use crate::source::Source;
 use geometry::mesh::shapes::Shape;
 use geometry::progress::Progress;
@@ -26,10 +26,18 @@ const MADE: Import = Import {
     show_hidden: false,
     subdivide: Subdivide::File,
     levels: None,
+    subdivide_uvs: None,
 };
 
 fn loaded(format: Format, bytes: &[u8], import: Import) -> LoadedMesh {
-    let selected = Selection { import, ..Selection::default() };
+    styled(format, bytes, import, &[])
+}
+
+/// The same with styles of parts.
+fn styled(format: Format, bytes: &[u8], import: Import, styles: &[(&str, &str)]) -> LoadedMesh {
+    let style = |(name, style): &(&str, &str)| ((*name).to_owned(), style.parse().expect("a style"));
+    let parts = ShownParts { styles: styles.iter().map(style).collect(), ..ShownParts::default() };
+    let selected = Selection { import, parts: Some(&parts), ..Selection::default() };
     read(format, bytes.to_vec(), Path::new("nowhere/test"), selected, &Limits::default(), &Progress::new())
         .expect("a file without a fault")
 }
@@ -113,6 +121,110 @@ fn shapes_get_made_normals_too_and_have_no_other_axis() {
         let refused = load(import).map(|_| ()).expect_err("its exact surface doesn't move");
         assert!(matches!(refused, LoadError::Shape { .. }), "{refused}");
     }
+}
+
+/// A floor and a wall, each a part of a material of its own, that meet in an edge. `normal` is that of all corners, and `before`
+/// stands before the faces.
+fn bent(normal: &str, before: &str) -> String {
+    let corners = |numbers: [u32; 4]| numbers.map(|number| format!(" {number}{normal}")).concat();
+    let positions = "v 0 0 0\nv 2 0 0\nv 2 0 2\nv 0 0 2\nv 0 2 0\nv 2 2 0\nvn 1 0 0\n";
+    let faces = [("floor", "grey", [1, 4, 3, 2]), ("wall", "white", [1, 2, 6, 5])];
+    let face = |(part, material, numbers)| format!("o {part}\nusemtl {material}\nf{}\n", corners(numbers));
+    positions.to_owned() + before + &faces.map(face).concat()
+}
+
+/// The normals of the floor and of the wall at the edge between them, where each has one.
+fn at_the_edge(loaded: &LoadedMesh) -> [Vec3; 2] {
+    [0, 1].map(|part| {
+        let own = (0..).zip(loaded.triangles.iter()).filter(|(triangle, _)| loaded.part_of(*triangle) == Some(part));
+        let corners = own.flat_map(|(_, corners)| corners.map(|id| loaded.corners[id as usize]));
+        let there: Vec<Vec3> = corners
+            .filter(|corner| corner.position.y == 0.0 && corner.position.z == 0.0)
+            .map(|corner| corner.normal)
+            .collect();
+        assert!(!there.is_empty() && there.iter().all(|normal| normal.distance(there[0]) < 1e-6), "{there:?}");
+        there[0]
+    })
+}
+
+/// With a wall and a floor that are equally large around each point, their mean normal lies in the middle.
+fn assert_at_the_edge(loaded: &LoadedMesh, expected: [Vec3; 2], what: &str) {
+    let found = at_the_edge(loaded);
+    let are_near = found.iter().zip(expected).all(|(found, expected)| found.distance(expected) < 1e-6);
+    assert!(are_near, "{what}: {found:?}, not {expected:?}");
+}
+
+#[test]
+fn corners_of_a_part_follow_its_own_rule_and_count_the_faces_of_all_parts() {
+    let between = vec3(0.0, 1.0, 1.0).normalize();
+    let without = bent("", "");
+    let given = bent("//1", "");
+    let [usual, smooth] = [60.0, 180.0].map(|crease_angle| Import { crease_angle, ..Import::default() });
+    let cases: [(&str, Import, &[(&str, &str)], [Vec3; 2]); 12] = [
+        (&without, usual, &[], [Vec3::Y, Vec3::Z]),
+        (&without, usual, &[("wall", "crease=180")], [Vec3::Y, between]),
+        (&without, usual, &[("wall", "crease=90")], [Vec3::Y, between]),
+        (&without, smooth, &[("wall", "crease=0")], [between, Vec3::Z]),
+        (&without, usual, &[("wall", "crease=180"), ("floor", "crease=180")], [between; 2]),
+        (&without, smooth, &[("material:grey", "crease=89")], [Vec3::Y, between]),
+        (&without, smooth, &[("material:grey", "crease=89"), ("floor", "crease=91")], [between; 2]),
+        (&given, usual, &[], [Vec3::X; 2]),
+        (&given, usual, &[("wall", "normals=made")], [Vec3::X, Vec3::Z]),
+        (&given, usual, &[("wall", "normals=made,crease=180")], [Vec3::X, between]),
+        (&given, MADE, &[("material:white", "normals=file")], [Vec3::Y, Vec3::X]),
+        (&given, usual, &[("material:white", "normals=made"), ("wall", "normals=file")], [Vec3::X; 2]),
+    ];
+    for (text, import, styles, expected) in cases {
+        let mesh = styled(Format::Obj, text.as_bytes(), import, styles);
+        assert_at_the_edge(&mesh, expected, &format!("{styles:?} with {import:?}"));
+    }
+}
+
+#[test]
+fn smoothing_groups_count_for_parts_whose_normals_are_those_of_the_file() {
+    let grouped = bent("", "s 1\n");
+    let own = styled(Format::Obj, grouped.as_bytes(), Import::default(), &[("wall", "normals=made")]);
+    let [floor, wall] = at_the_edge(&own);
+    assert!(floor.z > 0.1, "{floor}");
+    assert_at_the_edge(&own, [floor, Vec3::Z], "a wall that is made");
+    let own = styled(Format::Obj, grouped.as_bytes(), MADE, &[("floor", "normals=file")]);
+    assert_at_the_edge(&own, [floor, wall], "a floor of the file");
+}
+
+#[test]
+fn normals_are_missed_only_where_nobody_chose_how_they_are_made() {
+    let missed = |styles: &[(&str, &str)]| {
+        let mut warnings = styled(Format::Obj, bent("", "").as_bytes(), Import::default(), styles).warnings;
+        warnings.retain(|warning| is_of_lacking_normals(warning));
+        warnings.first().and_then(|warning| warning.trim_end_matches('.').chars().last())
+    };
+    assert_eq!(missed(&[]), Some('2'));
+    assert_eq!(missed(&[("wall", "surface=flat")]), Some('2'));
+    assert_eq!(missed(&[("wall", "crease=30")]), Some('1'));
+    assert_eq!(missed(&[("wall", "normals=made"), ("material:grey", "crease=60")]), None);
+}
+
+#[test]
+fn all_parts_of_gltf_and_fbx_files_and_of_cages_can_have_made_normals() {
+    let prism = text(&smoothed_prism());
+    for (format, bytes) in [(Format::Gltf, assets::VASE), (Format::Fbx, &prism)] {
+        let own = loaded(format, bytes, Import::default());
+        let names: Vec<String> = own.contents.parts.iter().map(|part| part.name.clone()).collect();
+        let styles: Vec<_> = names.iter().map(|name| (name.as_str(), "normals=made,crease=0")).collect();
+        let [of_parts, of_all] = [
+            styled(format, bytes, Import::default(), &styles),
+            loaded(format, bytes, Import { crease_angle: 0.0, ..MADE }),
+        ];
+        assert_flat(&of_parts);
+        assert_eq!((&of_parts.corners, &of_parts.triangles), (&of_all.corners, &of_all.triangles), "{format:?}");
+        assert_eq!((&of_parts.warnings, of_parts.repairs), (&of_all.warnings, of_all.repairs), "{format:?}");
+    }
+    let import = Import { subdivide: Subdivide::CatmullClark, levels: Some(1.0), ..Import::default() };
+    let flat = styled(Format::Obj, smooth_cube().as_bytes(), import, &[("default", "normals=made,crease=0")]);
+    assert!(flat.is_refined && flat.triangles.len() == 48);
+    assert_flat(&flat);
+    let smooth = loaded(Format::Obj, smooth_cube().as_bytes(), import);
+    assert!(smooth.corners.len() < flat.corners.len(), "it has the normals of the limit");
 }
 
 /// A triangle in centimetres, in a file that says which axis points up.

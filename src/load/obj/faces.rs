@@ -75,8 +75,8 @@ impl FacePiece {
                 b"o" => found.found.push(Found::Object(name())),
                 b"g" => found.found.push(Found::Group(name())),
                 b"usemtl" => found.found.push(Found::Material(name())),
-                // Material files were read with the vertices.
-                b"" | b"mtllib" => {}
+                // Material files and tags were read with the vertices.
+                b"" | b"mtllib" | b"t" => {}
                 word => found.count(word, statement),
             }
             Ok(())

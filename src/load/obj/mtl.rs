@@ -6,26 +6,29 @@
 use std::collections::BTreeMap;
 
 use crate::text_lines::{Lines, first_word, numbers_or_nan, parsed, words};
-use geometry::mesh::HeightAmount;
+use geometry::defaults::with_defaults;
 use geometry::mesh::mipmap::MipFilter;
+use geometry::mesh::{HeightAmount, Wrap};
 
-/// A material in a material file.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct MtlMaterial {
-    pub name: Vec<u8>,
-    /// Kd: the diffuse colour, linear.
-    pub color: [f32; 3],
-    /// Ke: the colour that is emitted, linear.
-    pub emissive: [f32; 3],
-    /// d: how opaque it is, 0 to 1.
-    pub alpha: f32,
-    /// Tr: how transparent it is, 0 to 1, in files that don't say how opaque it is.
-    pub transparency: f32,
-    /// Pr: perceptual roughness, 0 to 1.
-    pub roughness: Option<f32>,
-    /// Pm: 0 for dielectrics, 1 for metals.
-    pub metallic: Option<f32>,
-    pub textures: BTreeMap<MtlMap, MtlTexture>,
+with_defaults! {
+    /// A material in a material file; by default a white one.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(super) struct MtlMaterial {
+        pub name: Vec<u8> = Vec::new(),
+        /// Kd: the diffuse colour, linear.
+        pub color: [f32; 3] = [1.0; 3],
+        /// Ke: the colour that is emitted, linear.
+        pub emissive: [f32; 3] = [0.0; 3],
+        /// d: how opaque it is, 0 to 1.
+        pub alpha: f32 = 1.0,
+        /// Tr: how transparent it is, 0 to 1, in files that don't say how opaque it is.
+        pub transparency: f32 = 0.0,
+        /// Pr: perceptual roughness, 0 to 1.
+        pub roughness: Option<f32> = None,
+        /// Pm: 0 for dielectrics, 1 for metals.
+        pub metallic: Option<f32> = None,
+        pub textures: BTreeMap<MtlMap, MtlTexture> = BTreeMap::new(),
+    }
 }
 
 /// What a texture is for. The first one that a material has says where all are.
@@ -77,20 +80,6 @@ const MAP_STATEMENTS: [(&[u8], MtlMap); 12] = [
 ];
 
 impl MtlMaterial {
-    /// A white material.
-    pub(super) fn named(name: &[u8]) -> Self {
-        Self {
-            name: name.to_vec(),
-            color: [1.0; 3],
-            emissive: [0.0; 3],
-            alpha: 1.0,
-            transparency: 0.0,
-            roughness: None,
-            metallic: None,
-            textures: BTreeMap::new(),
-        }
-    }
-
     /// Its maps that count: heights don't beside normals.
     pub(super) fn maps(&self) -> impl Iterator<Item = (MtlMap, &MtlTexture)> {
         let has_normals = self.textures.contains_key(&MtlMap::Normal);
@@ -109,19 +98,21 @@ impl MtlMaterial {
     }
 }
 
-/// A texture, and the options before its name.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct MtlTexture {
-    pub file: String,
-    /// -s and -o: texture coordinates are multiplied by the first, and the second is added.
-    pub scale: [f32; 2],
-    pub offset: [f32; 2],
-    /// -clamp on: there is no image beyond its border.
-    pub is_clamped: bool,
-    /// -bm: what the slopes of a normal map are multiplied by.
-    pub strength: f32,
-    /// -mm: how far heights move the surface, which is what is added to them and before that what they are multiplied by.
-    pub amount: Option<HeightAmount>,
+with_defaults! {
+    /// A texture, and the options before its name.
+    #[derive(Clone, Debug, PartialEq)]
+    pub(super) struct MtlTexture {
+        pub file: String = String::new(),
+        /// -s and -o: texture coordinates are multiplied by the first, and the second is added.
+        pub scale: [f32; 2] = [1.0; 2],
+        pub offset: [f32; 2] = [0.0; 2],
+        /// -clamp: what is beyond its border.
+        pub wrap: Wrap = Wrap::Repeat,
+        /// -bm: what the slopes of a normal map are multiplied by.
+        pub strength: f32 = 1.0,
+        /// -mm: how far heights move the surface, which is what is added to them and before that what they are multiplied by.
+        pub amount: Option<HeightAmount> = None,
+    }
 }
 
 /// Reads the materials of a file. Also returns how many statements that are understood have numbers that can't be read.
@@ -134,7 +125,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<(Vec<MtlMaterial>, usize), String> {
     while let Some(line) = lines.next().map_err(|fault| fault.to_string())? {
         let (word, rest) = first_word(line.text);
         if word == b"newmtl" {
-            materials.push(MtlMaterial::named(rest));
+            materials.push(MtlMaterial { name: rest.to_vec(), ..MtlMaterial::default() });
         }
         let Some(material) = materials.last_mut() else { continue };
         bad += usize::from(take(material, word, rest).is_none());
@@ -177,14 +168,7 @@ fn part(text: &[u8]) -> Option<f32> {
 
 /// Parses a file name after options. Options about anything but its place are ignored.
 fn texture(mut text: &[u8]) -> MtlTexture {
-    let mut found = MtlTexture {
-        file: String::new(),
-        scale: [1.0; 2],
-        offset: [0.0; 2],
-        is_clamped: false,
-        strength: 1.0,
-        amount: None,
-    };
+    let mut found = MtlTexture::default();
     loop {
         let (word, mut rest) = first_word(text);
         let count = match word {
@@ -200,7 +184,7 @@ fn texture(mut text: &[u8]) -> MtlTexture {
         };
         let place = numbers_or_nan::<2>(rest);
         match word {
-            b"-clamp" => found.is_clamped = first_word(rest).0 == b"on",
+            b"-clamp" => found.wrap = if first_word(rest).0 == b"on" { Wrap::Clamp } else { Wrap::Repeat },
             b"-bm" => found.strength = Some(place[0]).filter(|strength| strength.is_finite()).unwrap_or(1.0),
             b"-mm" => found.amount = HeightAmount::from_factor(place[1], place[0]),
             b"-s" => replace(&mut found.scale, place, count),
@@ -234,7 +218,8 @@ mod tests {
         let text = "# made by hand\r\nKd 1 0 0\r\nnewmtl old wood\r\nNs x\r\nKd 0.5 .25 2\r\nmap_Kd -s 2 3 1 -clamp on \
                     a b.png\r\nPr 0.25\r\nPm 7\r\nd -halo 0.5\r\nTr 0.5\r\nKe 2\r\nmap_Ke -o 0.5 glow.png\r\nnorm -bm 2.5 n.png\r\nmap_bump b.png\r\nmap_d d.png\r\nmap_Pr r.png\r\nmap_Pm m.png\r\nmap_disp -mm -0.5 2 h.png\r\nnewmtl plain\r\n\tKd \
                     spectral a.rfl\r\nKd 0.5\r\nd\r\n";
-        let place = |file: &str| MtlTexture { file: file.to_owned(), ..texture(b"") };
+        let place = |file: &str| MtlTexture { file: file.to_owned(), ..MtlTexture::default() };
+        let named = |name: &[u8]| MtlMaterial { name: name.to_vec(), ..MtlMaterial::default() };
         let amount = Some(HeightAmount { scale: 2.0, midlevel: 0.25 });
         let wood = MtlMaterial {
             color: [0.5, 0.25, 1.0],
@@ -244,7 +229,7 @@ mod tests {
             roughness: Some(0.25),
             metallic: Some(1.0),
             textures: BTreeMap::from([
-                (MtlMap::BaseColor, MtlTexture { scale: [2.0, 3.0], is_clamped: true, ..place("a b.png") }),
+                (MtlMap::BaseColor, MtlTexture { scale: [2.0, 3.0], wrap: Wrap::Clamp, ..place("a b.png") }),
                 (MtlMap::Emissive, MtlTexture { offset: [0.5, 0.0], ..place("glow.png") }),
                 (MtlMap::Normal, MtlTexture { strength: 2.5, ..place("n.png") }),
                 (MtlMap::Bump, place("b.png")),
@@ -253,14 +238,18 @@ mod tests {
                 (MtlMap::Metalness, place("m.png")),
                 (MtlMap::Displacement, MtlTexture { amount, ..place("h.png") }),
             ]),
-            ..MtlMaterial::named(b"old wood")
+            ..named(b"old wood")
         };
-        let plain = MtlMaterial { color: [0.5; 3], ..MtlMaterial::named(b"plain") };
+        let plain = MtlMaterial { color: [0.5; 3], ..named(b"plain") };
         assert_eq!(read(text.as_bytes()), Ok((vec![wood, plain], 2)));
         assert_eq!(texture(b"-o 1 2.png"), MtlTexture { offset: [1.0, 0.0], ..place("2.png") });
         let whole = HeightAmount::from_factor(1.0, 0.0);
         assert_eq!(texture(b"-mm 0 1 -bm 2 -t 1 x"), MtlTexture { strength: 2.0, amount: whole, ..place("x") });
-        for bad in ["-mm 1 0 x", "-mm a b x", "-mm 0 inf x"] {
+        for (text, base) in [("-mm 0 0 x", 0.0), ("-mm 0.7 0 x", 0.7)] {
+            let HeightAmount { scale, midlevel } = texture(text.as_bytes()).amount.expect("an amount");
+            assert!([0.0, 0.3, 1.0].iter().all(|height| (scale * (height - midlevel) - base).abs() < 1e-6), "{text}");
+        }
+        for bad in ["-mm a b x", "-mm 0 inf x"] {
             assert_eq!(texture(bad.as_bytes()), place("x"), "{bad}");
         }
         assert_eq!(texture(b"-bm x y"), place("y"));

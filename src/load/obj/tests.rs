@@ -4,7 +4,9 @@ use glam::{Vec2, Vec3};
 
 use super::*;
 use crate::face_builder::tests::{POINTS, SIDES, assert_cube};
+use crate::import::{Import, Subdivide};
 use crate::selection::{Selection, ShownParts};
+use geometry::mesh::subdivision::FaceVarying;
 use geometry::progress::Progress;
 
 fn read(text: &str) -> LoadedMesh {
@@ -303,4 +305,110 @@ fn triangles_that_are_taken_together_are_those_that_are_taken_one_by_one() {
         };
         assert_eq!(counts(&together), counts(&one_by_one), "but for the line of the first");
     }
+}
+
+/// Four squares, whose middle is 1 high.
+const TENT: &str = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 1 1 1\nv 2 1 0\nv 0 2 0\nv 1 2 0\nv 2 2 0\n\
+                    f 1 2 5 4\nf 2 3 6 5\nf 4 5 8 7\nf 5 6 9 8\n";
+
+/// Takes the faces as the cage of a Catmull-Clark surface, whose limit their corners get.
+fn refined(text: &str, import: Import) -> LoadedMesh {
+    let import = Import { subdivide: Subdivide::CatmullClark, ..import };
+    let (selected, progress) = (Selection { import, ..Selection::default() }, Progress::new());
+    let file = ModelFile { selected, ..ModelFile::from_test("cage", &progress) };
+    super::read(text.as_bytes().to_vec(), &file).expect("a mesh")
+}
+
+/// Without refining it.
+fn limit() -> Import {
+    Import { levels: Some(0.0), ..Import::default() }
+}
+
+#[test]
+fn tags_say_creases_sharp_points_holes_and_rules() {
+    let height = |tags: &str| {
+        let mesh = refined(&format!("{tags}{TENT}"), limit());
+        assert_eq!(mesh.warnings, [] as [String; 0], "{tags}");
+        let after = refined(&format!("{TENT}{tags}"), limit());
+        assert_eq!(after.corners, mesh.corners, "tags may come last");
+        mesh.corners.iter().map(|corner| corner.position.z).fold(0.0, f32::max)
+    };
+    let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
+    // (12 of itself, and 4 of each face's center) / 36; along a crease 2/3 of itself; at a sharp point all of itself.
+    near(height(""), 4.0 / 9.0);
+    near(height("t crease 3/1/0 1 4 7 10\n"), 2.0 / 3.0);
+    near(height("t crease 2/1/0 1 4 10\nt crease 2/1/0 7 4 9e9\n"), 2.0 / 3.0);
+    near(height("t crease 3/2/0 1 4 7 10 0\n"), 4.0 / 9.0);
+    near(height("t corner 2/1/0 4 0 inf # sharp\n"), 1.0);
+    // An open mesh has corners unless the file says that it hasn't.
+    let corner = |rule: &str| {
+        let mesh = refined(&format!("{TENT}t interpolateboundary 1/0/0 {rule}\n"), limit());
+        mesh.corners.iter().map(|corner| corner.position.x).fold(9.0, f32::min)
+    };
+    near(corner("1"), 0.0);
+    assert!(corner("2") == 0.0, "the middle of a side stays on it");
+    let inside = |rule: &str| {
+        let mesh = refined(&format!("{TENT}t interpolateboundary 1/0/0 {rule}\n"), limit());
+        mesh.corners.iter().map(|corner| corner.position.truncate().length()).fold(9.0, f32::min)
+    };
+    near(inside("1"), 0.0);
+    near(inside("2"), 2.0_f32.sqrt() / 6.0);
+    // A hole shapes the faces beside it.
+    let [whole, holed] = ["", "t hole 1/0/0 3\n"].map(|tag| refined(&format!("{TENT}{tag}"), limit()));
+    assert_eq!((whole.triangles.len(), holed.triangles.len()), (8, 6));
+    assert!(holed.corners.iter().all(|corner| whole.corners.contains(corner)));
+}
+
+#[test]
+fn flawed_tags_are_left_out_and_counted() {
+    let flawed = "t crease 2/1/0 1 4 -1\nt corner 1/1/0 4 nan\nt crease 2/1/0 1 99 2\nt corner 1/1/0 -1 2\n\
+                  t crease 2/1/0 4 4 1\nt hole 1/0/0 4\nt crease 2/1/0 0 8 2\nt crease 3/1/0 1 4\n\
+                  t crease 2/3/0 1 4 1 1 1\nt crease\nt\nt corner a/b/c\nt hole 99999999999999999999/0/0\n\
+                  t interpolateboundary 1/0/0 0\nt facevaryinginterpolateboundary 1/0/0 6\nt smoothtriangles 0/0/1 smooth\n";
+    let mesh = refined(&format!("{TENT}{flawed}"), limit());
+    assert_eq!(mesh.corners, refined(TENT, limit()).corners);
+    let expected = [
+        "and known rules for boundaries, left out: 9.",
+        "whose sharpness is negative or not a number, left out: 2.",
+        "of a vertex or face that isn't in the file, left out: 4.",
+        "creases and sharp points that no face has, left out: 1.",
+    ];
+    assert_eq!(mesh.warnings.len(), 4, "{:?}", mesh.warnings);
+    for (warning, expected) in mesh.warnings.iter().zip(expected) {
+        assert!(warning.ends_with(expected), "{warning}");
+    }
+    // Where nothing is refined, they say nothing.
+    assert_eq!(read(&format!("{TENT}{flawed}")).warnings, [format!("{WITHOUT_NORMALS}: 4.")]);
+}
+
+#[test]
+fn texture_coordinates_follow_the_files_rule_or_that_which_was_chosen_and_move_no_point() {
+    // The coordinates are x and y, but 9 and 0 in the middle.
+    let coordinates = "vt 0 0\nvt 1 0\nvt 2 0\nvt 0 1\nvt 9 0\nvt 2 1\nvt 0 2\nvt 1 2\nvt 2 2\n";
+    let (vertices, _) = TENT.split_at(TENT.find('f').expect("faces"));
+    let faces = "f 1/1 2/2 5/5 4/4\nf 2/2 3/3 6/6 5/5\nf 4/4 5/5 8/8 7/7\nf 5/5 6/6 9/9 8/8\n";
+    let text = format!("{vertices}{coordinates}{faces}");
+    let middle = |mesh: &LoadedMesh| {
+        let middle = mesh.corners.iter().find(|corner| corner.position.truncate() == Vec2::ONE);
+        middle.expect("a middle").uv.x
+    };
+    let plain = refined(&text, limit());
+    assert_eq!(middle(&plain), 9.0);
+    // 12 of itself, 2 of each neighbour and 1 of each corner: (16 * 9 + 4 * 4 * 1 + 4 * 1) / 36.
+    let smooth = (16.0 * 9.0 + 4.0 * 4.0 + 4.0) / 36.0;
+    let chosen = |rule, tag: u32| {
+        let import = Import { subdivide_uvs: rule, ..limit() };
+        let mesh = refined(&format!("{text}t facevaryinginterpolateboundary 1/0/0 {tag}\n"), import);
+        assert_eq!(mesh.warnings, [] as [String; 0]);
+        let points = |mesh: &LoadedMesh| mesh.corners.iter().map(|own| (own.position, own.normal)).collect::<Vec<_>>();
+        assert_eq!(points(&mesh), points(&plain));
+        middle(&mesh)
+    };
+    let near = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a} is not {b}");
+    for tag in 0..5 {
+        near(chosen(None, tag), smooth);
+        assert_eq!(chosen(Some(FaceVarying::Linear), tag), 9.0);
+    }
+    assert_eq!(chosen(None, 5), 9.0);
+    near(chosen(Some(FaceVarying::Boundaries), 5), smooth);
 }

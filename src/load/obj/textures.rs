@@ -84,26 +84,24 @@ impl Giving {
         };
         for (index, Parts { opacity, roughness, metalness }) in &self.0 {
             let material = faces.builder.material_mut(*index);
+            let name = material.name.clone();
             let mut warn = |what: &str, reason: String| {
-                problems.push(format!("{what} of material \"{}\" is left out: {reason}.", material.name));
+                problems.push(format!("{what} of material \"{name}\" is left out: {reason}."));
             };
-            let mut looks = (None, None);
             if let Some(image) = opacity {
                 let color = material.texture.clone();
                 let join = || with_opacity(color.as_deref(), image, budget);
-                looks.0 =
-                    joined("opacity", [&color, opacity], &join).map_err(|reason| warn("the opacity", reason)).ok();
+                match joined("opacity", [&color, opacity], &join) {
+                    Ok(texture) => (material.texture, material.look.alpha) = (Some(texture), Alpha::Blend),
+                    Err(reason) => warn("the opacity", reason),
+                }
             }
             if roughness.is_some() || metalness.is_some() {
                 let join = || metallic_roughness(roughness.as_deref(), false, metalness.as_deref(), budget);
-                let texture = joined("roughness and metalness", [roughness, metalness], &join);
-                looks.1 = texture.map_err(|reason| warn("the texture of roughness and metalness", reason)).ok();
-            }
-            if let Some(texture) = looks.0 {
-                (material.texture, material.look.alpha) = (Some(texture), Alpha::Blend);
-            }
-            if let Some(texture) = looks.1 {
-                set_map(material, Slot::MetallicRoughness, texture);
+                match joined("roughness and metalness", [roughness, metalness], &join) {
+                    Ok(texture) => set_map(material, Slot::MetallicRoughness, texture),
+                    Err(reason) => warn("the texture of roughness and metalness", reason),
+                }
             }
         }
         problems

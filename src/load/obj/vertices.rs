@@ -85,6 +85,8 @@ pub(super) struct VertexPiece {
     flaws: VertexFlaws,
     /// The names of material files that it asks for, one statement each.
     pub libraries: Vec<Vec<u8>>,
+    /// What its subdivision tags say.
+    pub tags: Vec<Vec<u8>>,
     /// Why the piece couldn't be read to its end.
     pub error: Option<ReadError>,
 }
@@ -126,6 +128,7 @@ impl VertexPiece {
                 self.uvs.push(Vec2::new(u, 1.0 - if count > 1 { v } else { 0.0 }));
             }
             b"s" => self.is_smoothed |= group(statement.rest()) != 0,
+            b"t" => self.tags.push(statement.rest().to_vec()),
             b"mtllib" => self.libraries.push(statement.rest().to_vec()),
             _ => {}
         }

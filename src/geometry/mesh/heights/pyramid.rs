@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::{HeightMap, MAX_KEPT};
 use crate::casts::to_u32;
+use crate::mesh::Wrap;
 use crate::progress::{Cancelled, Progress};
 
 impl HeightMap {
@@ -47,7 +48,13 @@ impl HeightMap {
         }
         let range = [least, greatest];
         let (levels, heights) = (to_u32(sizes.len()), Arc::new(heights));
-        Ok(Self { size: fitted, levels, repeats: false, amount: None, range, heights })
+        Ok(Self { size: fitted, levels, wrap: [Wrap::Repeat; 2], amount: None, range, heights })
+    }
+
+    /// Returns the map without its level 0; none if it has no other.
+    pub fn halved(&self) -> Option<Self> {
+        let (size, heights) = (halved(self.size)?, self.heights[px_of(self.size)..].to_vec());
+        Some(Self { size, levels: self.levels - 1, heights: Arc::new(heights), ..self.clone() })
     }
 
     /// Returns how many bytes it takes to build a map from an image of this size, the map included.
@@ -145,6 +152,14 @@ mod tests {
         assert_eq!(map.heights.len(), 10 + 2 + 1);
         // The last level is about the mean.
         assert!((map.heights[12] - 0.5).abs() < 0.1, "{}", map.heights[12]);
+    }
+
+    #[test]
+    fn a_halved_map_is_the_same_without_its_first_level() {
+        let map = HeightMap::new([5, 2], (0..10).map(|i| i as f32 / 9.0).collect());
+        let half = map.halved().expect("two more levels");
+        assert_eq!((half.size, half.levels, &half.heights[..]), ([2, 1], 2, &map.heights[10..]));
+        assert_eq!(half.halved().expect("a level").halved(), None, "it has one px");
     }
 
     #[test]

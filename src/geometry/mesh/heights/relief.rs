@@ -17,7 +17,7 @@ use glam::Vec2;
 
 use super::{HeightMap, Heights, Mesh};
 use crate::cores::in_ranges;
-use crate::mesh::{Patch, Topology};
+use crate::mesh::{Patch, Topology, Wrap};
 use crate::progress::{Cancelled, Progress};
 
 /// For how many lengths of sides there are bounds, each half as long as the one before.
@@ -42,14 +42,10 @@ impl Relief {
     fn offer(&mut self, loss: [f32; 2]) {
         // In the middle of what each is used for: the last one also for all shorter sides.
         let mut side = 0.7 * self.longest;
-        for (step, own) in self.losses.iter_mut().enumerate() {
-            side *= if step == 0 {
-                1.0
-            } else if step + 1 < RELIEF_STEPS {
-                0.5
-            } else {
-                0.25
-            };
+        let mut ratios = [0.5; RELIEF_STEPS];
+        (ratios[0], ratios[RELIEF_STEPS - 1]) = (1.0, 0.25);
+        for (own, ratio) in self.losses.iter_mut().zip(ratios) {
+            side *= ratio;
             let at = |[constant, square]: [f32; 2]| constant + square * side * side;
             if at(loss) < at(*own) {
                 *own = loss;
@@ -132,7 +128,14 @@ impl Triangles<'_> {
         let slopes = self.largest(0, &|x, y| heights.slope(x, y))?;
         let size = Vec2::from(self.map.size.map(|side| side as f32));
         let sides = |[a, b, c]: &[Vec2; 3]| [*b - *a, *c - *b, *a - *c].map(|side| (side * size).length());
-        let beyond = self.largest(0, &|x, y| heights.beyond_border(x, y))?;
+        let mut beyond = self.largest(0, &|x, y| heights.beyond_border(x, y))?;
+        // Half a px beyond a border is all that slopes which go on are near.
+        let is_beyond = |uv: &Vec2, k: usize| self.map.wrap[k] != Wrap::Repeat && !(0.0..=1.0).contains(&uv[k]);
+        for (beyond, uvs) in beyond.iter_mut().zip(&self.uvs) {
+            if uvs.iter().any(|uv| is_beyond(uv, 0) || is_beyond(uv, 1)) {
+                *beyond = f32::INFINITY;
+            }
+        }
         let relief = |(index, uvs): (usize, &[Vec2; 3])| {
             let range = greatest[index] + least[index];
             let longest = sides(uvs).into_iter().fold(0.0, f32::max);
@@ -147,12 +150,12 @@ impl Triangles<'_> {
                 break;
             }
             // Beyond a border slopes end. That is a bend, or a distance from slopes that go on.
-            if level == 0 && !self.map.repeats {
-                let losses = self.losses(level, &heights, &|x, y| heights.bend(x, y))?;
+            if level == 0 && self.map.wrap != [Wrap::Repeat; 2] {
+                let losses = self.losses(level, &heights, &|x, y| heights.bend(x, y, false))?;
                 all.iter_mut().zip(losses).for_each(|(relief, loss)| relief.offer(loss));
             }
             let own = LevelPx::new(self.map, level);
-            let losses = self.losses(level, &heights, &|x, y| own.bend_within(x, y))?;
+            let losses = self.losses(level, &heights, &|x, y| own.bend(x, y, true))?;
             for ((relief, [constant, square]), beyond) in all.iter_mut().zip(losses).zip(&beyond) {
                 relief.offer([constant + 2.0 * beyond, square]);
             }
@@ -173,7 +176,7 @@ impl Triangles<'_> {
         let lost = match level {
             0 => vec![0.0; self.uvs.len()],
             _ => {
-                let lost = LevelLoss::new(&own, heights, self.map.repeats);
+                let lost = LevelLoss::new(&own, heights);
                 self.largest(level, &|x, y| lost.at(x, y))?
             }
         };
@@ -195,7 +198,7 @@ impl Triangles<'_> {
         let blocks = Blocks::new(size, if level == 0 { 2 } else { 1 }, self.progress, value)?;
         let over = |[a, b, c]: &[Vec2; 3]| {
             let (least, greatest) = (a.min(*b).min(*c), a.max(*b).max(*c));
-            let span = |axis: usize| spans(size[axis], self.map.repeats, [least[axis], greatest[axis]]);
+            let span = |axis: usize| spans(size[axis], self.map.wrap[axis], [least[axis], greatest[axis]]);
             blocks.largest(&span(0), &span(1))
         };
         let ranges = in_ranges(self.uvs.len(), 1024, |range| self.uvs[range].iter().map(over).collect::<Vec<_>>());
@@ -204,17 +207,18 @@ impl Triangles<'_> {
 }
 
 /// Returns the px of an axis between two texture coordinates, and two more on each side: two ranges, where the image repeats between
-/// them.
+/// them. All px, where it is mirrored.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the image")]
-fn spans(size: usize, repeats: bool, ends: [f32; 2]) -> [Range<usize>; 2] {
+fn spans(size: usize, wrap: Wrap, ends: [f32; 2]) -> [Range<usize>; 2] {
     let [from, to] = ends.map(|end| (f64::from(end) * size as f64 - 0.5).floor());
     let (from, to) = (from - 1.0, to + 3.0);
-    if !repeats {
+    let is_mirrored = wrap == Wrap::Mirror && (ends[0] < 0.0 || ends[1] > 1.0);
+    if wrap != Wrap::Repeat && !is_mirrored {
         let end = (to.max(1.0) as usize).min(size);
         return [(from.max(0.0) as usize).min(size - 1)..end, 0..0];
     }
     let within = to - from;
-    if within.is_nan() || within >= size as f64 {
+    if is_mirrored || within.is_nan() || within >= size as f64 {
         return [0..size, 0..0];
     }
     let start = (from.rem_euclid(size as f64) as usize).min(size - 1);
@@ -225,7 +229,8 @@ fn spans(size: usize, repeats: bool, ends: [f32; 2]) -> [Range<usize>; 2] {
 /// The px of a level.
 struct LevelPx<'a> {
     size: [usize; 2],
-    repeats: bool,
+    /// Whether the image repeats along each axis.
+    repeats: [bool; 2],
     /// Width and height of level 0, as parts of this level's.
     ratio: Vec2,
     px: &'a [f32],
@@ -236,7 +241,8 @@ impl<'a> LevelPx<'a> {
         let size = map.level_size(level).map(|side| side as usize);
         let start: usize = (0..level).map(|l| map.level_size(l)).map(|[x, y]| (x * y) as usize).sum();
         let [x, y] = [0, 1].map(|axis| size[axis] as f32 / map.size[axis] as f32);
-        Self { size, repeats: map.repeats, ratio: Vec2::new(x, y), px: &map.heights[start..start + size[0] * size[1]] }
+        let repeats = map.wrap.map(|wrap| wrap == Wrap::Repeat);
+        Self { size, repeats, ratio: Vec2::new(x, y), px: &map.heights[start..start + size[0] * size[1]] }
     }
 
     /// Width and height of a px, in px of level 0.
@@ -251,7 +257,7 @@ impl<'a> LevelPx<'a> {
     /// The px beside one along an axis: itself at the border of an image that doesn't repeat.
     fn beside(&self, axis: usize, at: usize) -> [usize; 2] {
         let last = self.size[axis] - 1;
-        match self.repeats {
+        match self.repeats[axis] {
             true => [if at > 0 { at - 1 } else { last }, if at < last { at + 1 } else { 0 }],
             false => [at.saturating_sub(1), (at + 1).min(last)],
         }
@@ -259,28 +265,17 @@ impl<'a> LevelPx<'a> {
 
     /// Whether a px is at a border, beyond which the image doesn't repeat, on the left or right and above or below.
     fn is_at_border(&self, x: usize, y: usize) -> [bool; 2] {
-        [0, 1].map(|axis| !self.repeats && [0, self.size[axis] - 1].contains(&[x, y][axis]))
+        [0, 1].map(|axis| !self.repeats[axis] && [0, self.size[axis] - 1].contains(&[x, y][axis]))
     }
 
-    /// The second differences along both axes, for px of level 0.
-    fn bends(&self, x: usize, y: usize) -> [f32; 2] {
+    /// The larger second difference along both axes, for px of level 0, as it is or as if slopes went on beyond borders.
+    fn bend(&self, x: usize, y: usize, goes_on: bool) -> f32 {
         let ([left, right], [above, below]) = (self.beside(0, x), self.beside(1, y));
         let twice = 2.0 * self.at(x, y);
         let across = (self.at(left, y) - twice + self.at(right, y)).abs() * self.ratio.x * self.ratio.x;
         let down = (self.at(x, above) - twice + self.at(x, below)).abs() * self.ratio.y * self.ratio.y;
-        [across, down]
-    }
-
-    /// The larger of them.
-    fn bend(&self, x: usize, y: usize) -> f32 {
-        let [across, down] = self.bends(x, y);
-        across.max(down)
-    }
-
-    /// The same as if slopes went on beyond borders.
-    fn bend_within(&self, x: usize, y: usize) -> f32 {
-        let ([across, down], at_border) = (self.bends(x, y), self.is_at_border(x, y));
-        (if at_border[0] { 0.0 } else { across }).max(if at_border[1] { 0.0 } else { down })
+        let [beside, over] = self.is_at_border(x, y).map(|is_at_border| goes_on && is_at_border);
+        (if beside { 0.0 } else { across }).max(if over { 0.0 } else { down })
     }
 
     /// How far the half px beyond a border is from slopes that go on.
@@ -328,8 +323,8 @@ struct LevelLoss<'a> {
 type Between = (usize, usize, f32);
 
 impl<'a> LevelLoss<'a> {
-    fn new(own: &'a LevelPx, heights: &'a LevelPx, repeats: bool) -> Self {
-        let of = |axis: usize| places(heights.size[axis], own.size[axis], repeats);
+    fn new(own: &'a LevelPx, heights: &'a LevelPx) -> Self {
+        let of = |axis: usize| places(heights.size[axis], own.size[axis], own.repeats[axis]);
         Self { own, heights, columns: of(0), rows: of(1) }
     }
 

@@ -43,7 +43,7 @@ pub enum CageError {
     #[error("face {face} has {corners} corners, but a face needs at least 3: leave it out")]
     TooFewCorners { face: u32, corners: u32 },
     #[error(
-        "face {face} has {corners} corners, but Loop's scheme refines triangles: triangulate it, or use Catmull-Clark"
+        "face {face} has {corners} corners, but this scheme refines triangles: triangulate it, or use Catmull-Clark"
     )]
     NoTriangle { face: u32, corners: u32 },
     #[error("face {face} has point {point} twice: leave the face out, or split it there")]
@@ -91,8 +91,8 @@ impl Cage<'_> {
             let corners = end.saturating_sub(start);
             match self.scheme {
                 _ if corners < 3 => return Err(CageError::TooFewCorners { face, corners }),
-                Scheme::Loop if corners > 3 => return Err(CageError::NoTriangle { face, corners }),
-                _ => {}
+                Scheme::Loop | Scheme::Butterfly if corners > 3 => return Err(CageError::NoTriangle { face, corners }),
+                Scheme::CatmullClark | Scheme::Loop | Scheme::Butterfly => {}
             }
         }
         let of_one = |point: u32, sharpness| ([point; 2], sharpness);
@@ -115,26 +115,14 @@ impl Cage<'_> {
         Ok(())
     }
 
-    /// Connects the faces of a cage that was checked.
+    /// Connects the faces of a cage that was checked. Also returns how many creases aren't edges.
     ///
     /// # Errors
     /// [`CageError::RepeatedPoint`] and [`CageError::NonManifold`].
-    pub(super) fn level(&self) -> Result<Level, CageError> {
-        let mut level = Level {
-            points: self.points,
-            polygons: self.polygons(),
-            origins: self.corners.to_vec(),
-            edges: vec![0; self.corners.len()],
-            edge_sides: Vec::new(),
-            edge_sharpness: Vec::new(),
-            point_sharpness: Vec::new(),
-            first_sides: vec![NONE; self.points],
-        };
-        check_repeated(&level)?;
-        let ends = connect(&mut level)?;
-        set_first_sides(&mut level);
-        self.sharpen(&mut level, &ends);
-        Ok(level)
+    pub(super) fn level(&self) -> Result<(Level, usize), CageError> {
+        let (mut level, ends) = connected(self.points, self.polygons(), self.corners.to_vec())?;
+        let lone_creases = self.sharpen(&mut level, &ends);
+        Ok((level, lone_creases))
     }
 
     fn polygons(&self) -> Polygons {
@@ -150,16 +138,17 @@ impl Cage<'_> {
         }
     }
 
-    /// Gives edges, by the ends of each, and points their sharpness.
-    fn sharpen(&self, level: &mut Level, ends: &[[u32; 2]]) {
+    /// Gives edges, by the ends of each, and points their sharpness. Returns how many creases aren't edges.
+    fn sharpen(&self, level: &mut Level, ends: &[[u32; 2]]) -> usize {
         let is_sharp = |sides: &[u32; 2]| sides[1] == NONE || level.is_inconsistent(*sides);
         let own = |sides| if is_sharp(sides) { INFINITELY_SHARP } else { 0.0 };
         let mut edges: Vec<f32> = level.edge_sides.iter().map(own).collect();
+        let mut lone_creases = 0;
         for (crease, sharpness) in self.creases {
             let [a, b] = *crease;
-            if let Ok(edge) = ends.binary_search(&[a.min(b), a.max(b)]) {
-                edges[edge] = edges[edge].max(*sharpness).min(INFINITELY_SHARP);
-            }
+            let edge = ends.binary_search(&[a.min(b), a.max(b)]);
+            lone_creases += usize::from(edge.is_err());
+            edge.iter().for_each(|&edge| edges[edge] = edges[edge].max(*sharpness).min(INFINITELY_SHARP));
         }
         let mut points = vec![0.0; self.points];
         for &(point, sharpness) in self.sharp_points {
@@ -175,7 +164,28 @@ impl Cage<'_> {
         }
         let unless_smooth = |list: Vec<f32>| if list.iter().all(|s| *s == 0.0) { Vec::new() } else { list };
         (level.edge_sharpness, level.point_sharpness) = (unless_smooth(edges), unless_smooth(points));
+        lone_creases
     }
+}
+
+/// Connects polygons of so many points, which are given for each corner; all is smooth. Also returns the points of each edge.
+///
+/// # Errors
+/// [`CageError::RepeatedPoint`] and [`CageError::NonManifold`].
+pub(super) fn connected(
+    points: usize,
+    polygons: Polygons,
+    origins: Vec<u32>,
+) -> Result<(Level, Vec<[u32; 2]>), CageError> {
+    let (edges, first_sides) = (vec![0; origins.len()], vec![NONE; points]);
+    let [edge_sharpness, point_sharpness] = [Vec::new(), Vec::new()];
+    let edge_sides = Vec::new();
+    let mut level =
+        Level { points, polygons, origins, edges, edge_sides, edge_sharpness, point_sharpness, first_sides };
+    check_repeated(&level)?;
+    let ends = connect(&mut level)?;
+    set_first_sides(&mut level);
+    Ok((level, ends))
 }
 
 fn check_repeated(level: &Level) -> Result<(), CageError> {

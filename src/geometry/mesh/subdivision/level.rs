@@ -8,6 +8,7 @@ use crate::casts::to_u32;
 pub(super) const NONE: u32 = u32::MAX;
 
 /// Which sides form which face. The sides of a face follow one another, in the order of its corners.
+#[derive(Clone)]
 pub(super) enum Polygons {
     Triangles,
     Quads,

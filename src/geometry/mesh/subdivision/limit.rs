@@ -9,6 +9,8 @@ use crate::casts::to_u32;
 
 /// What values become in the limit of infinitely many levels, at the points of a refinement.
 ///
+/// The butterfly scheme's points are in the limit already, and its normals approximate the limit's.
+///
 /// Edges and points that are still sharp on the finest level count as infinitely sharp, and where a single sharp edge ends the
 /// limit is that of a smooth point: both as in OpenSubdiv's `PrimvarRefiner::Limit`.
 pub struct Limit<'a, T>(pub(super) Values<'a, T>);

@@ -18,6 +18,9 @@ pub(super) const CREASE: Mask = Mask { own: 0.75, end: 0.125, center: 0.0 };
 /// The same for the limit.
 pub(super) const CREASE_LIMIT: Mask = Mask { own: 2.0 / 3.0, end: 1.0 / 6.0, center: 0.0 };
 
+/// Of a point that stays where it is.
+const KEPT: Mask = Mask { own: 1.0, end: 0.0, center: 0.0 };
+
 impl Mask {
     /// A point's own value and the sums over its edges' far ends and its faces' centers, each times its weight.
     pub(super) fn blend<T: Linear>(self, own: T, ends: T, centers: T) -> T {
@@ -34,6 +37,7 @@ impl Mask {
                 let end = loop_weight(n);
                 Self { own: 1.0 - n * end, end, center: 0.0 }
             }
+            Scheme::Butterfly => KEPT,
         }
     }
 
@@ -50,6 +54,7 @@ impl Mask {
                 let end = 1.0 / (n + 0.375 / loop_weight(n));
                 Self { own: 1.0 - n * end, end, center: 0.0 }
             }
+            Scheme::Butterfly => KEPT,
         }
     }
 }

@@ -4,12 +4,14 @@
 //! Sources: Catmull and Clark 1978, "Recursively generated B-spline surfaces on arbitrary topological meshes"; Loop 1987,
 //! "Smooth subdivision surfaces based on triangles"; Halstead, Kass and DeRose 1993, "Efficient, fair interpolation using
 //! Catmull-Clark surfaces", for limits; Hoppe et al. 1994, "Piecewise smooth surface reconstruction", for creases; DeRose, Kass
-//! and Truong 1998, "Subdivision surfaces in character animation", for sharpness.
+//! and Truong 1998, "Subdivision surfaces in character animation", for sharpness; Zorin, Schröder and Sweldens 1996,
+//! "Interpolating subdivision for meshes with arbitrary topology", for the butterfly scheme.
 //!
 //! [`Refinement`] holds only connectivity. Positions, blend shapes, weights of joints and anything else that is
 //! [`Linear`] are refined with it, each in its own call. A point's value is computed once, in one order, whatever the number of
 //! cores; so faces that share a point share its bits, also after they are rounded to f32, once and at the end.
 
+mod butterfly;
 mod cage;
 mod corner_values;
 mod level;
@@ -26,6 +28,7 @@ use std::collections::BTreeSet;
 use std::ops::{Add, Mul, Range};
 
 pub use cage::{Cage, CageError, INFINITELY_SHARP};
+pub use corner_values::FaceVarying;
 pub use limit::Limit;
 pub use size::Size;
 
@@ -41,6 +44,8 @@ pub enum Scheme {
     CatmullClark,
     /// Divides triangles into four. Regular parts become quartic box splines.
     Loop,
+    /// Divides triangles into four, and keeps their corners in place. Regular parts that follow a cubic polynomial stay on it.
+    Butterfly,
 }
 
 /// What becomes of the boundary of an open cage.
@@ -74,6 +79,8 @@ pub struct Refinement {
     levels: Vec<Level>,
     /// For each face of the cage whether it is a hole; or nothing if none is.
     is_hole: Vec<bool>,
+    /// How many creases are between points that no face connects.
+    pub lone_creases: usize,
 }
 
 impl Refinement {
@@ -92,12 +99,18 @@ impl Refinement {
         };
         limited(cage.size(cage.corners.len().div_ceil(2)))?;
         let is_hole = cage.is_hole();
-        let mut list = vec![cage.level()?];
-        limited(cage.size(list[0].edge_sides.len()))?;
+        let (level, lone_creases) = cage.level()?;
+        limited(cage.size(level.edge_sides.len()))?;
+        Ok(Self { is_hole, lone_creases, ..Self::divided(level, cage.scheme, levels.into()) })
+    }
+
+    /// Divides a level so many times.
+    fn divided(level: Level, scheme: Scheme, levels: usize) -> Self {
+        let mut list = vec![level];
         for _ in 0..levels {
-            list.extend(list.last().map(|level| level.split(cage.scheme)));
+            list.extend(list.last().map(|level| level.split(scheme)));
         }
-        Ok(Self { scheme: cage.scheme, levels: list, is_hole })
+        Self { scheme, levels: list, is_hole: Vec::new(), lone_creases: 0 }
     }
 
     /// How many points there are after all levels.
@@ -172,7 +185,7 @@ impl Refinement {
     fn cage_face(&self, face: u32) -> u32 {
         let levels = to_u32(self.levels.len()) - 1;
         match self.scheme {
-            Scheme::Loop => face >> (2 * levels),
+            Scheme::Loop | Scheme::Butterfly => face >> (2 * levels),
             Scheme::CatmullClark if levels == 0 => face,
             // Faces of the first level are corners of the cage.
             Scheme::CatmullClark => self.levels[0].polygons.face_of(face >> (2 * (levels - 1))),

@@ -14,8 +14,8 @@ pub struct Size {
 }
 
 impl Size {
-    /// The size one level finer. Catmull and Clark 1978 divide each face into one for each of its corners, Loop 1987 each
-    /// triangle into four.
+    /// The size one level finer. Catmull and Clark 1978 divide each face into one for each of its corners, Loop 1987 and the
+    /// butterfly scheme each triangle into four.
     #[must_use]
     pub fn refined(self, scheme: Scheme) -> Self {
         let Self { points, edges, faces, corners } = self;
@@ -25,7 +25,9 @@ impl Size {
             Scheme::CatmullClark => {
                 Self { points: points.saturating_add(faces), edges, faces: corners, corners: corners.saturating_mul(4) }
             }
-            Scheme::Loop => Self { points, edges, faces: faces.saturating_mul(4), corners: corners.saturating_mul(4) },
+            Scheme::Loop | Scheme::Butterfly => {
+                Self { points, edges, faces: faces.saturating_mul(4), corners: corners.saturating_mul(4) }
+            }
         }
     }
 

@@ -2,8 +2,8 @@
 //!
 //! The points of the finer level are the points, then a point for each edge, then for Catmull-Clark one for each face. Its
 //! edges are two halves of each edge, then an inner one for each side: for Catmull-Clark from the side's edge to the center, for
-//! Loop's scheme the one that cuts off the corner where the side starts. Its faces are one for each corner, which is their first;
-//! Loop's scheme has a fourth one in the middle of each triangle.
+//! the other schemes the one that cuts off the corner where the side starts. Its faces are one for each corner, which is their
+//! first; the other schemes have a fourth one in the middle of each triangle.
 
 use rayon::prelude::*;
 
@@ -23,7 +23,7 @@ impl Level {
         let splitter = Splitter { level: self, scheme };
         let (polygons, faces) = match scheme {
             Scheme::CatmullClark => (Polygons::Quads, self.faces()),
-            Scheme::Loop => (Polygons::Triangles, 0),
+            Scheme::Loop | Scheme::Butterfly => (Polygons::Triangles, 0),
         };
         let halves = self.edge_sharpness.iter().flat_map(|&sharpness| [decayed(sharpness); 2]);
         Self {
@@ -49,7 +49,7 @@ impl Splitter<'_> {
     fn leaving(&self, side: u32) -> u32 {
         match self.scheme {
             Scheme::CatmullClark => 4 * side,
-            Scheme::Loop => 3 * (side + side / 3),
+            Scheme::Loop | Scheme::Butterfly => 3 * (side + side / 3),
         }
     }
 
@@ -69,7 +69,9 @@ impl Splitter<'_> {
             Scheme::CatmullClark => {
                 self.of_sides(|side, before| [origin(side), middle(side), center(side), middle(before)])
             }
-            Scheme::Loop => self.of_triangles(|side, before| [origin(side), middle(side), middle(before)], middle),
+            Scheme::Loop | Scheme::Butterfly => {
+                self.of_triangles(|side, before| [origin(side), middle(side), middle(before)], middle)
+            }
         }
     }
 
@@ -89,7 +91,7 @@ impl Splitter<'_> {
             Scheme::CatmullClark => {
                 self.of_sides(|side, before| [start(side), inner(side), inner(before), end(before)])
             }
-            Scheme::Loop => self.of_triangles(
+            Scheme::Loop | Scheme::Butterfly => self.of_triangles(
                 |side, before| [start(side), inner(side), end(before)],
                 |side| inner(level.polygons.after(side)),
             ),
@@ -127,7 +129,7 @@ impl Splitter<'_> {
         };
         let inner = |side: u32| match self.scheme {
             Scheme::CatmullClark => [4 * side + 1, 4 * level.polygons.after(side) + 2],
-            Scheme::Loop => [self.leaving(side) + 1, 12 * (side / 3) + 9 + (side + 2) % 3],
+            Scheme::Loop | Scheme::Butterfly => [self.leaving(side) + 1, 12 * (side / 3) + 9 + (side + 2) % 3],
         };
         let mut sides = level.edge_sides.par_iter().map(halves).collect::<Vec<_>>().into_flattened();
         sides.par_extend((0..to_u32(level.origins.len())).into_par_iter().map(inner));

@@ -7,6 +7,9 @@
 //! In a sector between two sharp edges the sines are those of half a turn, and the point and the two edges have weights too. These
 //! follow from the same condition. Published ones belong to other rules along sharp edges (Hoppe et al. 1994; Biermann, Levin
 //! and Zorin 2000), and are the same only for up to two faces of Catmull-Clark and up to three of Loop's scheme.
+//!
+//! Of the butterfly scheme, the sums are exact around a smooth point of other than six faces among points of six. Elsewhere they
+//! are differences between neighbours, which approach the tangents from level to level.
 
 use std::f64::consts::{PI, TAU};
 
@@ -39,9 +42,8 @@ impl<T: Linear> Values<'_, T> {
     /// Tangents at a point as if the side's face were the only one there: along both of the face's edges.
     pub(super) fn flat_tangents(&self, side: u32) -> [T; 2] {
         let level = self.level;
-        let value = |side: u32| self.points[level.origins[side as usize] as usize];
-        let own = value(side) * -1.0;
-        [level.polygons.after(side), level.polygons.before(side)].map(|side| value(side) + own)
+        let own = self.start(side) * -1.0;
+        [level.polygons.after(side), level.polygons.before(side)].map(|side| self.start(side) + own)
     }
 
     /// The sectors of two faces or more between sharp edges.
@@ -88,7 +90,7 @@ impl<T: Linear> Values<'_, T> {
     /// Tangents in a sector of two faces or more: along the sharp edges, and across them into the sector.
     pub(super) fn sector_tangents(&self, sector: &Sector) -> [T; 2] {
         let level = self.level;
-        let own = self.points[level.origins[sector.first as usize] as usize];
+        let own = self.start(sector.first);
         let mut ends = level.ring(sector.first).map(|spoke| self.points[spoke.far as usize]);
         let first = ends.next().unwrap_or_default();
         let last = ends.nth(sector.faces as usize - 1).unwrap_or_default();
@@ -142,6 +144,7 @@ fn sharp_weights(scheme: Scheme, faces: f64) -> [f64; 2] {
             [3.0 * point + 4.0 * edge + sines, 0.5 * point + 2.0 * edge]
         }
         Scheme::Loop => [-sines / (1.0 + 2.0 * cos), -sines * cos / (1.0 + 2.0 * cos)],
+        Scheme::Butterfly => [-sines, 0.0],
     }
 }
 

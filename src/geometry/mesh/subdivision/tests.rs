@@ -1,7 +1,7 @@
 use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
-use glam::{DMat3, DVec2, DVec3, Vec3};
+use glam::{DMat3, DVec2, DVec3, DVec4, Vec3};
 
 use super::*;
 use crate::cores::on_threads;
@@ -77,12 +77,12 @@ fn cube() -> Shape {
 
 /// Two poles, 0 and 1, that so many quadrilaterals or triangles meet at.
 fn poles(edges: u32, scheme: Scheme) -> Shape {
-    let rim = if scheme == Scheme::Loop { edges } else { 2 * edges };
+    let rim = if scheme == Scheme::CatmullClark { 2 * edges } else { edges };
     let at = |k: u32| DVec2::from_angle(TAU * f64::from(k) / f64::from(rim)).extend(0.2 * f64::from(k % 2));
     let positions = [DVec3::Z, -DVec3::Z].into_iter().chain((0..rim).map(at)).collect();
     let faces: Vec<Vec<u32>> = (0..edges)
         .flat_map(|i| match scheme {
-            Scheme::Loop => [vec![0, 2 + i, 2 + (i + 1) % rim], vec![1, 2 + (i + 1) % rim, 2 + i]],
+            Scheme::Loop | Scheme::Butterfly => [vec![0, 2 + i, 2 + (i + 1) % rim], vec![1, 2 + (i + 1) % rim, 2 + i]],
             Scheme::CatmullClark => {
                 let [a, b, c, d] = [0, 1, 2, 3].map(|k| 2 + (2 * i + k) % rim);
                 [vec![0, a, b, c], vec![1, d, c, b]]
@@ -95,12 +95,12 @@ fn poles(edges: u32, scheme: Scheme) -> Shape {
 
 /// So many faces around point 0, which is on the boundary.
 fn fan(faces: u32, scheme: Scheme) -> Shape {
-    let rim = if scheme == Scheme::Loop { faces } else { 2 * faces };
+    let rim = if scheme == Scheme::CatmullClark { 2 * faces } else { faces };
     let at = |k: u32| DVec2::from_angle(PI * f64::from(k) / f64::from(rim)).extend(0.0);
     let positions = [DVec3::ZERO].into_iter().chain((0..=rim).map(at)).collect();
     let faces: Vec<Vec<u32>> = (0..faces)
         .map(|i| match scheme {
-            Scheme::Loop => vec![0, 1 + i, 2 + i],
+            Scheme::Loop | Scheme::Butterfly => vec![0, 1 + i, 2 + i],
             Scheme::CatmullClark => vec![0, 1 + 2 * i, 2 + 2 * i, 3 + 2 * i],
         })
         .collect();
@@ -119,13 +119,23 @@ fn grid(size: u32) -> Shape {
     Shape::new(positions, &faces)
 }
 
-/// Shapes with boundaries, creases, darts and corners of every sharpness, in both schemes.
+/// The same of triangles, which a diagonal cuts all squares into.
+fn triangle_grid(size: u32) -> Shape {
+    let square = grid(size);
+    let halves = |&[a, b, c, d]: &[u32; 4]| [[a, b, c], [a, c, d]];
+    let faces: Vec<[u32; 3]> = square.corners.as_chunks().0.iter().flat_map(halves).collect();
+    let faces: Vec<&[u32]> = faces.iter().map(<[u32; 3]>::as_slice).collect();
+    Shape { scheme: Scheme::Butterfly, ..Shape::new(square.positions, &faces) }
+}
+
+/// Shapes with boundaries, creases, darts and corners of every sharpness, in all schemes.
 fn varied() -> Vec<Shape> {
     let mut random = fastrand::Rng::with_seed(7);
     let mut shapes = vec![cube(), grid(4), poles(5, Scheme::CatmullClark), poles(7, Scheme::Loop)];
     shapes.extend([fan(3, Scheme::CatmullClark), fan(5, Scheme::Loop)]);
+    shapes.extend([poles(7, Scheme::Butterfly), triangle_grid(3)]);
     for k in 0..24 {
-        let mut shape = shapes[k % 6].clone().shaken(&mut random);
+        let mut shape = shapes[k % 8].clone().shaken(&mut random);
         let mut sharpness = || random.f32() * 4.0;
         shape.creases = shape.edges().into_iter().step_by(2 + k / 6).map(|edge| (edge, sharpness())).collect();
         shape.sharp_points = (0..to_u32(shape.positions.len())).step_by(5).map(|point| (point, sharpness())).collect();
@@ -341,7 +351,7 @@ fn moving_a_cage_moves_its_surface() {
 
 #[test]
 fn closed_cages_stay_closed_and_faces_keep_their_direction() {
-    for shape in [cube(), poles(3, Scheme::CatmullClark), poles(9, Scheme::Loop)] {
+    for shape in [cube(), poles(3, Scheme::CatmullClark), poles(9, Scheme::Loop), poles(5, Scheme::Butterfly)] {
         let (refinement, _) = shape.refined(3);
         let mut sides = HashMap::new();
         for Face { corners, .. } in refinement.faces() {
@@ -479,7 +489,7 @@ fn a_face_of_ten_thousand_corners_is_refined() {
 
 #[test]
 fn many_faces_around_a_point_take_no_longer_than_elsewhere() {
-    for scheme in [Scheme::CatmullClark, Scheme::Loop] {
+    for scheme in [Scheme::CatmullClark, Scheme::Loop, Scheme::Butterfly] {
         for boundary in [Boundary::Edges, Boundary::EdgesAndCorners] {
             let open = Shape { boundary, ..fan(50_000, scheme) };
             let tip = Shape { sharp_points: vec![(0, 10.0)], ..poles(50_000, scheme) };
@@ -507,7 +517,7 @@ fn points_of_several_fans_and_turned_faces_stay_where_they_are() {
 #[test]
 fn points_without_faces_and_cages_without_any_are_kept() {
     let lone = Shape { positions: vec![DVec3::X, DVec3::Y], starts: vec![0], ..Shape::default() };
-    for scheme in [Scheme::CatmullClark, Scheme::Loop] {
+    for scheme in [Scheme::CatmullClark, Scheme::Loop, Scheme::Butterfly] {
         let (refinement, refined) = Shape { scheme, ..lone.clone() }.refined(3);
         assert_eq!((refined, refinement.faces().count()), (vec![DVec3::X, DVec3::Y], 0));
     }
@@ -539,10 +549,13 @@ fn wrong_cages_are_refused_with_their_place() {
     let three = of(&[0, 3, 6, 9], &[0, 1, 2, 1, 0, 3, 0, 1, 4]);
     assert_eq!(three, CageError::NonManifold { points: [0, 1], faces: 3 });
     assert!(three.to_string().contains("3 faces meet at the edge from point 0 to 1"));
-    assert_eq!(refused(Cage { scheme: Scheme::Loop, ..shape.cage() }), CageError::NoTriangle { face: 0, corners: 4 });
+    for scheme in [Scheme::Loop, Scheme::Butterfly] {
+        assert_eq!(refused(Cage { scheme, ..shape.cage() }), CageError::NoTriangle { face: 0, corners: 4 });
+    }
     // What isn't an edge can't be sharp, and more than infinite sharpness is as much.
     let creases = [([0, 7], 5.0), ([0, 1], f32::INFINITY)];
-    assert!(Refinement::new(&Cage { creases: &creases, ..shape.cage() }, 1, MANY).is_ok());
+    let refined = Refinement::new(&Cage { creases: &creases, ..shape.cage() }, 1, MANY);
+    assert!(refined.is_ok_and(|refined| refined.lone_creases == 1));
 }
 
 #[test]
@@ -553,4 +566,278 @@ fn too_many_levels_are_refused_before_they_are_made() {
     assert!(Refinement::new(&shape.cage(), 2, 98).is_ok());
     assert!(matches!(refused(14, u64::MAX), CageError::TooLarge { most: 4_294_967_295, .. }));
     assert!(matches!(refused(255, u64::MAX), CageError::TooLarge { points: u64::MAX, .. }));
+}
+
+/// What each point of a shape contributes to the point that one level makes of an edge.
+fn weights(shape: &Shape, edge: [u32; 2]) -> Vec<f64> {
+    let refinement = Refinement::new(&shape.cage(), 1, MANY).unwrap();
+    let points = shape.positions.len();
+    let place = points + shape.edges().iter().position(|other| *other == edge).unwrap();
+    let of_point = |point: usize| {
+        let mut values = vec![0.0; points];
+        values[point] = 1.0;
+        let refined = refinement.refine(&values);
+        assert_eq!(refined[..points], values, "points stay where they are");
+        refined[place]
+    };
+    (0..points).map(of_point).collect()
+}
+
+fn assert_weights(found: &[f64], expected: &[(usize, f64)]) {
+    for (point, weight) in found.iter().enumerate() {
+        let own: f64 = expected.iter().filter(|(other, _)| *other == point).map(|(_, weight)| weight).sum();
+        assert!((weight - own).abs() < 1e-14, "point {point}: {weight}, not {own}");
+    }
+    assert!((found.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+}
+
+/// The published weights of the neighbours of a point with so many edges, from the one on the edge that is divided.
+fn published(edges: u32) -> Vec<f64> {
+    match edges {
+        3 => vec![5.0 / 12.0, -1.0 / 12.0, -1.0 / 12.0],
+        4 => vec![3.0 / 8.0, 0.0, -1.0 / 8.0, 0.0],
+        _ => {
+            let angle = |k: u32| TAU * f64::from(k) / f64::from(edges);
+            let weight = |k| (0.25 + angle(k).cos() + 0.5 * (2.0 * angle(k)).cos()) / f64::from(edges);
+            (0..edges).map(weight).collect()
+        }
+    }
+}
+
+#[test]
+fn butterfly_edges_have_the_published_weights() {
+    // Both ends of a rib are irregular: one of each number of edges, and one of four.
+    for edges in [3, 4, 5, 7, 12] {
+        let found = weights(&poles(edges, Scheme::Butterfly), [0, 2]);
+        let rim = published(edges).into_iter().enumerate().map(|(k, weight)| (2 + k, weight / 2.0));
+        let halves = [(0, 3.0 / 8.0), (2, 3.0 / 8.0), (0, 3.0 / 16.0), (1, -1.0 / 16.0)];
+        assert_weights(&found, &rim.chain(halves).collect::<Vec<_>>());
+    }
+    // With six edges at the pole, the other end alone decides.
+    let found = weights(&poles(6, Scheme::Butterfly), [0, 2]);
+    assert_weights(&found, &[(2, 0.75), (0, 0.375), (1, -0.125)]);
+    // Between two regular points, eight points count. From (2, 2) to (3, 2):
+    let found = weights(&triangle_grid(5), [14, 15]);
+    let near = [(14, 0.5), (15, 0.5), (8, 0.125), (21, 0.125)];
+    let wings = [7, 9, 20, 22].map(|point| (point, -0.0625));
+    assert_weights(&found, &[near, wings].concat());
+}
+
+#[test]
+fn butterfly_boundaries_have_the_weights_of_four_points() {
+    let usual = [(0, -0.0625), (1, 0.5625), (2, 0.5625), (3, -0.0625)];
+    assert_weights(&weights(&triangle_grid(3), [1, 2]), &usual);
+    // A corner has its neighbour mirrored behind it; without corners the boundary goes on around it.
+    let at_end = [(1, -0.0625), (2, 0.625), (3, 0.4375)];
+    assert_weights(&weights(&triangle_grid(3), [2, 3]), &at_end);
+    let smooth = Shape { boundary: Boundary::Edges, ..triangle_grid(3) };
+    assert_weights(&weights(&smooth, [2, 3]), &[(1, -0.0625), (2, 0.5625), (3, 0.5625), (7, -0.0625)]);
+    // The same along a crease through the inside, which takes nothing from beside it, half of it if it is half as sharp.
+    let creased = |sharpness| {
+        let creases = vec![([6, 11], 10.0), ([11, 16], sharpness), ([16, 21], 10.0)];
+        weights(&Shape { creases, ..triangle_grid(4) }, [11, 16])
+    };
+    assert_weights(&creased(10.0), &[(6, -0.0625), (11, 0.5625), (16, 0.5625), (21, -0.0625)]);
+    assert!(creased(0.5).iter().filter(|weight| **weight != 0.0).count() > 6);
+    assert!((creased(0.5).iter().sum::<f64>() - 1.0).abs() < 1e-15);
+}
+
+#[test]
+fn butterfly_grids_follow_cubics_and_stay_flat_and_even_at_boundaries() {
+    let cubic = |p: DVec3| p.with_z((p.x - 4.0).powi(3) - 0.5 * p.x * p.x * p.y + (p.y - 3.0).powi(3) + p.x * p.y);
+    let plain = triangle_grid(8);
+    let shape = Shape { positions: plain.positions.iter().copied().map(cubic).collect(), ..plain };
+    let (refinement, refined) = shape.refined(2);
+    let inner = |p: &&DVec3| p.truncate().min_element() >= 3.0 && p.truncate().max_element() <= 5.0;
+    assert_eq!(refined.iter().filter(inner).count(), 81);
+    refined.iter().filter(inner).for_each(|p| assert!((*p - cubic(*p)).length() < 1e-11, "{p}"));
+    assert_eq!(refinement.limit(&refined).values(), refined);
+    // Corners of two faces aren't corners unless they are said to be.
+    let flat = Shape { sharp_points: vec![(0, 10.0), (15, 10.0)], ..triangle_grid(3) };
+    let (refinement, refined) = flat.refined(1);
+    for (edge, middle) in flat.edges().iter().zip(&refined[16..]) {
+        let [a, b] = edge.map(|point| flat.positions[point as usize]);
+        assert_near(*middle, (a + b) / 2.0);
+    }
+    assert!(refinement.limit(&refined).normals().iter().all(|normal| normal.distance(Vec3::Z) < 1e-7));
+}
+
+#[test]
+fn a_butterfly_sphere_gets_rounder_from_level_to_level() {
+    let sphere = poles(5, Scheme::Butterfly);
+    let round = sphere.positions.iter().map(|p| p.with_z(p.z.trunc()).normalize()).collect();
+    let sphere = Shape { positions: round, ..sphere };
+    // How far a level moves the middles of edges away from both of their faces.
+    let step = |levels| {
+        let (refinement, refined) = sphere.refined(levels);
+        let level = refinement.finest();
+        let at = |side: u32| refined[level.origins[side as usize] as usize];
+        let normal = |side: u32| {
+            let [b, c] = [level.polygons.after(side), level.polygons.before(side)].map(|other| at(other) - at(side));
+            b.cross(c).normalize()
+        };
+        let (_, finer) = sphere.refined(levels + 1);
+        let moved = level.edge_sides.iter().zip(&finer[refined.len()..]).map(|(&[a, b], middle)| {
+            let from = (at(a) + at(level.polygons.after(a))) / 2.0;
+            (*middle - from).dot((normal(a) + normal(b)).normalize()).abs()
+        });
+        moved.fold(0.0, f64::max)
+    };
+    let steps = [2, 3, 4].map(step);
+    for [before, after] in steps.array_windows() {
+        assert!((0.25..0.36).contains(&(after / before)), "{steps:?}");
+    }
+}
+
+/// The limits of values at the corners of a shape's faces, without refinement, by all rules in their order.
+fn face_varying(shape: &Shape, values: &[DVec2], levels: u8) -> [Vec<DVec2>; 6] {
+    let values: Vec<DVec4> = values.iter().map(|value| value.extend(0.0).extend(0.0)).collect();
+    let (refinement, _) = shape.refined(levels);
+    FaceVarying::ALL.map(|rule| {
+        let refined = refinement.refine_face_varying(&values, rule);
+        refined.into_iter().map(|value| value.truncate().truncate()).collect()
+    })
+}
+
+#[test]
+fn two_faces_have_the_coordinates_that_each_rule_gives_them() {
+    // Side by side, with u = 0, 1, 4 and v = y.
+    let faces: [&[u32]; 2] = [&[0, 1, 4, 3], &[1, 2, 5, 4]];
+    let at = |k: u32| DVec2::new([0.0, 1.0, 4.0][k as usize % 3], f64::from(k / 3));
+    let pair = Shape { boundary: Boundary::Edges, ..Shape::new((0..6).map(|k| at(k).extend(0.0)).collect(), &faces) };
+    let joined: Vec<DVec2> = pair.corners.iter().map(|&point| at(point)).collect();
+    let near = |a: DVec2, b: [f64; 2]| assert!(a.distance(b.into()) < 1e-14, "{a} is not {b:?}");
+    let [smooth, corners, junctions, concave, boundaries, linear] = face_varying(&pair, &joined, 0);
+    // (4 times itself, and its neighbours along the boundary) / 6.
+    near(smooth[0], [1.0 / 6.0, 1.0 / 6.0]);
+    near(smooth[1], [4.0 / 3.0, 0.0]);
+    for kept in [corners, junctions, concave] {
+        near(kept[0], [0.0, 0.0]);
+        near(kept[1], [4.0 / 3.0, 0.0]);
+    }
+    assert_eq!((&boundaries, &linear), (&joined, &joined));
+    // Between them, the boundaries' rule is smooth: its limit in the middle of the first face.
+    let [.., boundaries, linear] = face_varying(&pair, &joined, 1);
+    near(boundaries[2], [19.0 / 36.0, 0.5]);
+    near(linear[2], [0.5, 0.5]);
+    // A seam makes four corners of the two points on it.
+    let seam: Vec<DVec2> =
+        joined.iter().enumerate().map(|(k, &uv)| uv + DVec2::X * if k > 3 { 10.0 } else { 0.0 }).collect();
+    let [smooth, corners, ..] = face_varying(&pair, &seam, 0);
+    near(smooth[1], [5.0 / 6.0, 1.0 / 6.0]);
+    near(smooth[4], [11.5, 1.0 / 6.0]);
+    assert_eq!(corners, seam);
+    // What is a corner of the surface is one for the coordinates too.
+    let [smooth, ..] = face_varying(&Shape { boundary: Boundary::EdgesAndCorners, ..pair }, &seam, 0);
+    near(smooth[0], [0.0, 0.0]);
+    near(smooth[1], [5.0 / 6.0, 1.0 / 6.0]);
+}
+
+#[test]
+fn ends_of_seams_junctions_and_concave_corners_are_kept_by_their_rules() {
+    let shape = grid(2);
+    // The u of one corner of a face, of the middle or beside it; the others are 0.
+    let uvs = |of: &dyn Fn(usize, u32) -> f64| -> Vec<DVec2> {
+        shape.corners.iter().enumerate().map(|(k, &point)| DVec2::new(of(k / 4, point), 0.0)).collect()
+    };
+    let middle = |values: &[DVec2], corner: usize| {
+        let all = face_varying(&shape, values, 0);
+        all.map(|values| (values[corner].x * 6.0).round())
+    };
+    // A seam from the boundary, point 1, to the middle: its sides have u = 6 and 0.
+    let dart = uvs(&|face, point| if face == 1 && point == 1 { 6.0 } else { 0.0 });
+    assert_eq!(middle(&dart, 2), [6.0, 6.0, 6.0, 0.0, 0.0, 0.0]);
+    // Three islands meet in the middle, one of two faces, whose value there is 6.
+    let three = uvs(&|face, point| match face {
+        0 => 10.0,
+        1 => 11.0,
+        _ => {
+            if point == 4 {
+                6.0
+            } else {
+                0.0
+            }
+        }
+    });
+    assert_eq!(middle(&three, 9), [24.0, 24.0, 36.0, 36.0, 36.0, 36.0]);
+    // One face is an island of its own, and the other three turn around it.
+    let concave = uvs(&|face, point| {
+        if face == 0 {
+            10.0
+        } else if point == 4 {
+            6.0
+        } else {
+            0.0
+        }
+    });
+    assert_eq!(middle(&concave, 9), [24.0, 24.0, 24.0, 36.0, 36.0, 36.0]);
+    assert_eq!(middle(&concave, 2), [60.0; 6]);
+}
+
+/// The sums of all values at corners, and of their squares, that OpenSubdiv 3.5.0 gives (Far, in f64), by each rule.
+const BY_OPEN_SUBDIV: [[f64; 2]; 6] = [
+    [5898.330049652913, 126024.598163701885],
+    [5963.182032120572, 129215.661506368895],
+    [5963.784669311471, 129239.789632011365],
+    [5956.711047484566, 129248.776065953294],
+    [5891.128970569931, 128535.494847483526],
+    [5763.836873243539, 127863.480501082886],
+];
+
+#[test]
+fn rules_for_coordinates_are_those_of_open_subdiv() {
+    // Islands, of which two touch, a seam that ends, creases and a sharp point.
+    let shape = Shape {
+        creases: vec![([7, 12], 10.0), ([16, 17], 0.6)],
+        sharp_points: vec![(8, 1.5)],
+        boundary: Boundary::EdgesAndCorners,
+        ..grid(4)
+    };
+    let value = |(corner, &point): (usize, &u32)| {
+        let island = match (corner / 4, corner % 4) {
+            (5, _) => 1.0,
+            (10 | 11, _) => 2.0,
+            (15, _) => 3.0,
+            (8, 0) => 4.0,
+            _ => 0.0,
+        };
+        DVec2::new((1.0 + 1.7 * f64::from(point)).sin() + 10.0 * island, 0.0)
+    };
+    let values: Vec<DVec2> = shape.corners.iter().enumerate().map(value).collect();
+    let found = face_varying(&shape, &values, 2).map(|values| {
+        let sums = values.iter().fold(DVec2::ZERO, |sums, value| sums + DVec2::new(value.x, value.x * value.x));
+        sums.to_array()
+    });
+    for (rule, (found, expected)) in FaceVarying::ALL.iter().zip(found.iter().zip(BY_OPEN_SUBDIV)) {
+        let near = |k: usize| (found[k] - expected[k]).abs() < 1e-6 * expected[k];
+        assert!(near(0) && near(1), "{rule:?}: {found:?}, not {expected:?}");
+    }
+}
+
+#[test]
+fn seams_stay_and_shared_coordinates_stay_shared() {
+    let mut shape = triangle_grid(4);
+    for scheme in [Scheme::Loop, Scheme::Butterfly] {
+        shape.scheme = scheme;
+        let uvs: Vec<DVec2> = shape
+            .corners
+            .iter()
+            .enumerate()
+            .map(|(k, &point)| {
+                shape.positions[point as usize].truncate() + DVec2::splat(if k / 3 < 16 { 0.0 } else { 100.0 })
+            })
+            .collect();
+        let (refinement, _) = shape.refined(2);
+        for refined in face_varying(&shape, &uvs, 2) {
+            let mut at_points = HashMap::<u32, Vec<DVec2>>::new();
+            for (point, uv) in refinement.corners().iter().zip(refined) {
+                let found = at_points.entry(*point).or_default();
+                if !found.contains(&uv) {
+                    found.push(uv);
+                }
+            }
+            let torn = at_points.values().filter(|found| found.len() == 2).count();
+            assert_eq!((torn, at_points.values().map(Vec::len).max()), (17, Some(2)), "{scheme:?}");
+        }
+    }
 }

@@ -1,5 +1,7 @@
 //! Values at the points of a level, such as positions, and how they are averaged.
 
+use std::collections::HashMap;
+
 use rayon::prelude::*;
 
 use super::level::Level;
@@ -21,8 +23,16 @@ pub(super) struct Values<'a, T> {
     pub(super) level: &'a Level,
     pub(super) scheme: Scheme,
     pub(super) points: &'a [T],
-    /// The mean of each face's points; empty for Loop's scheme.
+    /// The mean of each face's points; empty but for Catmull-Clark.
     centers: Vec<T>,
+}
+
+/// What the butterfly scheme makes of the edges at each point; empty for other schemes.
+pub(super) struct Fans<T> {
+    /// For each point the far ends of the two sharp edges that go through it, if it isn't the end of any.
+    pub(super) creases: Vec<Option<[u32; 2]>>,
+    /// For each edge the sum of what its irregular ends make of it, and how many these are, if it has any.
+    pub(super) irregular: HashMap<u32, (T, f64)>,
 }
 
 impl<'a, T: Linear> Values<'a, T> {
@@ -39,7 +49,8 @@ impl<'a, T: Linear> Values<'a, T> {
     /// The values at the points of the finer level.
     pub(super) fn refined(self) -> Vec<T> {
         let points = (0..to_u32(self.points.len())).into_par_iter().map(|point| self.at_point(point));
-        let edges = (0..to_u32(self.level.edge_sides.len())).into_par_iter().map(|edge| self.on_edge(edge));
+        let fans = self.fans();
+        let edges = (0..to_u32(self.level.edge_sides.len())).into_par_iter().map(|edge| self.on_edge(edge, &fans));
         points.chain(edges).chain(self.centers.par_iter().copied()).collect()
     }
 
@@ -79,7 +90,9 @@ impl<'a, T: Linear> Values<'a, T> {
         crease: Mask,
     ) -> (Rule, T) {
         let (level, own) = (self.level, self.points[point as usize]);
-        let Some(first) = level.first_side(point) else { return (Rule::Corner, own) };
+        // The butterfly scheme moves no point.
+        let first = level.first_side(point).filter(|_| self.scheme != Scheme::Butterfly);
+        let Some(first) = first else { return (Rule::Corner, own) };
         let (mut edges, mut sharp_edges) = (0, 0);
         let [mut ends, mut sharp_ends, mut centers] = [T::default(); 3];
         for spoke in level.ring(first) {
@@ -103,31 +116,41 @@ impl<'a, T: Linear> Values<'a, T> {
     }
 
     /// The point that divides an edge.
-    fn on_edge(&self, edge: u32) -> T {
+    fn on_edge(&self, edge: u32, fans: &Fans<T>) -> T {
         let (level, sides) = (self.level, self.level.edge_sides[edge as usize]);
-        let start = |side: u32| self.points[level.origins[side as usize] as usize];
-        let ends = start(sides[0]) + start(level.polygons.after(sides[0]));
+        let ends = self.start(sides[0]) + self.start(level.polygons.after(sides[0]));
+        let sharp = match self.scheme {
+            Scheme::CatmullClark | Scheme::Loop => ends * 0.5,
+            Scheme::Butterfly => self.on_crease(sides[0], fans),
+        };
         // Edges without a second side are sharp.
         let sharpness = f64::from(level.edge_sharpness(edge));
         if sharpness >= 1.0 {
-            return ends * 0.5;
+            return sharp;
         }
-        let [a, b] = sides.map(|side| match self.scheme {
-            Scheme::CatmullClark => self.center(side),
-            Scheme::Loop => start(level.polygons.before(side)),
-        });
+        let both = |value: &dyn Fn(u32) -> T| value(sides[0]) + value(sides[1]);
+        let opposite = |side| self.start(level.polygons.before(side));
         let smooth = match self.scheme {
-            Scheme::CatmullClark => (ends + (a + b)) * 0.25,
-            Scheme::Loop => ends * 0.375 + (a + b) * 0.125,
+            Scheme::CatmullClark => (ends + both(&|side| self.center(side))) * 0.25,
+            Scheme::Loop => ends * 0.375 + both(&opposite) * 0.125,
+            Scheme::Butterfly => match fans.irregular.get(&edge) {
+                Some((sum, ends)) => *sum * (1.0 / ends),
+                None => ends * 0.5 + both(&opposite) * 0.125 + both(&|side| self.wings(side)) * -0.0625,
+            },
         };
-        ends * (0.5 * sharpness) + smooth * (1.0 - sharpness)
+        sharp * sharpness + smooth * (1.0 - sharpness)
     }
 
-    /// The center of a side's face; zero for Loop's scheme, which has none.
+    /// The value where a side starts.
+    pub(super) fn start(&self, side: u32) -> T {
+        self.points[self.level.origins[side as usize] as usize]
+    }
+
+    /// The center of a side's face; zero for schemes that have none.
     pub(super) fn center(&self, side: u32) -> T {
         match self.scheme {
             Scheme::CatmullClark => self.centers[self.level.polygons.face_of(side) as usize],
-            Scheme::Loop => T::default(),
+            Scheme::Loop | Scheme::Butterfly => T::default(),
         }
     }
 }

@@ -204,7 +204,7 @@ fn the_numbers_of_a_formula_give_the_factor_of_the_edge() {
             let (mut mesh, topology, inputs) = shape(kind, own);
             if kind == Shape::Torus {
                 mesh.part_ranges = vec![PartRange { triangles: 0..mesh.triangles.len() as u32 / 2, part: 0 }];
-                mesh.part_styles = vec![PartStyle { surface: None, detail: Some(1.5) }];
+                mesh.part_styles = vec![PartStyle { detail: Some(1.5), ..PartStyle::default() }];
             }
             let inputs = Inputs { tessellation: Tessellation { lod, ..inputs.tessellation }, ..inputs };
             let nets = ControlNets::new(&mesh, &topology, &inputs);

@@ -4,7 +4,7 @@ use glam::{Mat4, Vec4, vec2, vec3};
 use proptest::prelude::*;
 
 use super::*;
-use crate::mesh::{Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Topology, patch_reliefs};
+use crate::mesh::{Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Topology, Wrap, patch_reliefs};
 use crate::tessellate::displace::bilinear_height;
 use crate::tessellate::lod::LodView;
 use crate::tessellate::normal::unit_or;
@@ -80,9 +80,10 @@ proptest! {
         (tiles, shift) in (prop::sample::select(&[0.02f32, 0.2, 1.0, 3.0][..]), -1f32..1.0),
         (middle, corners, magnitude) in (numbers::<1>(), numbers::<3>(), -6f32..0.0),
         within in numbers::<4>(),
+        wrap in prop::array::uniform2(prop::sample::select(&[Wrap::Clamp, Wrap::Repeat, Wrap::Mirror][..])),
     ) {
         let uvs = uvs.map(|uv| Vec2::from(uv) * tiles + if tiles < 1.0 { 0.3 } else { shift });
-        let (mesh, topology) = triangle(uvs, image(kind, size, seed));
+        let (mesh, topology) = triangle(uvs, image(kind, size, seed).with_wrap(wrap));
         prop_assume!(!topology.patches.is_empty());
         let heights = mesh.heights.as_deref().expect("heights");
         let relief = patch_reliefs(Some(heights), &mesh, &topology)[0];

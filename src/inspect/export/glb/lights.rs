@@ -12,7 +12,7 @@ const EXTENSION: &str = "KHR_lights_punctual";
 
 impl Writer {
     /// Adds lights to the document, and their nodes to the scene's.
-    pub(super) fn lights(&mut self, lights: &[Light], root: &mut Value, nodes: &mut Vec<Value>) {
+    pub(super) fn lights(&mut self, lights: &[Light], root: &mut Value) {
         if lights.is_empty() {
             return;
         }
@@ -22,7 +22,7 @@ impl Writer {
             let turn = Quat::from_rotation_arc(Vec3::NEG_Z, light.direction.try_normalize().unwrap_or(Vec3::NEG_Z));
             let mut node = json!({ "translation": light.place.to_array(), "rotation": turn.normalize().to_array() });
             self.extend(&mut node, EXTENSION, json!({ "light": index }));
-            nodes.push(node);
+            self.push("nodes", node);
         }
     }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use serde_json::{Value, json};
 
-use super::{Writer, pushed};
+use super::Writer;
 use crate::export::ExportError;
 use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Texture};
 use geometry::names;
@@ -18,14 +18,6 @@ const TRANSFORM: &str = "KHR_texture_transform";
 
 /// How far, relative to its largest number, an affine map may be from a scale and a rotation.
 const LEAST_SHEAR: f32 = 1e-4;
-
-/// The images, samplers and textures that were written so far. Materials share them.
-#[derive(Default)]
-pub(super) struct Written {
-    images: Vec<*const Texture>,
-    samplers: Vec<Sampling>,
-    textures: Vec<[usize; 2]>,
-}
 
 /// Texture coordinates of vertices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +107,7 @@ impl Writer {
                 self.extend(&mut written, name, object);
             }
         }
-        Ok(pushed(&mut self.materials, written))
+        Ok(self.push("materials", written))
     }
 
     /// Adds what a material emits. A factor is 1 at most; what is beyond needs an extension.
@@ -151,25 +143,23 @@ impl Writer {
 
     /// Returns the texture for an image that is sampled in a way.
     fn texture(&mut self, image: &Arc<Texture>, sampling: Sampling) -> Result<usize, ExportError> {
-        let source = match place(&mut self.written.images, Arc::as_ptr(image)) {
-            (index, false) => index,
-            _ => self.image(image)?,
+        let source = match self.written.iter().position(|own| *own == Arc::as_ptr(image)) {
+            Some(index) => index,
+            None => self.image(image)?,
         };
-        let (sampler_index, is_new) = place(&mut self.written.samplers, sampling);
-        self.samplers.extend(is_new.then(|| sampler(sampling)));
-        let (texture, is_new) = place(&mut self.written.textures, [source, sampler_index]);
-        self.textures.extend(is_new.then(|| json!({ "source": source, "sampler": sampler_index })));
-        Ok(texture)
+        let sampler = self.shared("samplers", sampler(sampling));
+        Ok(self.shared("textures", json!({ "source": source, "sampler": sampler })))
     }
 
     /// Writes an image as PNG.
     fn image(&mut self, texture: &Texture) -> Result<usize, ExportError> {
+        self.written.push(texture);
         let ([width, height], mut png) = (texture.size, Cursor::new(Vec::new()));
         let (color, format) = (image::ExtendedColorType::Rgba8, image::ImageFormat::Png);
         image::write_buffer_with_format(&mut png, &texture.rgba, width, height, color, format)
             .map_err(|reason| ExportError::Texture { path: self.path.clone(), reason: reason.to_string() })?;
         let view = self.view(png.get_ref(), None);
-        Ok(pushed(&mut self.images, json!({ "bufferView": view, "mimeType": "image/png" })))
+        Ok(self.push("images", json!({ "bufferView": view, "mimeType": "image/png" })))
     }
 }
 
@@ -208,17 +198,6 @@ impl LookParts {
                     object[*name] = info;
                 }
             }
-        }
-    }
-}
-
-/// The place of what a list has each once, and whether it is new there.
-fn place<T: PartialEq>(known: &mut Vec<T>, wanted: T) -> (usize, bool) {
-    match known.iter().position(|own| *own == wanted) {
-        Some(index) => (index, false),
-        None => {
-            known.push(wanted);
-            (known.len() - 1, true)
         }
     }
 }

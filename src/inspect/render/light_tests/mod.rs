@@ -1,14 +1,16 @@
 //! Tests the light on the CPU: lobes against integrals, and the split sum against what it stands for.
 
 mod furnace;
+mod irradiance;
 mod lobes;
 mod sheen;
 mod split_sum;
 
 use glam::{Vec2, Vec3, vec2, vec3};
 
-use super::prefilter::{directions_across, hammersley};
+use super::prefilter::hammersley;
 use crate::for_tests::environment::environment_dfg;
+use crate::for_tests::prefiltered::directions_across;
 use crate::for_tests::reflectance::AmbientLight;
 
 /// The cosines 0.05 to 1 at which eyes look, and the roughnesses 0 to 1.

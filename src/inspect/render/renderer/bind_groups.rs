@@ -24,7 +24,7 @@ impl Renderer {
         self.studio.get_or_try_make(|| Environment::studio(&self.gpu).map(Arc::new))
     }
 
-    /// The light from all around of a picture with these settings; none if no material needs it.
+    /// The light from all around in a half of a picture, which has these settings; none if no material needs it.
     pub(super) fn light(&self, scene: &Scene, settings: &Settings) -> Result<Option<PictureLight>, GpuError> {
         if !settings.shows_materials() {
             return Ok(None);
@@ -39,7 +39,7 @@ impl Renderer {
             exposure: settings.exposure,
             tone_curve: settings.tone_curve,
         };
-        let surroundings = environment.surroundings(&self.gpu, &view);
+        let surroundings = view.surroundings(&self.gpu);
         Ok(Some(PictureLight { environment, surroundings }))
     }
 
@@ -51,7 +51,7 @@ impl Renderer {
     }
 
     /// The bind groups of a half's materials for a picture of a scene with these settings, in this light; and what is behind
-    /// bodies that refract it.
+    /// layers that distort it.
     pub(super) fn material_groups(
         &self,
         scene: &Scene,
@@ -61,9 +61,10 @@ impl Renderer {
         behind: Option<&wgpu::TextureView>,
     ) -> Result<Vec<wgpu::BindGroup>, GpuError> {
         let Some(drawn) = scene.half(half) else { return Ok(Vec::new()) };
-        if settings.overlays.colors.source() == ColorSource::LitSphere {
+        let of_half = settings.half(half).unwrap_or(*settings);
+        if of_half.overlays.colors.source() == ColorSource::LitSphere {
             let own = scene.matcap.as_ref().map(|picture| &picture.0);
-            let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, settings.matcap), Ok)?;
+            let group = own.map_or_else(|| self.matcaps.group(&self.gpu, &self.materials, of_half.matcap), Ok)?;
             return Ok(vec![group.clone(); drawn.materials.len()]);
         }
         let Some(PictureLight { environment, surroundings }) = light else {

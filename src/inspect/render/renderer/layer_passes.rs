@@ -43,7 +43,7 @@ impl Renderer {
         let drawn = scene.half(half).unwrap_or(scene);
         let surfaces = Surfaces {
             materials: self.layer_pipelines(drawn.tessellator.mesh(), picture, half, &of_half, pass)?,
-            pulled: emitted_triangles(settings) == Triangles::Pulled,
+            pulled: emitted_triangles(&of_half) == Triangles::Pulled,
             fronts: false,
             sifted: false,
         };
@@ -119,10 +119,10 @@ impl Renderer {
         settings: &Settings,
         places: [HalfPlace; 2],
     ) -> [HalfPlace; 2] {
-        let is_without = target.is_draft || !settings.shows_materials();
         let whole = [0, 0, target.size[0], target.size[1]];
-        let covered = |half| match settings.half(half).zip(scene.half(half)).filter(|_| !is_without) {
-            Some((_, own)) if !has_layers(own.tessellator.mesh()) => [0; 4],
+        let covered = |half| match settings.half(half).zip(scene.half(half)) {
+            Some((settings, own)) if !settings.shows_materials() || !has_layers(own.tessellator.mesh()) => [0; 4],
+            Some(_) if target.is_draft => [0; 4],
             Some(_) if self.peels_everywhere => whole,
             Some((settings, own)) => layer_area(own, target, camera, &settings),
             None => [0; 4],
@@ -177,8 +177,8 @@ fn draws(
         LayerPass::Away { .. } => &[LayerDraw::Away],
         LayerPass::Back { composites: false, .. } => &[LayerDraw::Toward],
         LayerPass::Back { finds, .. } => {
-            // The picture of what is behind a body that refracts light has its colours from elsewhere.
-            let all: &[_] = if material.look.transmits() && !material.look.refracts() {
+            // What distorts has the colours behind it from a picture of them.
+            let all: &[_] = if material.look.transmits() && !material.look.distorts() {
                 &[LayerDraw::Filter, LayerDraw::Add, LayerDraw::Toward]
             } else {
                 &[LayerDraw::Over, LayerDraw::Toward]

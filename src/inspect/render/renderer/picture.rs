@@ -29,11 +29,11 @@ pub(super) struct Picture<'a> {
     /// The same for passes that find layers; none in a picture without layers.
     pub found_materials: [Vec<wgpu::BindGroup>; 2],
     pub steps: Vec<Step>,
-    /// Whether a body refracts light: it is drawn with a picture of what is behind it.
-    refracts: bool,
+    /// Whether a material distorts what is behind it: it is drawn with a picture of that.
+    distorts: bool,
     camera: &'a Camera,
-    /// What draws the light behind everything, if it is shown.
-    background: Option<(wgpu::RenderPipeline, wgpu::BindGroup)>,
+    /// What draws the light behind everything in both halves, if it is shown.
+    backgrounds: [Option<(wgpu::RenderPipeline, wgpu::BindGroup)>; 2],
     /// The index of the step with the ground.
     ground_step: usize,
 }
@@ -58,14 +58,19 @@ impl Renderer {
         camera: &'a Camera,
         settings: &'a Settings,
     ) -> Result<Picture<'a>, GpuError> {
-        let light = self.light(scene, settings)?;
+        let light = |half| settings.half(half).map_or(Ok(None), |own| self.light(scene, &own));
+        let lights = [light(SplitSide::Left)?, light(SplitSide::Right)?];
         let places = half_places(target.size, settings);
         let half_frame = |half| {
             let (drawn, settings) = scene.half(half).zip(settings.half(half))?;
             Some(frame(&self.gpu, drawn, &scene.usual(), target, camera, &settings, &places[half as usize]))
         };
         let steps = steps(scene, settings);
-        let shown_light = light.as_ref().filter(|_| settings.shows_environment() && !target.is_transparent);
+        let background = |half: SplitSide| {
+            let is_shown = !target.is_transparent && settings.half(half).is_some_and(|own| own.shows_environment());
+            let shown = lights[half as usize].as_ref().filter(|_| is_shown);
+            shown.map(|light| self.background(light)).transpose()
+        };
         let layer_areas = self.layer_areas(scene, target, camera, settings, places);
         let has_layers = !layer_areas.iter().all(|place| is_empty(place.area));
         let found_materials = |half| match scene.half(half) {
@@ -74,20 +79,22 @@ impl Renderer {
             }
             _ => Vec::new(),
         };
-        let has_bodies = |own: &Scene| own.tessellator.mesh().materials.iter().any(|own| own.look.refracts());
-        let refracts = has_layers && SplitSide::BOTH.iter().any(|half| scene.half(*half).is_some_and(has_bodies));
-        let behind = if refracts { Some(whole(target.behind(&self.gpu)?)) } else { None };
-        let materials = |half| self.material_groups(scene, half, settings, light.as_ref(), behind.as_ref());
+        let any_distorts = |own: &Scene| own.tessellator.mesh().materials.iter().any(|own| own.look.distorts());
+        let distorts = has_layers && SplitSide::BOTH.iter().any(|half| scene.half(*half).is_some_and(any_distorts));
+        let behind = if distorts { Some(whole(target.behind(&self.gpu)?)) } else { None };
+        let materials = |half: SplitSide| {
+            self.material_groups(scene, half, settings, lights[half as usize].as_ref(), behind.as_ref())
+        };
         Ok(Picture {
             places,
             layer_areas,
             found_materials: SplitSide::BOTH.map(found_materials),
             frames: SplitSide::BOTH.map(half_frame),
             materials: [materials(SplitSide::Left)?, materials(SplitSide::Right)?],
-            background: shown_light.map(|light| self.background(light)).transpose()?,
+            backgrounds: [background(SplitSide::Left)?, background(SplitSide::Right)?],
             ground_step: ground_step(&steps, scene, camera),
             steps,
-            refracts,
+            distorts,
             target,
             camera,
             settings,
@@ -114,19 +121,19 @@ impl Renderer {
             Step::Over | Step::Surface(..) | Step::Layer(_) | Step::Normals(..) => {}
         }
         let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
+        let of_half = settings.half(step.half()).unwrap_or(*settings);
         if let Some(chunk) = step.chunk() {
             drawn.tessellator.emit(recorder, chunk)?;
-            if settings.overlays.colors.source() == ColorSource::MinimumTriangles {
+            if of_half.overlays.colors.source() == ColorSource::MinimumTriangles {
                 drawn.tessellator.record_minimum(recorder)?;
             }
         }
         if let Step::Layer(layer) = step {
-            if picture.refracts && layer.pass == LayerPass::Begin {
+            if picture.distorts && layer.pass == LayerPass::Begin {
                 target.keep_behind(recorder, &self.gpu, &self.materials.mipmaps)?;
             }
             return self.draw_layer(recorder, scene, picture, layer);
         }
-        let of_half = settings.half(step.half()).unwrap_or(*settings);
         let mut surfaces = self.surfaces(drawn, &picture.materials[step.half() as usize], target, camera, &of_half)?;
         // Coverage is that of the view before it is moved.
         if let Step::Surface(half, chunk) = step
@@ -149,14 +156,14 @@ impl Renderer {
         surfaces: &Surfaces,
         beside: &Beside,
     ) {
-        let Picture { target, places, frames, steps, .. } = picture;
+        let Picture { target, settings, places, frames, steps, backgrounds, .. } = picture;
         let ends = |at: Option<usize>| {
             at.and_then(|at| steps.get(at)).is_none_or(|step| matches!(step, Step::Keep | Step::Difference))
         };
         let (step, is_first) = (steps[index], ends(index.checked_sub(1)));
         // Layers begin with a picture of what is behind them.
         let next = steps.get(index + 1);
-        let is_behind = picture.refracts && matches!(next, Some(Step::Layer(next)) if next.pass == LayerPass::Begin);
+        let is_behind = picture.distorts && matches!(next, Some(Step::Layer(next)) if next.pass == LayerPass::Begin);
         let is_last = is_behind || ends(Some(index + 1));
         let shown = SplitSide::BOTH.map(|half| {
             let (own, frame) = scene.half(half).zip(frames[half as usize].as_ref())?;
@@ -166,15 +173,22 @@ impl Renderer {
         // The difference comes under lines over nothing. What is compared has a background: its alpha is that of the wireframe.
         let is_alone = step == Step::Difference;
         let is_empty = if matches!(steps.last(), Some(Step::Difference)) { is_alone } else { target.is_transparent };
-        let own = linear_color(picture.settings.background_color());
+        let own = linear_color(settings.background_color());
         let background = if is_empty { wgpu::Color::TRANSPARENT } else { own };
         let color = target.color(background, is_first || is_alone, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, group, &[]);
-            if let Some((pipeline, light)) = picture.background.as_ref().filter(|_| is_first) {
-                pass.set_pipeline(pipeline);
-                pass.set_bind_group(1, light, &[]);
-                draw_in(pass, &shown, |pass, _| pass.draw(0..3, 0..1));
+            if is_first && backgrounds.iter().any(Option::is_some) {
+                draw_in(pass, &shown, |pass, half, _| {
+                    // Halves that are compared are drawn one after the other in the same place.
+                    let is_drawn = half == step.half() || !settings.shows_difference();
+                    let own = backgrounds[half as usize].as_ref().filter(|_| is_drawn);
+                    if let Some((pipeline, light)) = own {
+                        pass.set_pipeline(pipeline);
+                        pass.set_bind_group(1, light, &[]);
+                        pass.draw(0..3, 0..1);
+                    }
+                });
                 pass.set_bind_group(0, group, &[]);
             }
             match step {
@@ -189,12 +203,15 @@ impl Renderer {
                 Step::Over | Step::Layer(_) | Step::Keep | Step::Difference => {}
             }
             if let Some(ground) = &beside.ground {
-                // Both halves have the same ground.
                 pass.set_pipeline(ground);
-                draw_in(pass, &shown, |pass, _| pass.draw(0..6, 0..1));
+                draw_in(pass, &shown, |pass, half, _| {
+                    if settings.half(half).is_some_and(|own| own.overlays.grid) {
+                        pass.draw(0..6, 0..1);
+                    }
+                });
             }
             if let Some(lines) = &beside.lines {
-                draw_in(pass, &shown, |pass, own| draw_lines(pass, lines, own));
+                draw_in(pass, &shown, |pass, _, own| draw_lines(pass, lines, own));
             }
         });
     }
@@ -208,7 +225,7 @@ impl Renderer {
         let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
         let has_lines = has_lines && index + 1 == steps.len();
         let compares = matches!(steps.last(), Some(Step::Difference));
-        let has_ground = index == picture.ground_step && settings.overlays.grid && !compares;
+        let has_ground = index == picture.ground_step && settings.halves().any(|own| own.overlays.grid) && !compares;
         let has_normals = matches!(steps[index], Step::Normals(..));
         Ok(Beside {
             normals: has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?,
@@ -236,11 +253,16 @@ fn ground_step(steps: &[Step], scene: &Scene, camera: &Camera) -> usize {
 type ShownHalf<'a> = Option<(&'a Scene, wgpu::BindGroup, &'a HalfPlace)>;
 
 /// Draws in both halves.
-fn draw_in(pass: &mut wgpu::RenderPass, halves: &[ShownHalf; 2], draw: impl Fn(&mut wgpu::RenderPass, &Scene)) {
-    for (own, group, place) in halves.iter().flatten() {
+fn draw_in(
+    pass: &mut wgpu::RenderPass,
+    halves: &[ShownHalf; 2],
+    draw: impl Fn(&mut wgpu::RenderPass, SplitSide, &Scene),
+) {
+    for (half, shown) in SplitSide::BOTH.into_iter().zip(halves) {
+        let Some((own, group, place)) = shown else { continue };
         if place.confine(pass) {
             pass.set_bind_group(0, group, &[]);
-            draw(pass, own);
+            draw(pass, half, own);
         }
     }
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::modules;
 use crate::for_tests::reflectance::{COAT_F0, LEAST_ALPHA};
 use crate::for_tests::tone::{COMPRESSION_START, DESATURATION};
-use crate::render::blur_levels::ENVIRONMENT_LEVELS;
+use crate::render::blur_levels::{ENVIRONMENT_LEVELS, IRRADIANCE_LEVEL};
 use crate::render::camera::FIELD_OF_VIEW;
 use crate::render::coverage::TILE;
 use crate::render::dfg::DFG_SIZE;
@@ -23,7 +23,7 @@ use crate::render::scale::Scale;
 use crate::render::sheen::LEAST_SHEEN_ALPHA;
 use crate::settings::{Colors, Overlays, ToneCurve};
 use crate::shot::DIFFERENCE_FLOOR;
-use geometry::mesh::{EdgeKind, MAX_MAPS, MOST_LIGHTS, PartStyle, RELIEF_STEPS, Slot};
+use geometry::mesh::{EdgeKind, HEIGHTS_ACROSS, MAX_MAPS, MOST_LIGHTS, PartStyle, RELIEF_STEPS, Slot};
 use geometry::tessellate::shared_constants::{
     AGREEING, BEYOND_LAST, BITS_63, BITS_64, BITS_127, BITS_1792, BITS_INFINITY, BITS_ONE, BITS_ONE_AND_HALF_STEP,
     BITS_ONE_AND_STEP, BITS_TWO, BOUND_SHARE, CANCELLED, DIRECTION_ROUNDING, FACING_AWAY, FACING_MARGIN,
@@ -34,7 +34,6 @@ use geometry::tessellate::shared_constants::{
 };
 use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use gpu::layout::LOD_GIVEN;
-use gpu::relief_buffers::HEIGHTS_ACROSS;
 use gpu::shader_constants::enum_constants;
 use gpu::{CURVE_SURFACE_STEP, DETAIL_STEP, GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP};
 
@@ -173,6 +172,7 @@ fn table() -> Vec<(&'static str, Expected)> {
         ("TILE", number(TILE)),
         ("PI", number(std::f32::consts::PI)),
         ("ENVIRONMENT_LEVELS", number(ENVIRONMENT_LEVELS)),
+        ("IRRADIANCE_LEVEL", number(IRRADIANCE_LEVEL)),
         ("DFG_SIZE", number(DFG_SIZE)),
         ("MOST_LIGHTS", number(MOST_LIGHTS as u32)),
         ("HALF_VIEW", Expected(vec![f64::from(0.5 * FIELD_OF_VIEW).to_radians().tan()], 1e-7)),

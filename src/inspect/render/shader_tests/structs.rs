@@ -6,6 +6,7 @@ use super::modules;
 use crate::for_tests::reflectance::LookAt;
 use crate::render::coverage::Sieve;
 use crate::render::environment::Surroundings;
+use crate::render::irradiance::LightPart;
 use crate::render::layout::{Frame, MapPlace, Material, Pick};
 use crate::render::mipmap_pass::MipParams;
 use crate::render::prefilter_pass::PrefilterParams;
@@ -74,7 +75,7 @@ fn shared_structs_have_the_same_layout() {
     });
     same!(Share { direction, level, dominant });
     same!(PatchRelief { form, longest, range, slope, losses });
-    same!(HeightMap { size, levels, start, repeats, has_amount, scale, midlevel });
+    same!(HeightMap { size, levels, start, wrap, has_amount, scale, midlevel });
     same!(Patch { points, corners, curves, factors });
     same!(Corner { normal, uv });
     same!(CornerDetail { uvs, color, tangent });
@@ -117,7 +118,8 @@ fn shared_structs_have_the_same_layout() {
         zebra_stripes,
         checker_squares,
     });
-    same!(Surroundings { irradiance, light_from_object, brightness, exposure, tone_curve });
+    same!(LightPart { direction, light });
+    same!(Surroundings { light_from_object, brightness, exposure, tone_curve });
     same!(PunctualLight { origin, intensity, inverse_range, direction, cone_scale, cone_offset });
     same!(LookAt {
         base_color,

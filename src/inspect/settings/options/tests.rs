@@ -32,12 +32,14 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         split,
         split_view,
         left,
+        left_looks,
         section,
         section_at,
         background,
         import,
     } = settings;
-    let Import { normals: mesh_normals, crease_angle, up, unit, show_hidden, subdivide, levels } = import;
+    let Import { normals: mesh_normals, crease_angle, up, unit, show_hidden, subdivide, levels, subdivide_uvs } =
+        import;
     let Tessellation {
         surface,
         alpha,
@@ -96,6 +98,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("split", format!("{split:?}")),
         ("split_view", format!("{split_view:?}")),
         ("split_left", format!("{left:?}")),
+        ("split_looks", format!("{left_looks:?}")),
         ("section", format!("{section:?}")),
         ("section_at", format!("{section_at:?}")),
         ("background", format!("{background:?}")),
@@ -106,6 +109,7 @@ fn fields(settings: &Settings) -> Vec<(&'static str, String)> {
         ("show_hidden", format!("{show_hidden:?}")),
         ("subdivide", format!("{subdivide:?}")),
         ("levels", format!("{levels:?}")),
+        ("subdivide_uvs", format!("{subdivide_uvs:?}")),
     ]
 }
 
@@ -240,6 +244,7 @@ fn unused_options_have_no_effect() {
         "matcap",
         "split-view",
         "split-left",
+        "split-looks",
         "section-at",
     ];
     let with = |own: &[&'static str]| -> Vec<_> { own.iter().copied().chain(elsewhere).collect() };
@@ -285,7 +290,7 @@ fn unused_options_have_no_effect() {
         idle(&phong_left),
         with_light(
             &["alpha", "lod", "pixels", "tolerance", "distances", "normals-at", "normal-maps"],
-            &["split-view", "split-left", "section-at"]
+            &["split-view", "split-left", "split-looks", "section-at"]
         )
     );
     phong_left.split = Some(0.5);

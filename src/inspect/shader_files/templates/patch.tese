@@ -22,9 +22,9 @@ layout(std140, binding = 0) uniform Tessellation {
 @D@
 // Triangles keep the winding of the mesh. Vulkan's domain has its origin at the upper left, OpenGL's at the lower left.
 #ifdef VULKAN
-layout(triangles, @SPACING@, cw) in;
+layout(triangles, @SPACING@_spacing, cw) in;
 #else
-layout(triangles, @SPACING@, ccw) in;
+layout(triangles, @SPACING@_spacing, ccw) in;
 #endif
 
 layout(location = 0) in vec3 corner_position[];

@@ -292,3 +292,51 @@ pub(crate) fn image() -> Vec<u8> {
     pixels.write_to(&mut png, image::ImageFormat::Png).expect("an image in memory");
     png.into_inner()
 }
+
+/// A NURBS surface: the orders along u and v, numbers of control points, forms, control points with their weights, and knots.
+#[derive(Clone)]
+pub(crate) struct Nurbs {
+    pub orders: [i64; 2],
+    pub sizes: [i64; 2],
+    pub forms: [&'static str; 2],
+    pub points: Vec<f64>,
+    pub knots: [Vec<f64>; 2],
+    pub flips: bool,
+}
+
+impl Nurbs {
+    /// A surface between the same curve at two heights z, of control points with x, y and a weight.
+    pub(super) fn extruded(order: i64, form: &'static str, curve: &[[f64; 3]], knots: Vec<f64>, height: f64) -> Self {
+        let row = |z: f64| curve.iter().flat_map(move |&[x, y, weight]| [x, y, z, weight]);
+        Self {
+            orders: [order, 2],
+            sizes: [curve.len() as i64, 2],
+            forms: [form, "Open"],
+            points: row(0.0).chain(row(height)).collect(),
+            knots: [knots, vec![0.0, 0.0, 1.0, 1.0]],
+            flips: false,
+        }
+    }
+
+    /// The geometry with this number.
+    pub(super) fn entry(&self, id: i64) -> Entry {
+        let pair = |name: &str, [u, v]: [i64; 2]| entry(name, vec![u.into(), v.into()]);
+        let children = vec![
+            pair("NurbsSurfaceOrder", self.orders),
+            pair("Dimensions", self.sizes),
+            pair("Step", [4, 4]),
+            entry("Form", self.forms.iter().map(|form| (*form).into()).collect()),
+            one("Points", self.points.clone()),
+            one("KnotVectorU", self.knots[0].clone()),
+            one("KnotVectorV", self.knots[1].clone()),
+            one("FlipNormals", i64::from(self.flips)),
+        ];
+        object("Geometry", id, "Geometry::surface", "NurbsSurface", children)
+    }
+}
+
+/// A quarter of a cylinder of radius 1 around Z, from z = 0 to z = 2.
+pub(crate) fn quarter_cylinder() -> Nurbs {
+    let curve = [[1.0, 0.0, 1.0], [1.0, 1.0, std::f64::consts::FRAC_1_SQRT_2], [0.0, 1.0, 1.0]];
+    Nurbs::extruded(3, "Open", &curve, vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], 2.0)
+}

@@ -190,6 +190,7 @@ fn a_displacement_map_is_a_height_image_in_units_of_the_file() {
     assert_eq!(loaded.warnings, [] as [String; 0]);
     let map = loaded.materials[0].height.as_ref().expect("a height image");
     assert_eq!((map.size, map.amount), ([1, 2], HeightAmount::from_factor(0.01, 0.0)));
+    assert_eq!(map.wrap, [Wrap::Clamp, Wrap::Repeat]);
     let broken = text(&square_textured_as("DisplacementColor", Ok(b"no image"), 1.0));
     let broken = read(&broken).expect("a mesh");
     let start = "the height image of material \"paint\" is left out: \"wood\" can't be read as a height image: ";
@@ -320,6 +321,21 @@ fn what_is_marked_as_a_subdivision_surface_is_refined_with_its_creases() {
     assert!(low.abs() < 1e-6 && (high - 0.5).abs() < 1e-6, "{low} to {high}");
     // Shared corners of smooth points have one normal, and those of creases one for each side.
     assert!(sharp.corners.len() > smooth.corners.len());
+}
+
+#[test]
+fn vertices_of_a_cage_at_one_place_stay_apart() {
+    // Two squares that touch along an edge, whose ends are vertices of each.
+    let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1, 0, 0], [1, 0, 1], [1, 1, 1], [1, 1, 0]];
+    let corners: Vec<f64> = corners.into_iter().flatten().map(f64::from).collect();
+    let marks = vec![one("Smoothness", 2), one("PreviewDivisionLevels", 2)];
+    let squares = geometry(10, &corners, &[&[0, 1, 2, 3], &[4, 5, 6, 7]], marks);
+    let objects = vec![squares, model(20, "squares", "Mesh", &[])];
+    let mesh = loaded(&document(true, 1.0, objects, &[Link(20, 0, ""), Link(10, 20, "")]));
+    assert_eq!(mesh.triangles.len(), 2 * 16 * 2);
+    let edge = mesh.corners.iter().map(|corner| corner.position.x).fold(0.0, f32::max);
+    let bent = mesh.corners.iter().filter(|corner| corner.position.y > 1e-6 && corner.position.x < edge - 1e-6);
+    assert_eq!(bent.count(), 0, "each square stays in its plane");
 }
 
 #[test]

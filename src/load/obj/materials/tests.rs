@@ -133,7 +133,10 @@ fn height_images_displace_as_the_file_says() {
         let map = map.expect("a height image");
         assert_eq!((map.size, map.amount), ([2, 1], Some(HeightAmount { scale: 2.0, midlevel: 0.25 })));
         assert_eq!(map.heights[..2], [0.2126, 0.0722], "the brightness of red and of blue");
-        assert_eq!(warnings, [""; 0]);
+        assert_eq!((map.wrap, warnings), ([Wrap::Repeat; 2], Vec::new()));
+    }
+    for clamped in ["disp -clamp on w.png\n", "map_Kd -clamp on w.png\ndisp w.png\n"] {
+        assert_eq!(height(clamped).0.map(|map| map.wrap), Some([Wrap::Clamp; 2]), "{clamped}");
     }
     let (map, _) = height("disp w.png\n");
     assert_eq!(map.map(|map| map.amount), Some(None), "the file doesn't say how far");
@@ -144,6 +147,22 @@ fn height_images_displace_as_the_file_says() {
         let is_said = warnings.len() == 1 && warnings[0].starts_with(&start) && warnings[0].contains(reason);
         assert!(map.is_none() && is_said, "{warnings:?}");
     }
+}
+
+#[test]
+fn textures_take_the_room_that_heights_leave() {
+    let folder = folder();
+    for (name, side) in [("color.png", 1024), ("height.png", 512)] {
+        let gray = image::GrayImage::from_pixel(side, side, image::Luma([128]));
+        gray.save(folder.path().join(name)).unwrap();
+    }
+    square(&folder, "map_Kd color.png\ndisp height.png\n");
+    // The texture takes 4 MiB, on the graphics card a third more; and the heights 1.6 MiB.
+    let limits = Limits { memory: 5_700_000, ..Limits::default() };
+    let mesh = load(&folder.path().join("square.obj"), &limits, &Progress::new()).unwrap();
+    let material = &mesh.materials[0];
+    assert_eq!(material.height.as_ref().map(|map| map.size), Some([512; 2]), "{:?}", mesh.warnings);
+    assert_eq!(material.texture.as_ref().map(|texture| texture.size), Some([512; 2]), "{:?}", mesh.warnings);
 }
 
 #[test]
