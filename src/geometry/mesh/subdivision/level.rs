@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Linear;
 use crate::casts::to_u32;
 
 /// Stands for a side that doesn't exist.
@@ -37,6 +38,13 @@ impl Polygons {
             Self::Quads => 4 * face..4 * face + 4,
             Self::Mixed { starts, .. } => starts[face as usize]..starts[face as usize + 1],
         }
+    }
+
+    /// The mean of what the sides of a face have.
+    pub(super) fn mean<T: Linear>(&self, face: u32, value: impl Fn(u32) -> T) -> T {
+        let sides = self.sides(face);
+        let share = 1.0 / f64::from(sides.end - sides.start);
+        sides.fold(T::default(), |sum, side| sum + value(side)) * share
     }
 
     /// The side that follows in its face.
