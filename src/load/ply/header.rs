@@ -2,7 +2,7 @@
 
 use super::textures;
 use crate::read_error::{FilePosition, ReadError};
-use crate::text_lines::{Line, Lines, first_word, parsed, shown};
+use crate::text_lines::{Line, Lines, first_word, parsed, shown, words};
 
 /// How values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,7 +123,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
     let (mut encoding, mut elements, mut other_lines, mut images) = (None, Vec::new(), 0, Vec::new());
     lines.next()?;
     while let Some(line) = lines.next()? {
-        let mut words = line.words();
+        let mut words = words(line.text);
         let fault = |reason: String| line.place().error(reason);
         match words.next() {
             None | Some(b"obj_info") => {}
@@ -159,7 +159,7 @@ fn format(word: Option<&[u8]>) -> Result<Encoding, String> {
 }
 
 fn element<'a>(line: &Line<'a>) -> Result<Element<'a>, String> {
-    let mut words = line.words().skip(1);
+    let mut words = words(line.text).skip(1);
     let (Some(name), Some(count), None) = (words.next(), words.next(), words.next()) else {
         return Err("an element needs a name and a number".to_owned());
     };
@@ -168,7 +168,7 @@ fn element<'a>(line: &Line<'a>) -> Result<Element<'a>, String> {
 }
 
 fn property<'a>(line: &Line<'a>) -> Result<Property<'a>, String> {
-    let words: Vec<_> = line.words().skip(1).take(5).collect();
+    let words: Vec<_> = words(line.text).skip(1).take(5).collect();
     let scalar = |name| Scalar::named(name).ok_or_else(|| format!("{} isn't a type of numbers", shown(name)));
     match words[..] {
         [b"list", count, item, name] => {
