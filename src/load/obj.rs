@@ -58,11 +58,11 @@ fn gather<'a>(
     let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
     let mut tags = Tags::default();
-    let mut materials = Materials::new(files);
+    let mut materials = Materials::default();
     let take = |more: VertexPiece| {
         above.push(vertices.counts());
         vertices.add(&more, budget)?;
-        more.libraries.iter().for_each(|names| materials.add_library(names));
+        more.libraries.iter().for_each(|names| materials.add_library(names, files));
         more.tags.iter().try_for_each(|tag| tags.take(tag, budget))?;
         more.error.map_or(Ok(()), Err)
     };
@@ -98,7 +98,7 @@ fn gather<'a>(
     budget.release(of_smoothing);
     let Reader { mut faces, mut materials, found, .. } = reader;
     tags.apply(&mut faces, &vertices.positions, found.faces);
-    materials.read_textures(&mut faces, bytes.len() as u64 + vertices.bytes())?;
+    materials.read_textures(&mut faces, files, bytes.len() as u64 + vertices.bytes())?;
     faces.notes.extend(materials.warnings());
     let lacking = faces.lacking_normals(found.without_normals, "faces without normals, or with some missing");
     faces.notes.extend(counted([lacking]));
@@ -128,9 +128,12 @@ impl<'a> Statement<'a> {
         Self { number: line.number, word, rest }
     }
 
-    /// Returns what follows the first word, without a comment.
+    /// Returns what follows the first word, without a comment. A comment starts with a `#` at the start of a word, since names may
+    /// contain one.
     fn rest(&self) -> &'a [u8] {
-        without_comment(self.rest)
+        let begins = |i: &usize| *i == 0 || self.rest[i - 1].is_ascii_whitespace();
+        let comment = memchr::memchr_iter(b'#', self.rest).find(begins);
+        &self.rest[..comment.unwrap_or(self.rest.len())]
     }
 
     fn place(&self) -> FilePosition {
@@ -175,13 +178,6 @@ fn continued<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Result<Cow<'a, [u8]>,
     Ok(all.into())
 }
 
-/// Returns the text before a comment. A comment starts with a `#` at the start of a word, since names may contain one.
-fn without_comment(text: &[u8]) -> &[u8] {
-    let begins = |i: &usize| *i == 0 || text[i - 1].is_ascii_whitespace();
-    let comment = memchr::memchr_iter(b'#', text).find(begins);
-    &text[..comment.unwrap_or(text.len())]
-}
-
 /// What was found among the faces.
 #[derive(Default)]
 struct Counts {
@@ -218,7 +214,7 @@ struct Reader<'v, 'a> {
     /// The faces that are holes of a subdivision surface.
     holes: &'v [u32],
     faces: FaceBuilder<'a>,
-    materials: Materials<'a>,
+    materials: Materials,
     /// The names of the object and of the group that the next faces belong to.
     part: [Vec<u8>; 2],
     /// The normals that smoothing groups make, if there are groups.

@@ -10,7 +10,7 @@ use crate::choice::choices;
 use crate::defaults::with_defaults;
 
 /// The look of some of a mesh's patches.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Material {
     /// The name in the file.
     pub name: String,
@@ -34,16 +34,7 @@ pub struct Material {
 impl Material {
     /// Returns a material of one colour (linear RGBA), neither metal nor glossy, without triangles.
     pub fn plain(name: &str, base_color: [f32; 4]) -> Self {
-        Self {
-            name: name.to_owned(),
-            base_color,
-            texture: None,
-            sampling: Sampling::default(),
-            double_sided: false,
-            look: Look::default(),
-            height: None,
-            triangles: 0..0,
-        }
+        Self { name: name.to_owned(), base_color, ..Self::default() }
     }
 
     /// Whether one may see what is behind its triangles: it blends, or it transmits light.

@@ -17,6 +17,7 @@ use super::weld::{plus_zero2, plus_zero3};
 use super::{Corner, Material, Mesh, PartRange, Repairs};
 use crate::casts::to_u32;
 use crate::cores::{in_ranges, ranges};
+use crate::defaults::with_defaults;
 use crate::progress::{Cancelled, Progress};
 
 use distinct_corners::DistinctCorners;
@@ -41,27 +42,23 @@ impl From<Corner> for InputCorner {
     }
 }
 
-/// Collects triangles and builds a mesh. Equal corners are stored once: the memory that a builder takes grows with the
-/// number of distinct corners, plus 12 bytes a triangle (the formula is in `load::memory_budget`).
-pub struct MeshBuilder {
-    groups: Vec<Group>,
-    distinct: DistinctCorners,
-    triangles: usize,
-    /// How many corners have been added.
-    offered: usize,
-    /// How many corners will have been added in the end, and how many distinct ones, if that is known; otherwise 0.
-    expected: [usize; 2],
-    /// Counts of the repairs so far.
-    repairs: Repairs,
-    /// The part of the file that the next triangles belong to.
-    part: Option<u32>,
-    /// The angle up to which faces are smooth where normals are made, in degrees.
-    crease_angle: f32,
-}
-
-impl Default for MeshBuilder {
-    fn default() -> Self {
-        Self::with_crease_angle(CREASE_ANGLE)
+with_defaults! {
+    /// Collects triangles and builds a mesh. Equal corners are stored once: the memory that a builder takes grows with the
+    /// number of distinct corners, plus 12 bytes a triangle (the formula is in `load::memory_budget`).
+    pub struct MeshBuilder {
+        groups: Vec<Group> = Vec::new(),
+        distinct: DistinctCorners = DistinctCorners::default(),
+        triangles: usize = 0,
+        /// How many corners have been added.
+        offered: usize = 0,
+        /// How many corners will have been added in the end, and how many distinct ones, if that is known; otherwise 0.
+        expected: [usize; 2] = [0; 2],
+        /// Counts of the repairs so far.
+        repairs: Repairs = Repairs::default(),
+        /// The part of the file that the next triangles belong to.
+        part: Option<u32> = None,
+        /// The angle up to which faces are smooth where normals are made, in degrees.
+        crease_angle: f32 = CREASE_ANGLE,
     }
 }
 
@@ -123,16 +120,7 @@ impl MeshBuilder {
 
     /// Starts a mesh whose missing normals are smooth where faces meet at up to this angle, in degrees from 0 to 180.
     pub fn with_crease_angle(crease_angle: f32) -> Self {
-        Self {
-            groups: Vec::new(),
-            distinct: DistinctCorners::default(),
-            triangles: 0,
-            offered: 0,
-            expected: [0; 2],
-            repairs: Repairs::default(),
-            part: None,
-            crease_angle,
-        }
+        Self { crease_angle, ..Self::default() }
     }
 
     /// Announces that about `offered` more corners will be added, and that about `distinct` of them will be distinct.

@@ -30,8 +30,8 @@ struct TextureFile {
 }
 
 /// The materials of the faces.
-pub(super) struct Materials<'a> {
-    files: &'a Files<'a>,
+#[derive(Default)]
+pub(super) struct Materials {
     /// The names of the material files.
     libraries: Vec<String>,
     described: HashMap<Vec<u8>, MtlMaterial>,
@@ -62,26 +62,9 @@ counts! {
     }
 }
 
-impl<'a> Materials<'a> {
-    pub(super) fn new(files: &'a Files<'a>) -> Self {
-        Self {
-            files,
-            libraries: Vec::new(),
-            described: HashMap::new(),
-            name: Vec::new(),
-            index: None,
-            indices: HashMap::new(),
-            places: HashMap::new(),
-            heights: Vec::new(),
-            textures: Vec::new(),
-            numbers: HashMap::new(),
-            problems: Vec::new(),
-            found: Counts::default(),
-        }
-    }
-
+impl Materials {
     /// Reads `mtllib`: the names of one or more files, which may contain spaces.
-    pub(super) fn add_library(&mut self, names: &[u8]) {
+    pub(super) fn add_library(&mut self, names: &[u8], files: &Files) {
         let mut name = Vec::new();
         for word in words(names) {
             if !name.is_empty() {
@@ -89,15 +72,15 @@ impl<'a> Materials<'a> {
             }
             name.extend(word);
             if word.to_ascii_lowercase().ends_with(b".mtl") {
-                self.read_library(&std::mem::take(&mut name));
+                self.read_library(&std::mem::take(&mut name), files);
             }
         }
         if !name.is_empty() {
-            self.read_library(&name);
+            self.read_library(&name, files);
         }
     }
 
-    fn read_library(&mut self, name: &[u8]) {
+    fn read_library(&mut self, name: &[u8], files: &Files) {
         let name = String::from_utf8_lossy(name).into_owned();
         if self.libraries.contains(&name) {
             return;
@@ -106,7 +89,7 @@ impl<'a> Materials<'a> {
             self.found.libraries_left_out += 1;
             return;
         }
-        match borrowing(self.files.budget, || self.files.read_path(&name).and_then(|bytes| mtl::read(&bytes))) {
+        match borrowing(files.budget, || files.read_path(&name).and_then(|bytes| mtl::read(&bytes))) {
             Ok((materials, bad)) => {
                 self.found.bad_statements += bad;
                 // Of several materials with one name the first counts, as in most programs.
@@ -214,16 +197,21 @@ impl<'a> Materials<'a> {
     ///
     /// # Errors
     /// [`ReadError::Cancelled`].
-    pub(super) fn read_textures(&mut self, faces: &mut FaceBuilder, freed: u64) -> Result<(), ReadError> {
+    pub(super) fn read_textures(
+        &mut self,
+        faces: &mut FaceBuilder,
+        files: &Files,
+        freed: u64,
+    ) -> Result<(), ReadError> {
         let textures = std::mem::take(&mut self.textures);
         let mut giving = Giving::default();
         let bytes = |file: &TextureFile| {
             let filter = file.users.first().map_or(MipFilter::Colors, |user| user.map.filter());
-            Ok((Cow::Owned(self.files.read_path(&file.name)?), filter))
+            Ok((Cow::Owned(files.read_path(&file.name)?), filter))
         };
         let reserved = faces.bytes_to_finish().saturating_sub(freed);
         let images: Vec<_> = textures.iter().collect();
-        let images = read_images(&images, bytes, reserved, self.files.budget, self.files.progress)?;
+        let images = read_images(&images, bytes, reserved, files.budget, files.progress)?;
         for (file, ReadImage { texture, said }) in textures.into_iter().zip(images) {
             let (bumps, mut users): (Vec<_>, Vec<_>) =
                 file.users.into_iter().partition(|user| user.map == MtlMap::Bump);
@@ -234,7 +222,7 @@ impl<'a> Materials<'a> {
             }
             if users.is_empty() {
                 // Heights aren't drawn.
-                self.files.budget.release(texture.map_or(0, |texture| decoded_bytes(texture.size)));
+                files.budget.release(texture.map_or(0, |texture| decoded_bytes(texture.size)));
                 continue;
             }
             let (image, first) = (shown(file.name.as_bytes()), &file.first);
@@ -242,16 +230,16 @@ impl<'a> Materials<'a> {
             let given = texture.iter().flat_map(|texture| users.iter().map(move |user| (user, texture)));
             given.for_each(|(user, texture)| giving.give(faces, user, texture));
         }
-        self.problems.extend(giving.finish(faces, self.files.budget));
-        self.read_heights(faces, reserved)
+        self.problems.extend(giving.finish(faces, files.budget));
+        self.read_heights(faces, files, reserved)
     }
 
-    fn read_heights(&mut self, faces: &mut FaceBuilder, reserved: u64) -> Result<(), ReadError> {
-        let mut images = ModelImages::new(self.files);
+    fn read_heights(&mut self, faces: &mut FaceBuilder, files: &Files, reserved: u64) -> Result<(), ReadError> {
+        let mut images = ModelImages::new(files);
         images.reserved = reserved;
         for (index, MtlTexture { file, amount, .. }) in self.heights.drain(..) {
             let (material, image) = (faces.builder.material_mut(index), shown(file.as_bytes()));
-            let bytes = || self.files.read_path(&file).map(Cow::Owned);
+            let bytes = || files.read_path(&file).map(Cow::Owned);
             material.height =
                 images.read(file.clone(), [&image, &material.name], false, bytes)?.map(|map| map.with_amount(amount));
         }

@@ -10,7 +10,7 @@ use geometry::mesh::HeightAmount;
 use geometry::mesh::mipmap::MipFilter;
 
 /// A material in a material file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct MtlMaterial {
     pub name: Vec<u8>,
     /// Kd: the diffuse colour, linear.
@@ -79,16 +79,7 @@ const MAP_STATEMENTS: [(&[u8], MtlMap); 12] = [
 impl MtlMaterial {
     /// A white material.
     pub(super) fn named(name: &[u8]) -> Self {
-        Self {
-            name: name.to_vec(),
-            color: [1.0; 3],
-            emissive: [0.0; 3],
-            alpha: 1.0,
-            transparency: 0.0,
-            roughness: None,
-            metallic: None,
-            textures: BTreeMap::new(),
-        }
+        Self { name: name.to_vec(), color: [1.0; 3], alpha: 1.0, ..Self::default() }
     }
 
     /// Its maps that count: heights don't beside normals.
@@ -110,7 +101,7 @@ impl MtlMaterial {
 }
 
 /// A texture, and the options before its name.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct MtlTexture {
     pub file: String,
     /// -s and -o: texture coordinates are multiplied by the first, and the second is added.
@@ -177,14 +168,7 @@ fn part(text: &[u8]) -> Option<f32> {
 
 /// Parses a file name after options. Options about anything but its place are ignored.
 fn texture(mut text: &[u8]) -> MtlTexture {
-    let mut found = MtlTexture {
-        file: String::new(),
-        scale: [1.0; 2],
-        offset: [0.0; 2],
-        is_clamped: false,
-        strength: 1.0,
-        amount: None,
-    };
+    let mut found = MtlTexture { scale: [1.0; 2], strength: 1.0, ..MtlTexture::default() };
     loop {
         let (word, mut rest) = first_word(text);
         let count = match word {
