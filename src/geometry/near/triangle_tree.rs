@@ -19,7 +19,7 @@ pub struct TriangleTree {
     numbers: Vec<u32>,
     /// A power of two that brings coordinates near 1, so that the areas of boxes are within the range of f32. It causes
     /// no rounding.
-    scale: f64,
+    pub(super) scale: f64,
 }
 
 /// The nearest point of a triangle.
@@ -205,19 +205,6 @@ impl TriangleTree {
                 }
             }
         }
-    }
-
-    /// The factor from object units to scaled ones.
-    pub(super) fn scale(&self) -> f64 {
-        self.scale
-    }
-
-    pub(super) fn scaled(&self, p: DVec3) -> DVec3 {
-        p * self.scale
-    }
-
-    pub(super) fn unscaled(&self, distance: f64) -> f64 {
-        distance / self.scale
     }
 
     /// The largest coordinate, scaled.
