@@ -93,7 +93,9 @@ impl TextureRoom {
 
     /// Halves the largest of these sizes, in px, until all textures fit, the first of several of one size first.
     fn scalings(&self, sizes: &[[u32; 2]]) -> Vec<Scaling> {
-        let mut halvings: Vec<u32> = sizes.iter().map(|size| within_most_side(*size)).collect();
+        let fits = |size, halvings| level_size(size, halvings).iter().all(|side| *side <= MOST_SIDE);
+        let least = |size: &[u32; 2]| (0..u32::BITS).find(|halvings| fits(*size, *halvings)).unwrap_or(0);
+        let mut halvings: Vec<u32> = sizes.iter().map(least).collect();
         let too_wide = halvings.clone();
         let [mut host, mut device] = [0_u64; 2];
         for (size, halvings) in sizes.iter().zip(&halvings) {
@@ -135,12 +137,6 @@ impl TextureRoom {
         let refused = MemoryRefused { needed: device, allowed };
         (device > allowed).then(|| format!("on the graphics card, all textures with their mip levels {refused}"))
     }
-}
-
-/// How often a texture of a size in px is halved, so that no side has more than [`MOST_SIDE`] px.
-fn within_most_side(size: [u32; 2]) -> u32 {
-    let fits = |halvings: &u32| level_size(size, *halvings).iter().all(|side| *side <= MOST_SIDE);
-    (0..u32::BITS).find(fits).unwrap_or(0)
 }
 
 fn pixels([width, height]: [u32; 2]) -> u64 {

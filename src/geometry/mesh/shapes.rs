@@ -87,7 +87,7 @@ impl Shape {
     /// its normals. A shape without levels stays as it is.
     pub fn build_at(self, level: u32) -> Mesh {
         let triangles = match self {
-            Self::CubeSplit => polyhedra::cube_split(),
+            Self::CubeSplit => polyhedra::cube(|position, normal| normal + 0.6 * position),
             Self::CubeSmooth => polyhedra::cube_smooth(),
             Self::Icosahedron => polyhedra::icosphere(level),
             Self::Icosphere => polyhedra::icosphere(1 + level),

@@ -110,7 +110,10 @@ impl Reader<'_> {
         let anim = some.as_deref().unwrap_or(&stack.anim);
         let baked = match ufbx::bake_anim(self.scene, anim, options) {
             Ok(baked) => baked,
-            Err(error) if is_too_large(&error) => {
+            Err(ufbx::Error {
+                type_: ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory,
+                ..
+            }) => {
                 return Ok(Err("its samples take more memory than is left (--max-memory allows more)".to_owned()));
             }
             Err(error) => return Err(refused(&error, self.budget)),
@@ -290,11 +293,6 @@ fn interpolated(keys: &[(f64, f64)], time: f64) -> Option<f64> {
     let (from, to) = (keys.get(next.saturating_sub(1))?, keys.get(next).or_else(|| keys.last())?);
     let part = if to.0 > from.0 { ((time - from.0) / (to.0 - from.0)).clamp(0.0, 1.0) } else { 0.0 };
     Some(from.1 + part * (to.1 - from.1))
-}
-
-/// Whether ufbx needed more memory than it may take.
-fn is_too_large(error: &ufbx::Error) -> bool {
-    matches!(error.type_, ErrorType::MemoryLimit | ErrorType::AllocationLimit | ErrorType::OutOfMemory)
 }
 
 /// Returns the times at which a channel's weight passes that of a shape in between, where its shapes' weights have a bend.

@@ -127,11 +127,6 @@ impl Level {
         Some(self.first_sides[point as usize]).filter(|&side| side != NONE)
     }
 
-    /// The side that leaves the same point in the face that follows clockwise.
-    pub(super) fn clockwise(&self, side: u32) -> Option<u32> {
-        self.twin(side).map(|twin| self.polygons.after(twin))
-    }
-
     /// The edges around the point where a side starts, counter-clockwise from that side: once around, or up to an edge that
     /// has no other face.
     pub(super) fn ring(&self, first: u32) -> impl Iterator<Item = Spoke> {
