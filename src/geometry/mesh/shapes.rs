@@ -132,6 +132,15 @@ fn corner(position: Vec3, normal: Vec3, uv: Vec2) -> Corner {
     Corner { position, normal: normal.normalize(), uv }
 }
 
+/// Returns the triangles of all cells of a grid, column by column.
+fn grid(
+    columns: usize,
+    rows: usize,
+    cell: impl Fn(usize, usize) -> [[Corner; 3]; 2],
+) -> impl Iterator<Item = [Corner; 3]> {
+    (0..columns).flat_map(move |i| (0..rows).map(move |j| [i, j])).flat_map(move |[i, j]| cell(i, j))
+}
+
 /// Returns two triangles for the quad a b c d, which is counter-clockwise, cut along its diagonal a-c.
 fn quad([a, b, c, d]: [Corner; 4]) -> [[Corner; 3]; 2] {
     [[a, b, c], [a, c, d]]
