@@ -17,7 +17,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::{counted, counts};
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
+use super::text_lines::{Line, Lines, first_word, numbers_or_nan, shown};
 use geometry::casts::to_usize;
 use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
@@ -202,7 +202,7 @@ impl Reader<'_> {
                 b"" | b"outer" | b"endloop" => {}
                 b"vertex" => {
                     let rest = first_word(line.text).1;
-                    self.found.with_commas += usize::from(has_comma(rest));
+                    self.found.with_commas += usize::from(rest.contains(&b','));
                     if let Some(slot) = positions.get_mut(count) {
                         *slot = numbers_or_nan(rest).into();
                     }

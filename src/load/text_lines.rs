@@ -124,11 +124,6 @@ fn with_point(word: &[u8]) -> Option<Vec<u8>> {
     is_single.then(|| [&word[..at], b".", &word[at + 1..]].concat())
 }
 
-/// Whether numbers have a comma instead of a point, which is worth a warning.
-pub(super) fn has_comma(text: &[u8]) -> bool {
-    memchr(b',', text).is_some()
-}
-
 /// Returns a text in UTF-8, if it is in UTF-16 and says so with a byte order mark.
 pub(super) fn of_utf16(bytes: &[u8]) -> Option<Vec<u8>> {
     let (is_big, units) = match bytes {
