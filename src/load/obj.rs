@@ -128,8 +128,8 @@ impl<'a> Statement<'a> {
         Self { number: line.number, word, rest }
     }
 
-    /// Returns what follows the first word, without a comment. A comment starts with a `#` at the start of a word, since names may
-    /// contain one.
+    /// Returns what follows the first word, without a comment. A comment starts with a `#` at the start of a word, since names
+    /// may contain one.
     fn rest(&self) -> &'a [u8] {
         let begins = |i: &usize| *i == 0 || self.rest[i - 1].is_ascii_whitespace();
         let comment = memchr::memchr_iter(b'#', self.rest).find(begins);

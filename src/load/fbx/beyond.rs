@@ -44,9 +44,9 @@ impl<'a> Curves<'a> {
         for prop in anim.layers.into_iter().flat_map(|layer| &layer.anim_props) {
             for curve in prop.anim_value.curves.iter().flatten() {
                 let [Some(first), Some(last)] = ends(curve) else { continue };
-                let ends = [&curve.pre_extrapolation, &curve.post_extrapolation];
+                let sides = [&curve.pre_extrapolation, &curve.post_extrapolation];
                 // What goes on in the direction of an end isn't level even if all of its values are the same.
-                let is_straight = ends.iter().any(|how| how.mode as u32 == ExtrapolationMode::Slope as u32);
+                let is_straight = sides.iter().any(|how| how.mode as u32 == ExtrapolationMode::Slope as u32);
                 if curve.min_value == curve.max_value && !is_straight {
                     continue;
                 }

@@ -236,6 +236,7 @@ impl<'a> Vertices<'a> {
         }
         Ok(())
     }
+
     /// Returns a vertex's position and normal in the file; with the morph targets' displacements at rest if
     /// `is_morphed`.
     pub(super) fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {

@@ -50,8 +50,8 @@ fn moebius_at(turn: f32, across: f32) -> (Vec3, Vec3) {
     (out * 0.7 + rung * across, rung.cross(ahead))
 }
 
-/// Returns the sheet whose corner at column i and row j is `node(i, j)`; seen from outside, row numbers increase to the left of the
-/// direction in which column numbers increase.
+/// Returns the sheet whose corner at column i and row j is `node(i, j)`; seen from outside, row numbers increase to the left
+/// of the direction in which column numbers increase.
 fn sheet(columns: usize, rows: usize, node: impl Fn(usize, usize) -> Corner) -> Vec<[Corner; 3]> {
     grid(columns, rows, |i, j| quad([node(i, j), node(i, j + 1), node(i + 1, j + 1), node(i + 1, j)])).collect()
 }

@@ -119,9 +119,10 @@ impl Splitter<'_> {
     }
 }
 
-/// What the corners of the finer level's faces get, in their order. Of the face where a side starts, `corner` says it of the first, the
-/// second and the last corner, by that side and the one before it. `other` says it of the third corner of a quadrilateral; in place of that,
-/// triangles have a fourth one between them, of whose corners it says it by the sides that these halve.
+/// What the corners of the finer level's faces get, in their order. Of the face where a side starts, `corner` says it of the
+/// first, the second and the last corner, by that side and the one before it. `other` says it of the third corner of a
+/// quadrilateral; in place of that, triangles have a fourth one between them, of whose corners it says it by the sides that
+/// these halve.
 pub(super) fn of_corners<T: Send>(
     level: &Level,
     scheme: Scheme,
