@@ -63,10 +63,7 @@ pub fn each<T: Sync, E: Send>(list: &[T], work: impl Fn(&T) -> Result<(), E> + S
 
 /// Replaces each item of a list by what `make` makes of its index, on all cores, each of which has at least `least` items.
 pub fn fill<T: Send>(list: &mut [T], least: usize, make: impl Fn(usize) -> T + Sync) {
-    let ranges: Vec<_> = ranges(list.len(), least).collect();
-    split(list, ranges.iter().map(Range::len)).into_par_iter().zip(ranges).for_each(|(part, range)| {
-        part.iter_mut().zip(range).for_each(|(item, i)| *item = make(i));
-    });
+    list.par_iter_mut().enumerate().with_min_len(least).for_each(|(i, item)| *item = make(i));
 }
 
 /// Divides a list into parts of so many items each.

@@ -164,7 +164,7 @@ impl RigBuilder {
     }
 
     /// Gives up building a rig. The first reason is reported.
-    fn give_up(&mut self, reason: String) {
+    pub(super) fn give_up(&mut self, reason: String) {
         self.problem.get_or_insert(reason);
     }
 
@@ -231,7 +231,7 @@ impl RigBuilder {
             rig.tangents = bindings.map(tangent).collect();
         }
         refer_to_tangents(rig, &self.tangent_deltas);
-        rig.reach = Reach::new(&rig.bindings, &rig.deltas).including(&self.tangent_deltas);
+        rig.reach = Reach::new(&rig.bindings, &rig.deltas, &self.tangent_deltas);
     }
 
     /// Binds the points that a cage is refined to, as combinations of what the cage's points are bound to, by the numbers of `cage`:
@@ -415,11 +415,6 @@ impl NodeBinder<'_> {
             return Err(format!("morph targets have more than {MAX_DISPLACED} elements"));
         }
         Ok(())
-    }
-
-    /// Gives up building a rig. The first reason is reported.
-    pub(super) fn give_up(&mut self, reason: String) {
-        self.binder.give_up(reason);
     }
 
     /// Returns the joint and the space of a mesh's vertices; `to_node` takes them to the node's own space.

@@ -316,18 +316,14 @@ impl Rig {
 }
 
 impl Reach {
-    pub fn new(bindings: &[Binding], deltas: &[Delta]) -> Self {
+    /// `tangents` are the displacements of tangents.
+    pub fn new(bindings: &[Binding], deltas: &[Delta], tangents: &[[f32; 3]]) -> Self {
         let largest = |sum: f64, vector: &[f32; 3]| vector.iter().map(|x| f64::from(x.abs())).fold(sum, f64::max);
+        let deltas = deltas.iter().flat_map(|delta| [&delta.position, &delta.normal]);
         Self {
             position: bindings.iter().map(|binding| &binding.position).fold(0.0, largest),
-            delta: deltas.iter().flat_map(|delta| [&delta.position, &delta.normal]).fold(0.0, largest),
+            delta: deltas.chain(tangents).fold(0.0, largest),
         }
-    }
-
-    /// Includes displacements of tangents.
-    pub fn including(self, tangents: &[[f32; 3]]) -> Self {
-        let coordinates = tangents.iter().flatten().map(|x| f64::from(x.abs()));
-        Self { delta: coordinates.fold(self.delta, f64::max), ..self }
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn may_morph(binder: Option<&mut NodeBinder>, primitive: &Primitive) 
     let Some(binder) = binder.filter(|binder| binder.first_weight().is_some()) else { return false };
     let vertices = primitive.get(&Semantic::Positions).map_or(0, |positions| positions.count());
     let looked = binder.look_at(primitive.morph_targets().count().saturating_mul(vertices));
-    looked.map_err(|problem| binder.give_up(problem)).is_ok()
+    looked.map_err(|problem| binder.binder.give_up(problem)).is_ok()
 }
 
 impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
@@ -43,10 +43,10 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
         is_morphing: bool,
         binder: &'b mut NodeBinder<'c>,
     ) -> Self {
-        let frame = binder.frame(vertices.is_skinned(), instance);
+        let frame = binder.frame(vertices.influences.is_some(), instance);
         let mut first_weight = binder.first_weight().filter(|_| is_morphing);
         if let Some(problem) = &vertices.unmorphed {
-            binder.give_up(problem.clone());
+            binder.binder.give_up(problem.clone());
             first_weight = None;
         }
         Self { binder, frame, budget, first_weight, deltas: Vec::new(), tangents: Vec::new(), found: 0 }
@@ -61,7 +61,7 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
         corner: &InputCorner,
     ) -> u32 {
         if let Err(problem) = self.displace(i, vertices) {
-            self.binder.give_up(problem);
+            self.binder.binder.give_up(problem);
         }
         let (position, normal) = vertices.undeformed(i, self.first_weight.is_none());
         let normal = normal.unwrap_or_default();

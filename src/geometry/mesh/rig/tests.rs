@@ -102,7 +102,7 @@ fn rig() -> Rig {
             clip(vec![channel(0, Property::Translation, walk), channel(0, Property::Weights, weigh)]),
             clip(vec![channel(1, Property::Scale, grow)]),
         ],
-        reach: Reach::new(&bindings, &[]),
+        reach: Reach::new(&bindings, &[], &[]),
         bindings,
         ..Rig::default()
     }

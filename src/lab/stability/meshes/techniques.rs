@@ -96,7 +96,7 @@ pub(crate) fn moving() -> Mesh {
     let rotation = Channel { target: 1, property: Property::Rotation, keys: keys(&bend, 4) };
     let weights = Channel { target: 0, property: Property::Weights, keys: keys(&[0.0, 1.0, -0.5], 1) };
     rig.clips = vec![Clip { name: "bend".to_owned(), duration: 2.0, channels: vec![rotation, weights] }];
-    rig.reach = Reach::new(&rig.bindings, &rig.deltas);
+    rig.reach = Reach::new(&rig.bindings, &rig.deltas, &[]);
     mesh.rig = Some(Arc::new(rig));
     mesh
 }
