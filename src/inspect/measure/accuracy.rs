@@ -7,8 +7,6 @@ mod mean_square;
 mod to_reference;
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
 
 use glam::{DVec3, Vec3};
 use serde::Serialize;
@@ -16,7 +14,7 @@ use serde::Serialize;
 use super::screen_error::Screen;
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
-use geometry::cores::on_threads;
+use geometry::cores::in_blocks;
 use geometry::defaults::with_defaults;
 use geometry::near::Interval;
 use geometry::progress::{Cancelled, Progress};
@@ -38,8 +36,6 @@ with_defaults! {
         pub samples: usize = 100_000,
         /// When the intervals of the largest distances are narrow enough.
         pub narrow: Narrow = Narrow::default(),
-        /// The number of threads. The result doesn't depend on it.
-        pub threads: usize = thread::available_parallelism().map_or(1, |cores| cores.get()),
     }
 }
 
@@ -145,8 +141,8 @@ impl Accuracy {
     }
 }
 
-/// The number of blocks that threads take one after another, and the most items in one. Sums are made block by block, so that
-/// they don't depend on the number of threads.
+/// The number of blocks that cores take one after another, and the most items in one. Sums are made block by block, so that they
+/// don't depend on the number of cores.
 const BLOCKS: usize = 256;
 const LARGEST_BLOCK: usize = 1024;
 
@@ -190,7 +186,7 @@ impl<'a> AccuracyMeasurement<'a> {
     fn to_emitted(&self) -> Result<Option<(Distances, WorstPoint, u64)>, Cancelled> {
         let Some(tree) = self.emitted.tree() else { return Ok(None) };
         let points = self.reference_shape.samples(self.options.samples);
-        let sums = blocks(points.len(), self.options.threads, |range| {
+        let sums = blocks(points.len(), |range| {
             self.progress.check()?;
             let (mut sums, mut hint) = (MeanSquare::default(), 0);
             for sample in &points[range] {
@@ -215,11 +211,6 @@ impl<'a> AccuracyMeasurement<'a> {
         if let Some(cancelled) = self.cancelled {
             return Err(cancelled);
         }
-        // Where the system starts no more threads, those that there are do the work.
-        on_threads(self.options.threads, || self.results()).unwrap_or_else(|_| self.results())
-    }
-
-    fn results(&self) -> Result<Option<Accuracy>, Cancelled> {
         let (Some(rms), Some(angles)) = (self.sums.squares.rms(), self.sums.angles.rms()) else { return Ok(None) };
         let (Some(Largest { distance, place }), Some(worst_normal)) =
             (self.largest_to_reference()?, self.sums.worst_normal)
@@ -274,29 +265,8 @@ pub(super) fn worse(a: WorstPoint, b: WorstPoint) -> WorstPoint {
 }
 
 /// Cuts `count` items into blocks, runs `work` on each, and returns the results in order.
-pub(super) fn blocks<T: Send>(count: usize, threads: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-    let block_size = (count / BLOCKS).clamp(1, LARGEST_BLOCK);
-    let next = AtomicUsize::new(0);
-    let run = || {
-        let mut done = Vec::new();
-        loop {
-            let block = next.fetch_add(1, Ordering::Relaxed);
-            let start = block * block_size;
-            if start >= count {
-                return done;
-            }
-            done.push((block, work(start..count.min(start + block_size))));
-        }
-    };
-    let mut done: Vec<(usize, T)> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(run)).collect();
-        let join = |thread: thread::ScopedJoinHandle<_>| {
-            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-        };
-        threads.into_iter().flat_map(join).collect()
-    });
-    done.sort_unstable_by_key(|(block, _)| *block);
-    done.into_iter().map(|(_, made)| made).collect()
+pub(super) fn blocks<T: Send>(count: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+    in_blocks(count, (count / BLOCKS).clamp(1, LARGEST_BLOCK), work)
 }
 
 #[cfg(test)]
