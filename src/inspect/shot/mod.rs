@@ -187,7 +187,7 @@ impl Shot {
         let mut shot = Self {
             posed: subject.loaded.posed(subject.moment),
             lod_view: view.lod_view(&scene),
-            scale: deviation_scale(0.0, scene.ulp()),
+            scale: deviation_scale(0.0, scene.ulp),
             results: Default::default(),
             silhouette: None,
             judged: Vec::new(),
@@ -393,7 +393,7 @@ impl Shot {
         if fields().next().is_none() {
             return;
         }
-        self.scale = deviation_scale(largest, self.scene.ulp());
+        self.scale = deviation_scale(largest, self.scene.ulp);
         for (half, results) in SplitSide::BOTH.into_iter().zip(&self.results) {
             let field = results.as_ref().and_then(|results| results.deviation.as_ref());
             if let Some((scene, field)) = self.scene.half_mut(half).zip(field) {

@@ -67,7 +67,7 @@ impl Renderer {
         };
         let steps = steps(scene, settings);
         let background = |half: SplitSide| {
-            let is_shown = !target.is_transparent() && settings.half(half).is_some_and(|own| own.shows_environment());
+            let is_shown = !target.is_transparent && settings.half(half).is_some_and(|own| own.shows_environment());
             let shown = lights[half as usize].as_ref().filter(|_| is_shown);
             shown.map(|light| self.background(light)).transpose()
         };
@@ -75,7 +75,7 @@ impl Renderer {
         let has_layers = !layer_areas.iter().all(|place| is_empty(place.area));
         let found_materials = |half| match scene.half(half) {
             Some(own) if has_layers => {
-                self.materials.found_groups(&self.gpu, &self.placed(own, half, settings), target.depths())
+                self.materials.found_groups(&self.gpu, &self.placed(own, half, settings), &target.depth)
             }
             _ => Vec::new(),
         };
