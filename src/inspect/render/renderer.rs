@@ -11,7 +11,7 @@ mod surfaces;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::coverage::CoveragePipelines;
+use super::coverage::coverage_pipelines;
 use super::deviation::Deviations;
 use super::difference::DifferenceDrawer;
 use super::draws::Draw;
@@ -25,7 +25,7 @@ use super::target::samples;
 use super::{Camera, Scene, Target};
 use crate::settings::Settings;
 use geometry::mesh::Texture;
-use gpu::{Gpu, GpuError, Lazy, Recorder};
+use gpu::{ComputePipeline, Gpu, GpuError, Lazy, Recorder};
 
 pub use preparation::DraftPipelines;
 
@@ -36,7 +36,7 @@ pub struct Renderer {
     studio: Lazy<Arc<Environment>>,
     matcaps: Matcaps,
     pipelines: DrawPipelines,
-    coverage: CoveragePipelines,
+    coverage: [ComputePipeline; 3],
     difference: DifferenceDrawer,
     /// The buffer that is bound where deviations, or patches' minimum triangle counts, aren't known.
     unknown: wgpu::Buffer,
@@ -59,14 +59,13 @@ const SIFT_FROM_IN_SOFTWARE: f32 = f32::INFINITY;
 impl Renderer {
     /// Makes layouts, a sampler and a white texture. Compiles nothing yet.
     pub fn new(gpu: &Gpu) -> Self {
-        let materials = Materials::new(gpu);
         Self {
             gpu: gpu.clone(),
-            pipelines: DrawPipelines::new(gpu, &materials),
-            materials,
+            materials: Materials::new(gpu),
+            pipelines: DrawPipelines::new(gpu),
             studio: Lazy::default(),
             matcaps: Matcaps::default(),
-            coverage: CoveragePipelines::new(),
+            coverage: coverage_pipelines(),
             difference: DifferenceDrawer::new(gpu),
             unknown: Deviations::unknown(gpu),
             samples: samples(gpu),
@@ -133,7 +132,7 @@ impl Renderer {
     }
 
     fn get(&self, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
-        self.pipelines.get(&self.gpu, draw)
+        self.pipelines.get(&self.gpu, &self.materials, draw)
     }
 
     fn kind(&self, is_draft: bool) -> PictureKind {
