@@ -2,7 +2,7 @@
 
 use super::draws::{Draw, Faces, LayerDraw, Occluded, Shading, SurfaceDraw, Triangles};
 use super::needs::{Cut, Needs};
-use super::render_pipeline::depth_state;
+use super::render_pipeline::{blended, depth_state};
 use super::scene::LineSegment;
 use super::target::COLOR_FORMAT;
 use crate::settings::NormalsAt;
@@ -131,11 +131,11 @@ impl Draw {
                 (Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), wgpu::ColorWrites::ALL)
             }
             (_, Some(LayerDraw::Filter)) => {
-                let filter = both(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src, wgpu::BlendFactor::SrcAlpha);
+                let filter = blended(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src, wgpu::BlendFactor::SrcAlpha);
                 (Some(filter), wgpu::ColorWrites::ALL)
             }
             (_, Some(LayerDraw::Add)) => {
-                let add = both(wgpu::BlendFactor::One, wgpu::BlendFactor::One, wgpu::BlendFactor::One);
+                let add = blended(wgpu::BlendFactor::One, wgpu::BlendFactor::One, wgpu::BlendFactor::One);
                 (Some(add), wgpu::ColorWrites::ALL)
             }
             (Self::Ground | Self::Lines(_) | Self::Normals(_), _) => {
@@ -160,13 +160,6 @@ impl Draw {
             _ => Vec::new(),
         }
     }
-}
-
-/// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha that are there.
-fn both(drawn: wgpu::BlendFactor, color: wgpu::BlendFactor, alpha: wgpu::BlendFactor) -> wgpu::BlendState {
-    let component =
-        |there| wgpu::BlendComponent { src_factor: drawn, dst_factor: there, operation: wgpu::BlendOperation::Add };
-    wgpu::BlendState { color: component(color), alpha: component(alpha) }
 }
 
 /// The attributes of a [`LineSegment`]: start, end, colour, half its width, and how many lie over each other.
