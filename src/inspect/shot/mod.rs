@@ -38,7 +38,6 @@ pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
 pub use user_shader_report::{not_numbers_said, report_user_lod, report_user_surface, straight_sides_said};
 
-use files::{to_json, write_text};
 use legend::draw_legend;
 use picture_file::write_stamped;
 use reference_surface::{AccuracyStats, DeviationStats};
@@ -462,15 +461,5 @@ impl Shot {
     /// The deviation that the overlay shows on a half, if the overlay is on.
     fn deviation(&self, half: SplitSide) -> Option<DeviationStats> {
         self.results(half)?.deviation.as_ref().map(|field| DeviationStats::new(field, self.scale))
-    }
-
-    /// Writes the [stats](Self::stats), and what was found about a file of factors, as JSON.
-    ///
-    /// # Errors
-    /// The device was lost, or the file can't be written.
-    pub fn write_stats(&mut self, factors_file: Option<FactorsFile>, path: &Path) -> Result<(), ShotError> {
-        let Some(mut stats) = self.stats()? else { return Ok(()) };
-        stats.factors_file = factors_file;
-        write_text(path, &to_json(&stats)?)
     }
 }
