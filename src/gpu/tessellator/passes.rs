@@ -11,7 +11,7 @@ use crate::params::params_of;
 use crate::pass_inputs::PassInputs;
 use crate::pipelines::{
     CENTERS, CHUNKS, COUNTS, CURVE_NETS, DIRECTIONS, DISPLACE, DRAWS, EDGE_FACTORS, EMIT_TRIANGLES, EMIT_VERTICES,
-    FACTOR_LEVELS, FRAMES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
+    FACTOR_LEVELS, FRAMES, LEAST_TRIANGLES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
 };
 use crate::readback::Readback;
 use crate::recorder::{RecordPasses, Recorder, Timing};
@@ -162,7 +162,9 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_minimum(&self, partitioning: Partitioning) -> Result<(), GpuError> {
-        minimum::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows())
+        let search = minimum::search(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows());
+        let mut passes = [EDGE_FACTORS, LEAST_TRIANGLES, search].into_iter();
+        passes.try_for_each(|pass| self.pipelines.get(pass).get(&self.gpu).map(|_| ()))
     }
 
     /// What passes over the mesh are bound to.
