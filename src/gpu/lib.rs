@@ -46,7 +46,7 @@ pub use compute_pipeline::{ComputePipeline, ShaderModule, ShaderModules};
 pub use device::{Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;
-pub use lazy::Lazy;
+pub use lazy::{Lazy, made_once};
 pub(crate) use mesh_buffers::MeshBuffers;
 pub use mesh_buffers::{CURVE_SURFACE_STEP, DETAIL_STEP, SEARCH_COUNTERS, TEXTURED};
 pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};

@@ -69,14 +69,8 @@ struct Search {
 pub struct Picking(Readback);
 
 impl Default for Picker {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-impl Picker {
     /// Compiles nothing yet.
-    pub fn new() -> Self {
+    fn default() -> Self {
         let module = Arc::new(ShaderModule::new("draw_pick"));
         let search = |vertex, take| Search {
             module: module.clone(),
@@ -89,7 +83,9 @@ impl Picker {
             source: search("pick_source_vertex", "pick_source_main"),
         }
     }
+}
 
+impl Picker {
     /// Starts to look for what is drawn at a pixel of a picture of the scene. The scene must be counted.
     ///
     /// # Errors

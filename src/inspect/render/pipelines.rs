@@ -1,7 +1,7 @@
 //! The pipelines that draw a scene, each made when it is first needed, and their bind group layouts.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use super::draws::{Draw, Shading, SurfaceDraw, Triangles};
 use super::environment::Backdrop;
@@ -9,7 +9,7 @@ use super::group_layouts::{FRAGMENT, READ, UNIFORM, VERTEX, depths, group_layout
 use super::materials::Materials;
 use super::render_pipeline::PipelineParts;
 use super::target::samples;
-use gpu::{Gpu, GpuError, Lazy, ShaderModules};
+use gpu::{Gpu, GpuError, Lazy, ShaderModules, made_once};
 
 /// The pipeline of each [`Draw`], and the layouts of their bind groups but for those of materials, group 1.
 pub(super) struct DrawPipelines {
@@ -69,7 +69,7 @@ impl DrawPipelines {
         });
         let module = module.get(gpu)?;
         // Nothing is made while the lock is held, so that a picture doesn't wait for pipelines of another.
-        let own = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).entry(draw).or_default().clone();
+        let own = made_once(&self.pipelines, draw, Arc::default);
         let parts = || PipelineParts {
             constants: draw.constants(),
             layouts: Some(self.layouts(materials, draw)),
