@@ -450,7 +450,7 @@ fn worst_deviation(facts: &Facts) -> Option<Place> {
 
 fn worst_error(facts: &Facts) -> Option<Place> {
     let worst = facts.above?.worst?;
-    let words = format!("the farthest, {} px, is of", hundredths(worst.px));
+    let words = format!("the farthest, {} px, is of", hundredths(worst.value));
     Some(on_patch(facts, &words, worst.patch, worst.emitted.as_vec3()))
 }
 

@@ -8,10 +8,10 @@ mod to_reference;
 
 use std::ops::Range;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use serde::Serialize;
 
-use super::screen_error::Screen;
+use super::screen_error::{Screen, WorstPoint, worse};
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
 use geometry::cores::in_blocks;
@@ -72,26 +72,6 @@ pub struct Angles {
     pub largest: f64,
     /// Root mean square over the area of what was emitted.
     pub rms: Rms,
-}
-
-/// The place where a distance or angle is largest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorstPoint {
-    /// The largest value that was found, in object units, px or degrees.
-    pub value: f64,
-    /// The patch that emitted the point.
-    pub patch: u32,
-    /// The emitted point, in object units.
-    pub emitted: DVec3,
-    /// The point of the reference surface, in object units.
-    pub reference_shape: DVec3,
-}
-
-impl WorstPoint {
-    /// The place with its distance on screen, in px; `None` if it isn't in view.
-    fn in_px(self, screen: &Screen) -> Option<Self> {
-        screen.distance_px(self.emitted, self.reference_shape).map(|value| Self { value, ..self })
-    }
 }
 
 /// The results of the comparison with a reference surface.
@@ -257,11 +237,6 @@ impl Visitor for AccuracyMeasurement<'_> {
         let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
         self.cancelled = self.take_chunk(vertices, &triangles).err();
     }
-}
-
-/// The point with the larger value, or `a` if both are equal.
-pub(super) fn worse(a: WorstPoint, b: WorstPoint) -> WorstPoint {
-    if b.value > a.value { b } else { a }
 }
 
 /// Cuts `count` items into blocks, runs `work` on each, and returns the results in order.

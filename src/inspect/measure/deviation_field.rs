@@ -5,7 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::DVec3;
 
-use super::accuracy::{Comparison, Emitted, Largest, Narrow, WorstPoint, blocks, worse};
+use super::accuracy::{Comparison, Emitted, Largest, Narrow, blocks};
+use super::screen_error::{WorstPoint, worse};
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
 use geometry::mesh::{Mesh, Topology};

@@ -95,7 +95,7 @@ fn of_whole_patches(topology: &Topology, ulp: f64, vertices: &[Vertex], triangle
     for triangle in triangles {
         let own = vertices[triangle[0] as usize].patch();
         if own != patch {
-            (patch, patch_facing) = (own, facing(corners(topology, own)));
+            (patch, patch_facing) = (own, facing(topology.patch_positions(own).map(|corner| corner.as_dvec3())));
         }
         let domain = triangle.map(|index| vertices[index as usize].domain());
         let places = triangle.map(at);
@@ -109,11 +109,6 @@ fn of_whole_patches(topology: &Topology, ulp: f64, vertices: &[Vertex], triangle
         }
     }
     found
-}
-
-fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
-    let corners = topology.patch_corners(patch);
-    corners.map(|corner| topology.points[topology.corner_points[corner as usize] as usize].as_dvec3())
 }
 
 #[cfg(test)]

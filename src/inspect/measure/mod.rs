@@ -24,7 +24,7 @@ mod sweep;
 mod visitor;
 
 pub(crate) use accuracy::AccuracyMeasurement;
-pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, MOST_KEPT, Narrow, Rms, WorstPoint};
+pub use accuracy::{Accuracy, AccuracyOptions, Angles, Distances, MOST_KEPT, Narrow, Rms};
 pub use agreement::{Agreement, Disagreement, Order};
 pub use cracks::{CrackedEdge, Cracks};
 pub use crossings::{CrossedPatches, CrossingMeasurement};
@@ -36,7 +36,7 @@ pub use points_agreement::{PointsAgreement, PointsDisagreement};
 pub use pops::{Pop, farthest_pop};
 pub use requested_factors::RequestedFactors;
 pub(crate) use screen_error::PatchesAbove;
-pub use screen_error::{ScreenError, ScreenErrorMeasurement};
+pub use screen_error::{ScreenErrorMeasurement, WorstPoint};
 pub use seams::{SeamTurns, Seams};
 pub use sight::Sight;
 pub(crate) use silhouette::OutlineOf;

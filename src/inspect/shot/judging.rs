@@ -219,7 +219,7 @@ impl Shot {
         if let Some(at) = place.spot.at() {
             // The error has a line to where the emitted point should be.
             let worst = self.error_place.filter(|_| judgement.kind == GateKind::AboveTolerance);
-            let mark = worst_lines(at, worst.map_or(at, |worst| worst.limit.as_vec3()));
+            let mark = worst_lines(at, worst.map_or(at, |worst| worst.reference_shape.as_vec3()));
             self.subject.more_lines[SplitSide::Right as usize].extend(mark);
         }
         let picture = self.picture(None, progress);

@@ -46,7 +46,7 @@ use split_titles::draw_titles;
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, SilhouetteView};
 use crate::gates::Judgement;
 use crate::measure::{
-    AccuracyOptions, DeviationField, DeviationTarget, ScreenError, Silhouette, patch_edges, patch_width,
+    AccuracyOptions, DeviationField, DeviationTarget, Silhouette, WorstPoint, patch_edges, patch_width,
 };
 use crate::reference_shape::ReferenceShape;
 use crate::render::{
@@ -136,7 +136,7 @@ pub struct Shot {
     /// How gates judged it, if they did.
     judged: Vec<Judgement>,
     /// The worst place of the gate that compares the error with the tolerance.
-    error_place: Option<ScreenError>,
+    error_place: Option<WorstPoint>,
 }
 
 impl Subject {
