@@ -30,7 +30,7 @@ fn plan() -> Plan {
 /// The smallest effort that gives a number.
 fn effort() -> Effort {
     let runs = Runs { least: 1, most: 1, within: Duration::ZERO };
-    let accuracy = AccuracyOptions { samples: 500, narrow: Narrow { searches: 1 << 12, ..Narrow::QUICK } };
+    let accuracy = AccuracyOptions { samples: 500, threads: 2, narrow: Narrow { searches: 1 << 12, ..Narrow::QUICK } };
     Effort { runs, accuracy, ..Effort::default() }
 }
 

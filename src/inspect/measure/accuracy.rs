@@ -7,6 +7,7 @@ mod mean_square;
 mod to_reference;
 
 use std::ops::Range;
+use std::thread::available_parallelism;
 
 use glam::Vec3;
 use serde::Serialize;
@@ -14,7 +15,7 @@ use serde::Serialize;
 use super::screen_error::{Screen, WorstPoint, worse};
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
-use geometry::cores::in_blocks;
+use geometry::cores::{in_blocks, on_threads};
 use geometry::defaults::with_defaults;
 use geometry::near::Interval;
 use geometry::progress::{Cancelled, Progress};
@@ -36,6 +37,15 @@ with_defaults! {
         pub samples: usize = 100_000,
         /// When the intervals of the largest distances are narrow enough.
         pub narrow: Narrow = Narrow::default(),
+        /// The number of threads. The result doesn't depend on it.
+        pub threads: usize = available_parallelism().map_or(1, |cores| cores.get()),
+    }
+}
+
+impl AccuracyOptions {
+    fn on_threads<R: Send>(&self, mut work: impl FnMut() -> R + Send) -> R {
+        // Where the system starts no more threads, those that there are do the work.
+        on_threads(self.threads, &mut work).unwrap_or_else(|_| work())
     }
 }
 
@@ -191,6 +201,10 @@ impl<'a> AccuracyMeasurement<'a> {
         if let Some(cancelled) = self.cancelled {
             return Err(cancelled);
         }
+        self.options.on_threads(|| self.results())
+    }
+
+    fn results(&self) -> Result<Option<Accuracy>, Cancelled> {
         let (Some(rms), Some(angles)) = (self.sums.squares.rms(), self.sums.angles.rms()) else { return Ok(None) };
         let (Some(Largest { distance, place }), Some(worst_normal)) =
             (self.largest_to_reference()?, self.sums.worst_normal)
@@ -235,7 +249,8 @@ impl Visitor for AccuracyMeasurement<'_> {
         self.sums.not_finite += vertices.iter().filter(|vertex| !is_finite(vertex)).count() as u64;
         let whole = |triangle: &&[u32; 3]| triangle.iter().all(|index| is_finite(&vertices[*index as usize]));
         let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
-        self.cancelled = self.take_chunk(vertices, &triangles).err();
+        let options = self.options;
+        self.cancelled = options.on_threads(|| self.take_chunk(vertices, &triangles)).err();
     }
 }
 

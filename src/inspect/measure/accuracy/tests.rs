@@ -2,7 +2,6 @@ use glam::{DVec3, Mat4, Vec2, vec3};
 
 use super::*;
 use crate::settings::Settings;
-use geometry::cores::on_threads;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{Partitioning, Surface, Tessellated, Tessellation, pack_key, pack_normal, tessellate};
@@ -10,7 +9,7 @@ use geometry::tessellate::{Partitioning, Surface, Tessellated, Tessellation, pac
 static PROGRESS: std::sync::LazyLock<Progress> = std::sync::LazyLock::new(Progress::new);
 
 fn options(samples: usize) -> AccuracyOptions {
-    AccuracyOptions { samples, narrow: Narrow::default() }
+    AccuracyOptions { samples, threads: 2, narrow: Narrow::default() }
 }
 
 /// A mesh tessellated on the CPU with a uniform factor.
@@ -198,15 +197,15 @@ fn nothing_emitted_gives_no_result_and_nan_is_left_out() {
 fn results_depend_neither_on_threads_nor_on_chunks() {
     let reference_shape = ReferenceShape::from_shape(Shape::Bicubic).unwrap();
     let out = emitted(&Shape::Bicubic.build(), Surface::PnAen, 4.0);
-    let measured_in = |chunks: usize| {
-        let mut measurement = AccuracyMeasurement::new(&reference_shape, None, options(3000), &PROGRESS);
+    let measure = |threads, chunks: usize| {
+        let mut measurement =
+            AccuracyMeasurement::new(&reference_shape, None, AccuracyOptions { threads, ..options(3000) }, &PROGRESS);
         let size = out.triangles.len().div_ceil(chunks);
         out.triangles
             .chunks(size)
             .for_each(|triangles| measurement.take(&EmittedChunk::whole(&out.vertices, triangles)));
         measurement.finish().unwrap().unwrap()
     };
-    let measure = |threads, chunks| on_threads(threads, || measured_in(chunks)).expect("threads");
     let once = measure(1, 1);
     assert_eq!(once, measure(5, 1));
     let chunked = measure(2, 3);
