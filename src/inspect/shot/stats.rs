@@ -204,17 +204,7 @@ struct SeamTurnStats {
 
 impl SeamStats {
     fn new(seams: &Seams) -> Self {
-        let has_mapped = seams.mapped.edges > 0;
-        Self {
-            shading: SeamTurnStats::new(&seams.shading),
-            mapped: has_mapped.then(|| SeamTurnStats::new(&seams.mapped)),
-        }
-    }
-}
-
-impl SeamTurnStats {
-    fn new(turns: &SeamTurns) -> Self {
-        Self {
+        let stats = |turns: &SeamTurns| SeamTurnStats {
             edges: turns.edges,
             points: turns.points,
             max_degrees: turns.emitted.most,
@@ -222,7 +212,8 @@ impl SeamTurnStats {
             source_max_degrees: turns.source.most,
             source_mean_degrees: turns.mean(turns.source),
             max_added_degrees: turns.most_added,
-        }
+        };
+        Self { shading: stats(&seams.shading), mapped: (seams.mapped.edges > 0).then(|| stats(&seams.mapped)) }
     }
 }
 
@@ -353,7 +344,7 @@ impl Shot {
             cracks: CrackStats::new(measured, topology, self.view()),
             seams: SeamStats::new(&measured.seams),
             folds: measured.folds,
-            max_error_px: results.screen_error.map(|worst| worst.px),
+            max_error_px: results.screen_error.map(|worst| worst.value),
             accuracy: self.accuracy(half),
             deviation: self.deviation(half),
             animation: scene.clip_and_time().map(|(name, time)| AnimationStats { name, time }),
