@@ -229,11 +229,6 @@ impl Scene {
         }
     }
 
-    /// The bounds with room for displacement under these settings. A picture of everything must hold them.
-    pub fn drawn_bounds(&self, settings: &Settings) -> Bounds {
-        self.bounds.grown(settings.reach(self.tessellator.mesh()))
-    }
-
     /// Poses the mesh as at a moment of one of its clips, or at rest. It takes effect with the next tessellation.
     ///
     /// # Errors
