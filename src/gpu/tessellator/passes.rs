@@ -19,9 +19,9 @@ use crate::search_passes::search_passes;
 use crate::slab::SCAN_BLOCK;
 use crate::{Given, GpuError, UserPipelines};
 use geometry::cores::each;
-use geometry::tessellate::{Displacement, Lod, Normals, Partitioning, Tessellation, minimum_inputs};
+use geometry::tessellate::{Displacement, Inputs, Lod, LodView, Normals, Partitioning, Tessellation, minimum_inputs};
 
-/// What settings say about which passes run, and with which constants.
+/// What parameters say about which passes run, and with which constants.
 #[derive(Clone, Copy)]
 struct Choices {
     by_error: bool,
@@ -32,16 +32,7 @@ struct Choices {
 }
 
 impl Choices {
-    fn new(tessellation: &Tessellation) -> Self {
-        Self {
-            by_error: tessellation.used_lod().is_by_error(),
-            has_rows: tessellation.partitioning.has_rows(),
-            displaces: tessellation.displacement.is_on(),
-            normals: tessellation.normals as u32,
-        }
-    }
-
-    fn from_params(params: &Params) -> Self {
+    fn new(params: &Params) -> Self {
         Self {
             by_error: params.lod == Lod::Error as u32,
             has_rows: params.partitioning == Partitioning::Rows as u32,
@@ -106,7 +97,7 @@ impl Tessellator {
             record(recorder, "directions", &self.directions()?);
             self.nets_done = Some(shape);
         }
-        let choices = Choices::from_params(&self.params);
+        let choices = Choices::new(&self.params);
         record(recorder, "factors", &self.factors(choices)?);
         record(recorder, "levels", &self.levels(choices)?);
         for slab in 0..self.slabs.len() {
@@ -121,11 +112,11 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
-        let choices = Choices::new(tessellation);
+        let inputs = Inputs::new(tessellation, LodView::default());
+        let choices = Choices::new(&params_of(&inputs, &self.mesh, &self.buffers, self.given.as_ref(), false));
         // What takes longest comes first, each pass once.
         let on = self.inputs_of_passes();
-        let searches =
-            if choices.by_error && self.given.is_none() { search_passes(&on, choices.has_rows) } else { vec![] };
+        let searches = if choices.by_error { search_passes(&on, choices.has_rows) } else { vec![] };
         let searches: HashSet<Pass> = searches.into_iter().map(|(pass, _)| pass).collect();
         each(&Vec::from_iter(searches), |pass| on.bound(*pass).map(drop))?;
         let of_slabs =
@@ -287,7 +278,7 @@ impl Tessellator {
         slab_index: usize,
         chunk_index: u32,
     ) -> Result<(), GpuError> {
-        let (vertices, triangles, displace) = self.emission(slab_index, Choices::from_params(&self.params))?;
+        let (vertices, triangles, displace) = self.emission(slab_index, Choices::new(&self.params))?;
         let slab = &self.slabs[slab_index];
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
         let run = |pass: &mut wgpu::ComputePass, bound: &BoundPass, field: usize| {

@@ -56,17 +56,8 @@ impl DrawPipelines {
     /// # Errors
     /// Out of memory, or a lost device.
     pub(super) fn get(&self, gpu: &Gpu, materials: &Materials, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
-        let module = self.modules.get(match draw {
-            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) if samples(gpu) > 1 => "layers_multisampled",
-            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) => "layers_single",
-            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, shading: Shading::Lit(_), .. }) => "draw_lit",
-            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, .. }) => "draw_plain",
-            Draw::Surface(_) => "draw_surface",
-            Draw::LayerClear { .. } => "draw_clear",
-            Draw::Background => "draw_background",
-            Draw::Ground => "draw_ground",
-            Draw::Lines(_) | Draw::Normals(_) => "draw_lines",
-        });
+        let (module, entry_points) = draw.shaders(samples(gpu));
+        let module = self.modules.get(module);
         let module = module.get(gpu)?;
         // Nothing is made while the lock is held, so that a picture doesn't wait for pipelines of another.
         let own = made_once(&self.pipelines, draw, Arc::default);
@@ -77,7 +68,7 @@ impl DrawPipelines {
             cull_mode: draw.cull_mode(),
             depth: Some(draw.depth_stencil()),
             samples: samples(gpu),
-            ..PipelineParts::new(module, [draw.vertex_entry(), draw.fragment_entry()], draw.color_target())
+            ..PipelineParts::new(module, entry_points, draw.color_target())
         };
         own.get_or_make(gpu, || parts().pipeline(gpu)).cloned()
     }

@@ -12,7 +12,6 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::coverage::coverage_pipelines;
-use super::deviation::Deviations;
 use super::difference::DifferenceDrawer;
 use super::draws::Draw;
 use super::environment::Environment;
@@ -25,7 +24,7 @@ use super::target::samples;
 use super::{Camera, Scene, Target};
 use crate::settings::Settings;
 use geometry::mesh::Texture;
-use gpu::{ComputePipeline, Gpu, GpuError, Lazy, Recorder};
+use gpu::{ComputePipeline, Gpu, GpuError, Lazy, Recorder, uniform_buffer};
 
 pub use preparation::DraftPipelines;
 
@@ -38,7 +37,7 @@ pub struct Renderer {
     pipelines: DrawPipelines,
     coverage: [ComputePipeline; 3],
     difference: DifferenceDrawer,
-    /// The buffer that is bound where deviations, or patches' minimum triangle counts, aren't known.
+    /// The buffer without samples that is bound where deviations, or patches' minimum triangle counts, aren't known.
     unknown: wgpu::Buffer,
     samples: u32,
     /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.
@@ -67,7 +66,7 @@ impl Renderer {
             matcaps: Matcaps::default(),
             coverage: coverage_pipelines(),
             difference: DifferenceDrawer::new(gpu),
-            unknown: Deviations::unknown(gpu),
+            unknown: uniform_buffer(gpu, "unknown", bytemuck::bytes_of(&0.0_f32)),
             samples: samples(gpu),
             shares_shaders: gpu.is_software(),
             peels_everywhere: false,

@@ -25,12 +25,8 @@ impl SilhouetteDrawer {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         let [width, height] = grid.size();
         if width > limit || height > limit {
-            let [width, height] = grid.picture;
-            return Err(GpuError::PictureTooLarge {
-                width,
-                height,
-                limit: limit.saturating_sub(grid.padded()[0] - width),
-            });
+            let ([width, height], [padded, _]) = (grid.picture, grid.padded());
+            return Err(GpuError::PictureTooLarge { width, height, limit: limit.saturating_sub(padded - width) });
         }
         self.0.start(gpu, grid.size(), padded_clip(grid, clip_from_object))
     }
