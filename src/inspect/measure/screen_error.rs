@@ -1,6 +1,7 @@
 //! The error on screen: the distance in px between what was emitted and its limit surface.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use serde::{Serialize, Serializer};
 
 use super::visitor::{EmittedChunk, Visitor};
 use geometry::cores::in_ranges;
@@ -31,17 +32,24 @@ pub(super) struct Screen {
     half_viewport: DVec2,
 }
 
-/// The place where a distance or angle is largest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The place where a distance or angle is largest. As JSON it has the place alone, which stands beside intervals of the value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct WorstPoint {
     /// The largest value that was found, in object units, px or degrees.
+    #[serde(skip)]
     pub value: f64,
     /// The patch that emitted the point.
     pub patch: u32,
     /// The emitted point, in object units.
+    #[serde(serialize_with = "coordinates")]
     pub emitted: DVec3,
     /// The point of the reference surface, or of the limit surface, in object units.
+    #[serde(rename = "reference_surface", serialize_with = "coordinates")]
     pub reference_shape: DVec3,
+}
+
+fn coordinates<S: Serializer>(place: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
+    place.to_array().serialize(serializer)
 }
 
 impl WorstPoint {
