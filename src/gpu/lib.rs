@@ -16,7 +16,6 @@ pub mod device;
 pub mod domain;
 pub mod embed;
 mod error;
-mod hull;
 pub mod layout;
 mod lazy;
 mod mesh_buffers;

@@ -4,22 +4,25 @@ use std::collections::HashSet;
 
 use super::Tessellator;
 use crate::bound_pass::{BoundPass, Step, Workgroups};
+use crate::buffer::empty;
 use crate::compute_pipeline::Pass;
 use crate::layout::{EmitArgs, Params, Slab};
 use crate::minimum::{self, Minimum};
 use crate::params::params_of;
-use crate::pass_inputs::PassInputs;
+use crate::pass_inputs::{BoundPasses, PassInputs};
 use crate::pipelines::{
     CENTERS, CHUNKS, COUNTS, CURVE_NETS, DIRECTIONS, DISPLACE, DRAWS, EDGE_FACTORS, EMIT_TRIANGLES, EMIT_VERTICES,
-    FACTOR_LEVELS, FRAMES, LEAST_TRIANGLES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
+    FACTOR_LEVELS, FRAMES, HULL_FACTORS, LEAST_TRIANGLES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
 };
-use crate::readback::Readback;
-use crate::recorder::{RecordPasses, Recorder, Timing};
+use crate::readback::{Readback, read_buffer};
+use crate::recorder::{RecordPasses, Recorder, Timing, submit_untimed};
 use crate::search_passes::search_passes;
 use crate::slab::SCAN_BLOCK;
 use crate::{Given, GpuError, UserPipelines};
 use geometry::cores::each;
-use geometry::tessellate::{Displacement, Inputs, Lod, LodView, Normals, Partitioning, Tessellation, minimum_inputs};
+use geometry::tessellate::{
+    Displacement, HullFactors, Inputs, Lod, LodView, Normals, Partitioning, Tessellation, minimum_inputs,
+};
 
 /// What parameters say about which passes run, and with which constants.
 #[derive(Clone, Copy)]
@@ -156,6 +159,26 @@ impl Tessellator {
         let search = minimum::search(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows());
         let mut passes = [EDGE_FACTORS, LEAST_TRIANGLES, search].into_iter();
         passes.try_for_each(|pass| self.pipelines.get(pass).get(&self.gpu).map(|_| ()))
+    }
+
+    /// What the hull shader writes, one for each patch: the counts pass computes it too, but doesn't store it. The counts must be
+    /// known.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a lost device.
+    pub fn hull_factors(&self) -> Result<Vec<HullFactors>, GpuError> {
+        let (gpu, patches) = (&self.gpu, self.buffers.patch_count);
+        let written = empty::<HullFactors>(gpu, "hull factors", patches as usize)?;
+        let own = [("written_factors", &written)];
+        let on = PassInputs { own: &own, bound: &BoundPasses::default(), ..self.inputs_of_passes() };
+        let step = on.over(HULL_FACTORS, patches)?;
+        submit_untimed(gpu, |recorder| {
+            record(recorder, "hull factors", &[step]);
+            Ok(())
+        })?;
+        let mut factors = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &written, 0, written.size())?);
+        factors.truncate(patches as usize);
+        Ok(factors)
     }
 
     /// What passes over the mesh are bound to.
