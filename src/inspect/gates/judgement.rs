@@ -160,7 +160,8 @@ fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
     };
     let measured = || known(facts.measured);
     let defects = |find: fn(&Mesh, &Topology) -> Defects, text| defects(facts, find, text);
-    let edges = |kind, text| self::defects(facts, |_, topology| Defects::of_kind(topology, kind), text);
+    let edges =
+        |kind, text| self::defects(facts, |_, topology| Defects::edges(topology, |edge| edge.kind == kind), text);
     match kind {
         GateKind::Cracks => some(measured()?.cracks.cracked().len() as u64, "# edge[ is|s are] cracked", worst_crack),
         GateKind::Factors => {

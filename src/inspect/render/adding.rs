@@ -35,7 +35,12 @@ impl Adding {
     /// Out of memory, or a lost device.
     pub(super) fn start(&self, gpu: &Gpu, size: [u32; 2], clip_from_object: Mat4) -> Result<Added, GpuError> {
         let module = self.module.get(gpu)?;
-        let pipeline = self.pipeline.get_or_make(gpu, || self.pipeline(gpu, module))?;
+        let pipeline = self.pipeline.get_or_make(gpu, || {
+            let blend = Some(blended(self.factor, wgpu::BlendFactor::One, wgpu::BlendFactor::One));
+            let target = wgpu::ColorTargetState { format: self.format, blend, write_mask: self.channels };
+            let parts = PipelineParts::new(module, ["adding_vertex", self.fragment], Some(target));
+            PipelineParts { vertex_buffers: VERTEX_LAYOUTS[..1].to_vec(), ..parts }.pipeline(gpu)
+        })?;
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let texture = gpu.device.create_texture(&flat_texture(self.fragment, size, self.format, usage));
         let matrix = clip_from_object.to_cols_array_2d();
@@ -43,14 +48,6 @@ impl Adding {
         let layout = pipeline.get_bind_group_layout(0);
         let group = self.module.bind(gpu, "adding_vertex", &layout, |_| Some(uniform.as_entire_binding()));
         Ok(Added { texture, pipeline: pipeline.clone(), group, is_cleared: false })
-    }
-
-    /// The vertex shader gets positions in object units at location 0.
-    fn pipeline(&self, gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
-        let blend = Some(blended(self.factor, wgpu::BlendFactor::One, wgpu::BlendFactor::One));
-        let target = wgpu::ColorTargetState { format: self.format, blend, write_mask: self.channels };
-        let parts = PipelineParts::new(module, ["adding_vertex", self.fragment], Some(target));
-        PipelineParts { vertex_buffers: VERTEX_LAYOUTS[..1].to_vec(), ..parts }.pipeline(gpu)
     }
 }
 

@@ -61,14 +61,12 @@ impl Shot {
             has(GateKind::Deviation).then(|| self.deviation_both_ways(gates, &inputs, progress)).transpose()?;
         let crossed = has(GateKind::SelfIntersections).then(|| self.crossed_patches(progress)).transpose()?;
         let pop = has(GateKind::Pops).then(|| self.farthest_pop(progress)).transpose()?;
-        let Self { scene, .. } = self;
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
-        let emitted = Some(scene.tessellator.totals());
         let facts = Facts {
             topology: &self.posed.topology,
             warnings: Some(&self.subject.loaded.warnings),
-            emitted,
+            emitted: Some(self.scene.tessellator.totals()),
             measured: self.results(SplitSide::Right).and_then(|results| results.survey.as_ref()),
             mesh: Some((&self.subject.loaded.mesh, &self.subject.loaded.topology)),
             junctions: junctions.as_deref(),

@@ -172,8 +172,8 @@ impl Renderer {
         let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
         // The difference comes under lines over nothing.
         let is_alone = step == Step::Difference;
-        let own = linear_color(settings.background_color());
-        let background = if is_alone { wgpu::Color::TRANSPARENT } else { own };
+        let [r, g, b] = linear(settings.background_color()).map(f64::from);
+        let background = if is_alone { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } };
         let color = target.color(background, is_first || is_alone, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, group, &[]);
@@ -274,10 +274,4 @@ fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2]
             pass.draw(0..6, 0..*count);
         }
     }
-}
-
-/// An sRGB colour as the linear one that a clear takes.
-fn linear_color(srgb: [u8; 3]) -> wgpu::Color {
-    let [r, g, b] = linear(srgb).map(f64::from);
-    wgpu::Color { r, g, b, a: 1.0 }
 }
