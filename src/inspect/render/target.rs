@@ -107,10 +107,7 @@ impl Target {
 
     /// The view for showing the picture. Its values are encoded as sRGB, or are linear light for a texture that encodes them.
     pub(super) fn shown_view(&self, is_linear: bool) -> wgpu::TextureView {
-        if is_linear {
-            return self.resolved_srgb.clone();
-        }
-        whole(&self.resolved)
+        if is_linear { self.resolved_srgb.clone() } else { whole(&self.resolved) }
     }
 
     /// Width and height in px.

@@ -53,9 +53,9 @@ impl Shot {
             progress.check()?;
         }
         let leaks = if has(GateKind::Leaks) { self.leaks(&inputs)? } else { None };
-        let Self { engine, scene, .. } = self;
         let is_compared = has(GateKind::AboveTolerance);
-        let above = is_compared.then(|| engine.patches_above(scene, &inputs, tolerance_px)).transpose()?;
+        let above = || self.engine.patches_above(&mut self.scene, &inputs, tolerance_px);
+        let above = is_compared.then(above).transpose()?;
         self.error_place = above.and_then(|above| above.worst);
         let deviation =
             has(GateKind::Deviation).then(|| self.deviation_both_ways(gates, &inputs, progress)).transpose()?;

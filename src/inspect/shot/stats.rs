@@ -19,7 +19,7 @@ use crate::settings::{Settings, SplitSide, Value, options};
 use geometry::mesh::{EdgeCounts, Topology};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::{ScreenView, ulp};
-use gpu::{GpuError, PassTime};
+use gpu::GpuError;
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]
@@ -291,6 +291,7 @@ impl Shot {
             None => None,
         };
         let Loaded { mesh, topology, .. } = &self.posed;
+        let of_mesh = [("load", self.posed.load_ms), ("topology", self.posed.topology_ms)];
         let mirrored = camera.is_mirrored().then_some(self.view.size[0]);
         Ok(Some(Stats {
             // The name of the view, the reference picture and the factors file are known to those who draw.
@@ -323,7 +324,7 @@ impl Shot {
             left: self.half_stats(SplitSide::Left),
             camera: Some(ViewStats::new(camera, self.view.size, &self.scene.bounds)),
             gates: self.judged.clone(),
-            ms: milliseconds(&passes, &self.posed),
+            ms: passes.iter().map(|time| (time.pass, time.ms)).chain(of_mesh).collect(),
         }))
     }
 
@@ -350,10 +351,4 @@ impl Shot {
             animation: scene.clip_and_time().map(|(name, time)| AnimationStats { name, time }),
         })
     }
-}
-
-/// The times of passes, of loading and of finding the topology.
-fn milliseconds(passes: &[PassTime], loaded: &Loaded) -> BTreeMap<&'static str, f64> {
-    let of_mesh = [("load", loaded.load_ms), ("topology", loaded.topology_ms)];
-    passes.iter().map(|time| (time.pass, time.ms)).chain(of_mesh).collect()
 }
