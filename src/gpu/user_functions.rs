@@ -52,6 +52,7 @@ pub struct UserText {
 
 /// A user's file for one purpose.
 pub trait UserShader: PartialEq + Send + Sync + Sized + 'static {
+    /// What such a file is for.
     const PURPOSE: &'static UserPurpose;
 
     fn new(own: UserText) -> Self;

@@ -22,7 +22,7 @@ pub struct Target {
     resolved: wgpu::Texture,
     resolved_srgb: wgpu::TextureView,
     multisampled: Option<wgpu::TextureView>,
-    /// What [`Self::depth`] attaches, for shaders that read it.
+    /// What passes attach, for shaders that read it.
     pub(super) depth: wgpu::TextureView,
     /// Made when a picture first has layers: see [`super::layers`].
     layer_depths: Lazy<[wgpu::TextureView; 2]>,
