@@ -15,7 +15,7 @@ use super::materials::{Materials, UploadedMaterial};
 use super::punctual::upload_lights;
 use super::{Scale, Usual};
 use crate::measure::DeviationField;
-use crate::settings::{Settings, SplitSide};
+use crate::settings::SplitSide;
 use geometry::mesh::{Bounds, Mesh, Moment, Topology};
 use geometry::numbers::ulp_at;
 use geometry::tessellate::bounds_through;
