@@ -209,6 +209,6 @@ fn a_part_may_be_as_far_off_as_its_detail_allows() {
     let inputs = inputs(&loaded, &Settings::from(Tessellation::default().by_error(0.5)));
     on_gpu(&mut scene, &inputs);
     let above = engine().patches_above(&mut scene, &inputs, 0.5).expect("a readback");
-    let worst = above.worst.expect("triangles").px;
+    let worst = above.worst.expect("triangles").value;
     assert!(above.patches == 0 && worst > 0.5, "{above:?}");
 }
