@@ -76,8 +76,8 @@ const FEW_PATCHES: u32 = 512;
 const LARGE_PATCHES: u32 = 128;
 
 impl ComputePipelines {
-    /// Those with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for small ones on a
-    /// GPU.
+    /// Those with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for small ones on
+    /// a GPU.
     pub fn in_groups(groups: [u32; 3]) -> Self {
         Self {
             groups,

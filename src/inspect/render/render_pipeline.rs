@@ -84,7 +84,7 @@ pub(super) fn depth_state(is_written: bool, compare: wgpu::CompareFunction) -> w
     }
 }
 
-/// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha that are there.
+/// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha there.
 pub(super) fn blended(
     drawn: wgpu::BlendFactor,
     color: wgpu::BlendFactor,

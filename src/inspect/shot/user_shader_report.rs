@@ -51,8 +51,8 @@ fn report(lines: &[String], warning: Option<String>) {
 
 /// What is said about factors that aren't numbers, if there are any.
 pub fn not_numbers_said(count: u32) -> Option<String> {
-    let text = "# factor[|s] of the LOD shader [isn't a number|aren't numbers] (NaN): [it culls its patch|they cull their patches], \
-                or inside count[s|] as 1.";
+    let text = "# factor[|s] of the LOD shader [isn't a number|aren't numbers] (NaN): [it culls its patch|they cull their \
+                patches], or inside count[s|] as 1.";
     (count > 0).then(|| numbered(count.into(), text))
 }
 
