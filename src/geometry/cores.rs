@@ -53,6 +53,13 @@ pub fn ranges(count: usize, least: usize) -> impl Iterator<Item = Range<usize>> 
     (0..ranges).map(move |number| number * count / ranges..(number + 1) * count / ranges)
 }
 
+/// Cuts the numbers below `count` into blocks of `size` numbers, which cores take one after another, and returns what `work`
+/// makes of each block, in the order of the blocks.
+pub fn in_blocks<R: Send>(count: usize, size: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    let block = |number: usize| work(number * size..count.min((number + 1) * size));
+    (0..count.div_ceil(size)).into_par_iter().map(block).collect()
+}
+
 /// Does `work` with each item of a list, on all cores.
 ///
 /// # Errors

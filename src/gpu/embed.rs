@@ -110,7 +110,7 @@ impl Context {
     /// [`GpuError::Limits`] if the device allows less than WebGPU's default limits in something that the passes need.
     pub fn new(device: &wgpu::Device, queue: &wgpu::Queue) -> Result<Self, GpuError> {
         check_limits(&device.limits())?;
-        Ok(Self { gpu: Gpu::borrowed(device, queue), pipelines: Arc::new(ComputePipelines::new()) })
+        Ok(Self { gpu: Gpu::borrowed(device, queue), pipelines: Arc::default() })
     }
 }
 

@@ -4,6 +4,7 @@ use super::buffer::{bytes_of, empty, filled, filled_by};
 use super::layout::{Corner, CornerDetail, CurveNet, Patch};
 use super::relief_buffers::{height_maps, relief_buffers};
 use super::{Gpu, GpuError};
+use geometry::defaults::with_defaults;
 use geometry::mesh::{CurveItems, CurveStyle, Curves, Dominance, Mesh, PartStyle, Sharing, StylesUsed, Topology};
 
 /// `SEARCH_COUNTERS` in `shaders/types.wgsl`: how many counters the searches of LOD by error have.
@@ -42,16 +43,12 @@ pub struct MeshBuffers {
     pub material_count: u32,
 }
 
-/// How the sides of edges are grouped into curves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Grouping {
-    pub sharing: Sharing,
-    pub styles: StylesUsed,
-}
-
-impl Default for Grouping {
-    fn default() -> Self {
-        Self { sharing: Sharing::AllSides, styles: StylesUsed::Nothing }
+with_defaults! {
+    /// How the sides of edges are grouped into curves.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Grouping {
+        pub sharing: Sharing = Sharing::AllSides,
+        pub styles: StylesUsed = StylesUsed::Nothing,
     }
 }
 

@@ -40,11 +40,15 @@ pub struct Engine {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        let pipelines = Arc::new(ComputePipelines::new());
-        let renderer = Arc::new(Renderer::new(&gpu));
-        let (picker, leaks) = (Arc::new(Picker::new()), Arc::new(LeakCounter::new()));
-        let silhouettes = Arc::new(SilhouetteDrawer::new());
-        Self { gpu, pipelines, renderer, picker, leaks, silhouettes, chunks_read: Arc::default() }
+        Self {
+            pipelines: Arc::default(),
+            renderer: Arc::new(Renderer::new(&gpu)),
+            picker: Arc::default(),
+            leaks: Arc::new(LeakCounter::new()),
+            silhouettes: Arc::new(SilhouetteDrawer::new()),
+            chunks_read: Arc::default(),
+            gpu,
+        }
     }
 
     /// Makes an engine on the machine's best adapter, without a window.

@@ -5,21 +5,18 @@ use std::time::{Duration, Instant};
 use super::Engine;
 use crate::render::{Camera, Scene, Target};
 use crate::settings::Settings;
+use geometry::defaults::with_defaults;
 use geometry::tessellate::LodView;
 use gpu::{GpuError, PassTime, Timing, take_times};
 
-/// How many times something is timed: as many as fit into `within`, but at least `least` and at most `most`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Runs {
-    pub least: u32,
-    pub most: u32,
-    pub within: Duration,
-}
-
-impl Default for Runs {
-    /// Enough for one picture, without a long wait.
-    fn default() -> Self {
-        Self { least: 1, most: 5, within: Duration::from_secs(2) }
+with_defaults! {
+    /// How many times something is timed: as many as fit into `within`, but at least `least` and at most `most`. By default that
+    /// is enough for one picture, without a long wait.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub struct Runs {
+        pub least: u32 = 1,
+        pub most: u32 = 5,
+        pub within: Duration = Duration::from_secs(2),
     }
 }
 

@@ -6,6 +6,7 @@ use glam::{Mat4, Vec2, Vec3, vec3};
 
 use super::view_projection::ClipRows;
 use geometry::choice::choices;
+use geometry::defaults::with_defaults;
 use geometry::mesh::Bounds;
 use geometry::tessellate::LodView;
 
@@ -27,32 +28,25 @@ const FRUSTUM_REACH: f32 = 1.2;
 /// at most a bounding radius.
 const BULGE: f32 = 2.0;
 
-/// A camera that looks at `target` from `distance` away.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Camera {
-    pub target: Vec3,
-    /// Degrees about +Y, from +Z towards +X.
-    pub azimuth: f32,
-    /// Degrees above the horizon.
-    pub elevation: f32,
-    /// The distance from the target to the eye, in object units.
-    pub distance: f32,
-    pub orthographic: bool,
-    /// Vertical, in degrees. An orthographic view is as high as a perspective view is at the target.
-    pub field_of_view: f32,
-    /// Degrees that the camera is turned about its direction of view, counterclockwise as it sees that.
-    pub roll: f32,
-    /// What an engine's matrix says about where points land, in place of what the rest says. The window has no such cameras, and
-    /// moving one has no effect.
-    pub rows: Option<ClipRows>,
-}
-
-impl Default for Camera {
-    /// A camera in front of the origin, 1 object unit away.
-    fn default() -> Self {
-        let (target, field_of_view) = (Vec3::ZERO, FIELD_OF_VIEW);
-        let (azimuth, elevation, distance, orthographic, roll) = (0.0, 0.0, 1.0, false, 0.0);
-        Self { target, azimuth, elevation, distance, orthographic, field_of_view, roll, rows: None }
+with_defaults! {
+    /// A camera that looks at `target` from `distance` away: by default in front of the origin.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Camera {
+        pub target: Vec3 = Vec3::ZERO,
+        /// Degrees about +Y, from +Z towards +X.
+        pub azimuth: f32 = 0.0,
+        /// Degrees above the horizon.
+        pub elevation: f32 = 0.0,
+        /// The distance from the target to the eye, in object units.
+        pub distance: f32 = 1.0,
+        pub orthographic: bool = false,
+        /// Vertical, in degrees. An orthographic view is as high as a perspective view is at the target.
+        pub field_of_view: f32 = FIELD_OF_VIEW,
+        /// Degrees that the camera is turned about its direction of view, counterclockwise as it sees that.
+        pub roll: f32 = 0.0,
+        /// What an engine's matrix says about where points land, in place of what the rest says. The window has no such cameras,
+        /// and moving one has no effect.
+        pub rows: Option<ClipRows> = None,
     }
 }
 

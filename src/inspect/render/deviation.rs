@@ -25,11 +25,6 @@ impl Deviations {
         };
         Self { chunks: field.chunks.iter().map(buffer).collect(), scale, of }
     }
-
-    /// The buffer that is bound where no distances are known: it has no samples.
-    pub(super) fn unknown(gpu: &Gpu) -> wgpu::Buffer {
-        uniform_buffer(gpu, "deviation", bytemuck::bytes_of(&0.0_f32))
-    }
 }
 
 /// The scale for distances on screen, in px. It is plasma (Smith and van der Walt 2015, CC0) from 2 to 8 ninths: its lightness

@@ -67,13 +67,6 @@ pub(super) enum Triangles {
     Pulled,
 }
 
-impl Triangles {
-    /// Whether shaders read the factors of the patches in a chunk.
-    pub(super) fn have_factors(self) -> bool {
-        matches!(self, Self::Indexed | Self::Pulled)
-    }
-}
-
 /// Colours that have a variant of the surface's shader for themselves, so that no other picture pays for what they need.
 pub(super) const LOOKS: [Colors; 4] = [Colors::SurfaceNormals, Colors::Curvature, Colors::Matcap, Colors::TexelDensity];
 

@@ -162,7 +162,8 @@ impl Backdrop {
             min_filter: wgpu::FilterMode::Linear,
             ..Default::default()
         });
-        Self { panorama: upload_panorama(gpu, panorama), sampler }
+        let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
+        Self { panorama: filled_texture(gpu, "panorama", panorama.size(), FORMAT, &bytes), sampler }
     }
 
     /// The panorama, its sampler and the `Surroundings`.
@@ -189,11 +190,6 @@ fn cube_texture(size: u32, count: u32, levels: u32, usage: wgpu::TextureUsages) 
 /// The bytes of a pixel in half floats, whose largest number is 65,504.
 fn half_floats(light: Vec3) -> [u8; 8] {
     bytemuck::cast(light.min(Vec3::splat(65504.0)).extend(1.0).to_array().map(|value| f16::from_f32(value).to_bits()))
-}
-
-fn upload_panorama(gpu: &Gpu, panorama: &Panorama) -> wgpu::TextureView {
-    let bytes: Vec<u8> = panorama.pixels().iter().flat_map(|&light| half_floats(light)).collect();
-    filled_texture(gpu, "panorama", panorama.size(), FORMAT, &bytes)
 }
 
 /// Uploads all levels.

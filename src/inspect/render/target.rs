@@ -22,7 +22,8 @@ pub struct Target {
     resolved: wgpu::Texture,
     resolved_srgb: wgpu::TextureView,
     multisampled: Option<wgpu::TextureView>,
-    depth: wgpu::TextureView,
+    /// What passes attach, for shaders that read it.
+    pub(super) depth: wgpu::TextureView,
     /// Made when a picture first has layers: see [`super::layers`].
     layer_depths: Lazy<[wgpu::TextureView; 2]>,
     /// Pictures of both halves, made when a difference is first drawn: see [`super::difference`].
@@ -30,9 +31,9 @@ pub struct Target {
     /// A picture of what is behind layers that distort it, with mip levels. Made when such a layer is first drawn.
     behind: Lazy<wgpu::Texture>,
     /// Whether pictures have no background: where nothing is drawn they are transparent.
-    is_transparent: bool,
+    pub(super) is_transparent: bool,
     /// Whether pictures leave out what takes a software driver longest: see [`Self::draft`].
-    is_draft: bool,
+    pub(super) is_draft: bool,
     /// Px of the full picture that one px stands for, along each axis: see [`Self::coarse`].
     pub(super) coarseness: u32,
 }
@@ -104,21 +105,9 @@ impl Target {
         Self { coarseness, ..self }
     }
 
-    pub(super) fn is_draft(&self) -> bool {
-        self.is_draft
-    }
-
-    /// Whether nothing is behind what is drawn.
-    pub(super) fn is_transparent(&self) -> bool {
-        self.is_transparent
-    }
-
     /// The view for showing the picture. Its values are encoded as sRGB, or are linear light for a texture that encodes them.
     pub(super) fn shown_view(&self, is_linear: bool) -> wgpu::TextureView {
-        if is_linear {
-            return self.resolved_srgb.clone();
-        }
-        whole(&self.resolved)
+        if is_linear { self.resolved_srgb.clone() } else { whole(&self.resolved) }
     }
 
     /// Width and height in px.
@@ -140,11 +129,6 @@ impl Target {
     /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
     pub fn depth(&self, first: bool) -> wgpu::RenderPassDepthStencilAttachment<'_> {
         depth_attachment(&self.depth, first.then_some(0.0))
-    }
-
-    /// The depths that [`Self::depth`] attaches, for shaders that read them.
-    pub(super) fn depths(&self) -> &wgpu::TextureView {
-        &self.depth
     }
 
     /// Two more textures of depths, for layers. They are made at the first call.

@@ -3,25 +3,21 @@
 use super::WorstPoint;
 use super::emitted::Emitted;
 use crate::reference_shape::{EXACT, Facets, ReferenceShape};
+use geometry::defaults::with_defaults;
 use geometry::near::{Farthest, Goal, Interval, TriangleTree, farthest};
 use geometry::progress::{Cancelled, Progress};
 
-/// When an interval is narrow enough.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Narrow {
-    /// The width that suffices, as a part of the distance.
-    pub relative: f64,
-    /// The width that suffices, as a part of the reference surface's diagonal.
-    pub absolute: f64,
-    /// The number of searches for a nearest point after which an interval is left as it is. A core makes about a million in a
-    /// second.
-    pub searches: u64,
-}
-
-impl Default for Narrow {
-    /// About a minute on two cores at most.
-    fn default() -> Self {
-        Self { relative: 0.01, absolute: 1e-6, searches: 1 << 26 }
+with_defaults! {
+    /// When an interval is narrow enough: by default after about a minute on two cores at most.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Narrow {
+        /// The width that suffices, as a part of the distance.
+        pub relative: f64 = 0.01,
+        /// The width that suffices, as a part of the reference surface's diagonal.
+        pub absolute: f64 = 1e-6,
+        /// The number of searches for a nearest point after which an interval is left as it is. A core makes about a million in a
+        /// second.
+        pub searches: u64 = 1 << 26,
     }
 }
 

@@ -67,7 +67,7 @@ impl Renderer {
         };
         let steps = steps(scene, settings);
         let background = |half: SplitSide| {
-            let is_shown = !target.is_transparent() && settings.half(half).is_some_and(|own| own.shows_environment());
+            let is_shown = !target.is_transparent && settings.half(half).is_some_and(|own| own.shows_environment());
             let shown = lights[half as usize].as_ref().filter(|_| is_shown);
             shown.map(|light| self.background(light)).transpose()
         };
@@ -75,7 +75,7 @@ impl Renderer {
         let has_layers = !layer_areas.iter().all(|place| is_empty(place.area));
         let found_materials = |half| match scene.half(half) {
             Some(own) if has_layers => {
-                self.materials.found_groups(&self.gpu, &self.placed(own, half, settings), target.depths())
+                self.materials.found_groups(&self.gpu, &self.placed(own, half, settings), &target.depth)
             }
             _ => Vec::new(),
         };
@@ -172,8 +172,8 @@ impl Renderer {
         let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
         // The difference comes under lines over nothing.
         let is_alone = step == Step::Difference;
-        let own = linear_color(settings.background_color());
-        let background = if is_alone { wgpu::Color::TRANSPARENT } else { own };
+        let [r, g, b] = linear(settings.background_color()).map(f64::from);
+        let background = if is_alone { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } };
         let color = target.color(background, is_first || is_alone, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, group, &[]);
@@ -274,10 +274,4 @@ fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2]
             pass.draw(0..6, 0..*count);
         }
     }
-}
-
-/// An sRGB colour as the linear one that a clear takes.
-fn linear_color(srgb: [u8; 3]) -> wgpu::Color {
-    let [r, g, b] = linear(srgb).map(f64::from);
-    wgpu::Color { r, g, b, a: 1.0 }
 }

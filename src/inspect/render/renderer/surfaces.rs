@@ -45,7 +45,7 @@ impl Renderer {
         // These two overlays show faces from behind.
         let fronts = !folds && !back_faces && scene.tessellator.shows_fronts_only(clip_from_object);
         let (mesh, faces) = (scene.tessellator.mesh(), if fronts { Faces::Fronts } else { Faces::Both });
-        let kind = self.kind(target.is_draft());
+        let kind = self.kind(target.is_draft);
         let draws = |(own, group): (&Material, &wgpu::BindGroup)| {
             Ok(vec![(self.get(surface_draw(settings, mesh, own, faces, kind))?, group.clone())])
         };
