@@ -224,7 +224,7 @@ impl ShotOptions {
         let mut scene = engine.scene(&subject.loaded, subject.arena_bytes)?;
         subject.apply_to_scene(&engine, &mut scene)?;
         if let Some(panorama) = subject.environment.take() {
-            scene.set_environment(Some(Arc::new(Environment::from_panorama(&engine.gpu, panorama)?)));
+            scene.environment = Some(Arc::new(Environment::from_panorama(&engine.gpu, panorama)?));
         }
         let mut view = self.view(&subject, &scene)?;
         let lod_view = view.lod_view(&scene);

@@ -65,7 +65,9 @@ impl Args {
     fn check(&self) -> Result<(), CliError> {
         self.adapter.check(self.device == Some(Device::Cpu))?;
         refuse(
-            GateKind::ALL.into_iter().any(|kind| kind.is_of_one_tessellation() && self.gates.gates.has(kind)),
+            GateKind::ALL
+                .into_iter()
+                .any(|kind| !kind.is_of_mesh() && !kind.needs_survey() && self.gates.gates.has(kind)),
             "--fail-on above-tolerance, self-intersections, deviation, pops, triangles and bytes judge one tessellation, and stability runs many: use \
              render or tessellate",
         )?;

@@ -53,6 +53,13 @@ pub fn ranges(count: usize, least: usize) -> impl Iterator<Item = Range<usize>> 
     (0..ranges).map(move |number| number * count / ranges..(number + 1) * count / ranges)
 }
 
+/// Cuts the numbers below `count` into blocks of `size` numbers, which cores take one after another, and returns what `work`
+/// makes of each block, in the order of the blocks.
+pub fn in_blocks<R: Send>(count: usize, size: usize, work: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
+    let block = |number: usize| work(number * size..count.min((number + 1) * size));
+    (0..count.div_ceil(size)).into_par_iter().map(block).collect()
+}
+
 /// Does `work` with each item of a list, on all cores.
 ///
 /// # Errors
@@ -63,10 +70,7 @@ pub fn each<T: Sync, E: Send>(list: &[T], work: impl Fn(&T) -> Result<(), E> + S
 
 /// Replaces each item of a list by what `make` makes of its index, on all cores, each of which has at least `least` items.
 pub fn fill<T: Send>(list: &mut [T], least: usize, make: impl Fn(usize) -> T + Sync) {
-    let ranges: Vec<_> = ranges(list.len(), least).collect();
-    split(list, ranges.iter().map(Range::len)).into_par_iter().zip(ranges).for_each(|(part, range)| {
-        part.iter_mut().zip(range).for_each(|(item, i)| *item = make(i));
-    });
+    list.par_iter_mut().enumerate().with_min_len(least).for_each(|(i, item)| *item = make(i));
 }
 
 /// Divides a list into parts of so many items each.

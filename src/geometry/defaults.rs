@@ -4,11 +4,11 @@
 #[macro_export]
 macro_rules! with_defaults {
     ($(#[$of_type:meta])* $seen:vis struct $type:ident {
-        $($(#[$of_field:meta])* pub $field:ident: $kind:ty = $value:expr,)+
+        $($(#[$of_field:meta])* $shown:vis $field:ident: $kind:ty = $value:expr,)+
     }) => {
         $(#[$of_type])*
         $seen struct $type {
-            $($(#[$of_field])* pub $field: $kind),+
+            $($(#[$of_field])* $shown $field: $kind),+
         }
 
         impl Default for $type {

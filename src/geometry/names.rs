@@ -35,6 +35,15 @@ pub fn shown(name: &str) -> String {
     shortened(&on_one_line(name), MAX_LENGTH)
 }
 
+/// Joins words with commas, and with another word before the last.
+pub fn joined<T: ToString>(words: &[T], before_last: &str) -> String {
+    let words: Vec<String> = words.iter().map(T::to_string).collect();
+    match &words[..] {
+        [all @ .., last] if !all.is_empty() => format!("{} {before_last} {last}", all.join(", ")),
+        _ => words.concat(),
+    }
+}
+
 /// Breaks a text between words into lines of at most `most` characters.
 pub fn wrapped(text: &str, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();

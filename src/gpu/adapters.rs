@@ -45,15 +45,6 @@ impl AdapterChoice {
         }
     }
 
-    /// The first of these that was requested.
-    ///
-    /// # Errors
-    /// There is none, or none at all.
-    pub fn among<'a>(&self, adapters: &'a [wgpu::Adapter]) -> Result<&'a wgpu::Adapter, GpuError> {
-        let infos: Vec<_> = adapters.iter().map(wgpu::Adapter::get_info).collect();
-        self.place(&infos).map(|place| &adapters[place])
-    }
-
     /// The first of these that was requested and is able to do something: to show a window, say.
     ///
     /// # Errors

@@ -2,12 +2,12 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use wgpu::naga;
 
 use super::bound_pass::BoundPass;
-use super::lazy::Lazy;
+use super::lazy::{Lazy, made_once};
 use super::wgsl::WgslModule;
 use super::{Gpu, GpuError};
 
@@ -24,16 +24,12 @@ pub struct ShaderModule {
 impl ShaderModule {
     /// The module whose entry points are in the file of this name.
     pub fn new(name: &'static str) -> Self {
-        Self::with(name, None)
+        Self { name, text: None, made: Lazy::default(), variables: OnceLock::new() }
     }
 
     /// The module with this text.
     pub(super) fn from_text(name: &'static str, text: String) -> Self {
-        Self::with(name, Some(text))
-    }
-
-    fn with(name: &'static str, text: Option<String>) -> Self {
-        Self { name, text, made: Lazy::default(), variables: OnceLock::new() }
+        Self { text: Some(text), ..Self::new(name) }
     }
 
     fn text(&self) -> Cow<'_, str> {
@@ -86,9 +82,7 @@ pub struct ShaderModules(Mutex<HashMap<&'static str, Arc<ShaderModule>>>);
 impl ShaderModules {
     /// The module of this name, which is the same at every call.
     pub fn get(&self, name: &'static str) -> Arc<ShaderModule> {
-        // What is behind the lock is whole even if a thread panicked while it held it.
-        let mut modules = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        modules.entry(name).or_insert_with(|| Arc::new(ShaderModule::new(name))).clone()
+        made_once(&self.0, name, || Arc::new(ShaderModule::new(name)))
     }
 }
 

@@ -34,13 +34,11 @@ pub struct DomainPattern {
 }
 
 /// The pass that runs the tessellator. Its pipeline is made when it first runs.
-pub struct DomainPass {
-    pipeline: ComputePipeline,
-}
+pub struct DomainPass(ComputePipeline);
 
 impl Default for DomainPass {
     fn default() -> Self {
-        Self { pipeline: ComputePipeline::new(&Arc::new(ShaderModule::new("pass_domain")), "domain_main") }
+        Self(ComputePipeline::new(&Arc::new(ShaderModule::new("pass_domain")), "domain_main"))
     }
 }
 
@@ -61,7 +59,7 @@ impl DomainPass {
         let counts = empty::<[u32; 2]>(gpu, "domain counts", sets.len())?;
         let points = empty::<[u32; 2]>(gpu, "domain points", sets.len() * DOMAIN_POINTS)?;
         let triangles = empty::<[u32; 3]>(gpu, "domain triangles", sets.len() * DOMAIN_TRIANGLES)?;
-        let bound = self.pipeline.bind(gpu, |name| {
+        let bound = self.0.bind(gpu, |name| {
             let buffer = match name {
                 "domain_params" => &params,
                 "factor_sets" => &factors,

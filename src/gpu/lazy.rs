@@ -1,5 +1,7 @@
 //! What is made on a device when it is first needed.
 
+use std::collections::HashMap;
+use std::hash::Hash;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 use super::{Gpu, GpuError};
@@ -56,6 +58,13 @@ impl<T> Lazy<T> {
     pub fn is_made(&self) -> bool {
         self.made.get().is_some()
     }
+}
+
+/// What a list has for a key: what was made before, or else what `make` makes now while others wait.
+pub fn made_once<K: Eq + Hash, T: Clone>(made: &Mutex<HashMap<K, T>>, key: K, make: impl FnOnce() -> T) -> T {
+    // What is behind the lock is whole even if a thread panicked while it held it.
+    let mut made = made.lock().unwrap_or_else(PoisonError::into_inner);
+    made.entry(key).or_insert_with(make).clone()
 }
 
 #[cfg(test)]

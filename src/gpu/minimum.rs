@@ -83,15 +83,7 @@ impl Minimum {
     }
 }
 
-fn search(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32, has_rows: bool) -> Pass {
+/// The pass that searches the fewest triangles of so many patches.
+pub(super) fn search(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32, has_rows: bool) -> Pass {
     pipelines.search(gpu, SEARCH_LEAST_TRIANGLES, patches).with("SEARCHES_ROWS", has_rows.into())
-}
-
-/// Makes the pipelines of the passes for a number of patches, on any thread.
-///
-/// # Errors
-/// Out of memory, or a lost device.
-pub(super) fn prepare(gpu: &Gpu, pipelines: &ComputePipelines, patches: u32, has_rows: bool) -> Result<(), GpuError> {
-    let passes = [EDGE_FACTORS, LEAST_TRIANGLES, search(gpu, pipelines, patches, has_rows)];
-    passes.into_iter().try_for_each(|pass| pipelines.get(pass).get(gpu).map(|_| ()))
 }

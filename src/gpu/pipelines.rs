@@ -1,11 +1,11 @@
 //! The compute passes and their pipelines, and what binds buffers to them.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use super::buffer::uniform_buffer;
 use super::compute_pipeline::{ComputePipeline, Pass, ShaderModules};
-use super::lazy::Lazy;
+use super::lazy::{Lazy, made_once};
 use super::user_functions::{RecentPipelines, UserPipelines};
 use super::user_lod::LodShader;
 use super::user_surface::SurfaceShader;
@@ -76,8 +76,8 @@ const FEW_PATCHES: u32 = 512;
 const LARGE_PATCHES: u32 = 128;
 
 impl ComputePipelines {
-    /// The same as by default, with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for
-    /// small ones on a GPU.
+    /// Those with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for small ones on
+    /// a GPU.
     pub fn in_groups(groups: [u32; 3]) -> Self {
         Self {
             groups,
@@ -91,12 +91,8 @@ impl ComputePipelines {
 
     /// The pipeline of a pass. Compiles nothing.
     pub(super) fn get(&self, pass: Pass) -> Arc<ComputePipeline> {
-        // What is behind the lock is whole even if a thread panicked while it held it.
-        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        let made = pipelines
-            .entry(pass)
-            .or_insert_with(|| Arc::new(ComputePipeline::from_module(&self.modules.get(pass.module), pass)));
-        made.clone()
+        let pipeline = || ComputePipeline::from_module(&self.modules.get(pass.module), pass);
+        made_once(&self.pipelines, pass, || Arc::new(pipeline()))
     }
 
     /// A pass that searches factors of so many patches (see `shaders/search_group.wgsl`). Its workgroups may have any size. A

@@ -17,16 +17,9 @@ const PATIENCE: Duration = Duration::from_secs(60);
 /// 3. [`Self::poll`] tells whether they are here, without waiting; then [`Self::bytes`] gives them. Or [`Self::wait`] waits.
 pub struct Readback {
     staging: wgpu::Buffer,
-    layout: Layout,
+    /// How many bytes of each row of the copy are asked for, and how many bytes apart rows start.
+    rows: [usize; 2],
     state: State,
-}
-
-/// How the bytes lie in the copy.
-enum Layout {
-    /// This many from its start on.
-    Packed(usize),
-    /// Rows of `used` bytes, which start `stride` bytes apart.
-    Rows { used: usize, stride: usize },
 }
 
 enum State {
@@ -52,7 +45,8 @@ impl Readback {
             encoder.copy_buffer_to_buffer(buffer, bytes.start, &staging, offset, length);
             offset += length;
         }
-        Self { staging, layout: Layout::Packed(total as usize), state: State::Recorded }
+        let rows = [total, staging.size()].map(|bytes| bytes as usize);
+        Self { staging, rows, state: State::Recorded }
     }
 
     /// Records a copy of a texture's texels, which will come row by row without gaps. The texture has one layer, one mip level
@@ -65,8 +59,7 @@ impl Readback {
         let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(stride), rows_per_image: None };
         let to = wgpu::TexelCopyBufferInfo { buffer: &staging, layout };
         encoder.copy_texture_to_buffer(texture.as_image_copy(), to, size);
-        let layout = Layout::Rows { used: used as usize, stride: stride as usize };
-        Self { staging, layout, state: State::Recorded }
+        Self { staging, rows: [used, stride].map(|bytes| bytes as usize), state: State::Recorded }
     }
 
     /// Copies ranges of bytes of buffers in a submission of its own, and requests them.
@@ -163,14 +156,12 @@ impl Readback {
     /// The bytes aren't here, or the device was lost.
     pub fn with_bytes<R>(&self, take: impl FnOnce(&[u8]) -> R) -> Result<R, GpuError> {
         let view = self.staging.get_mapped_range(..).map_err(failed)?;
-        Ok(match self.layout {
-            Layout::Packed(bytes) => take(&view[..bytes]),
-            Layout::Rows { used, stride } if used == stride => take(&view),
-            Layout::Rows { used, stride } => {
-                let rows = view.chunks_exact(stride).flat_map(|row| &row[..used]);
-                take(&rows.copied().collect::<Vec<_>>())
-            }
-        })
+        let [used, stride] = self.rows;
+        if used == stride {
+            return Ok(take(&view));
+        }
+        let rows = view.chunks_exact(stride).flat_map(|row| &row[..used]);
+        Ok(take(&rows.copied().collect::<Vec<_>>()))
     }
 }
 
@@ -226,7 +217,7 @@ mod tests {
         let staging = staging_buffer(&gpu, 4);
         let (sender, receiver) = channel();
         let state = State::Requested(Mutex::new(receiver));
-        let mut readback = Readback { staging, layout: Layout::Packed(4), state };
+        let mut readback = Readback { staging, rows: [4; 2], state };
         let read = readback.arrive_within(&gpu, Duration::from_millis(1));
         assert!(matches!(read, Err(GpuError::Readback(_))), "{read:?}");
         drop(sender);

@@ -45,9 +45,8 @@ pub trait RecordPasses {
 /// The encoder of a host program, which submits it.
 impl RecordPasses for wgpu::CommandEncoder {
     fn compute(&mut self, pass: &'static str, record: impl FnOnce(&mut wgpu::ComputePass)) {
-        record(
-            &mut self.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(pass), timestamp_writes: None }),
-        );
+        let descriptor = wgpu::ComputePassDescriptor { label: Some(pass), timestamp_writes: None };
+        record(&mut self.begin_compute_pass(&descriptor));
     }
 }
 

@@ -20,7 +20,7 @@ use super::readback::Readback;
 use super::relief_buffers::HeightImages;
 use super::rig::RigBuffers;
 use super::slab::SlabBuffers;
-use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, UserReport, hull};
+use super::{ComputePipelines, Given, Gpu, GpuError, MeshBuffers, UserReport};
 use geometry::mesh::{Mesh, Pose, Topology};
 use geometry::tessellate::{Clip, Convention, Edges, HullFactors, Inputs, PosedMesh, Solid};
 
@@ -350,14 +350,6 @@ impl Tessellator {
     /// Under which convention factors were written and weights are read.
     pub fn convention(&self) -> Convention {
         self.convention
-    }
-
-    /// What the hull shader writes, one for each patch. The counts must be known.
-    ///
-    /// # Errors
-    /// More patches than the adapter binds memory for, or a lost device.
-    pub fn hull_factors(&self) -> Result<Vec<HullFactors>, GpuError> {
-        hull::read(&self.inputs_of_passes())
     }
 
     pub fn buffers(&self) -> &MeshBuffers {

@@ -45,15 +45,15 @@ pub struct UserPurpose {
 #[derive(Debug, PartialEq, Eq)]
 pub struct UserText {
     /// Every loop calls `pnaen_spend`.
-    text: String,
+    pub text: String,
     /// Which of the purpose's functions it has.
-    has: Vec<bool>,
+    pub has: Vec<bool>,
 }
 
 /// A user's file for one purpose.
 pub trait UserShader: PartialEq + Send + Sync + Sized + 'static {
-    /// Its purpose, which is always the same.
-    fn purpose() -> &'static UserPurpose;
+    /// What such a file is for.
+    const PURPOSE: &'static UserPurpose;
 
     fn new(own: UserText) -> Self;
 
@@ -61,13 +61,7 @@ pub trait UserShader: PartialEq + Send + Sync + Sized + 'static {
 
     /// The text of the module that runs it. It begins with the user's file, so that lines are those of the file.
     fn module_text(&self) -> String {
-        Self::purpose().module_text(self.own())
-    }
-}
-
-impl UserText {
-    pub fn new(text: String, has: Vec<bool>) -> Self {
-        Self { text, has }
+        Self::PURPOSE.module_text(self.own())
     }
 }
 
@@ -103,7 +97,7 @@ impl UserPurpose {
     /// of the module needs. WGSL lets a file declare those anew.
     pub fn needed_names(&self) -> HashSet<String> {
         // The function that a file must have is never replaced.
-        let text = self.module_text(&UserText::new(String::new(), vec![true]));
+        let text = self.module_text(&UserText { text: String::new(), has: vec![true] });
         let all = tokens(&text);
         let scalars = ["bool", "f32", "i32", "u32"].into_iter().map(str::to_owned);
         let used = all.windows(2).filter(|pair| pair[0].is_word() && ["(", "<"].contains(&pair[1].text));
@@ -130,8 +124,8 @@ pub struct UserPipelines(pub(super) Vec<ComputePipeline>);
 impl UserPipelines {
     /// Compiles nothing yet.
     fn new<S: UserShader>(shader: &S) -> Self {
-        let module = Arc::new(ShaderModule::from_text(S::purpose().module.0, shader.module_text()));
-        Self(S::purpose().entry_points.iter().map(|entry_point| ComputePipeline::new(&module, entry_point)).collect())
+        let module = Arc::new(ShaderModule::from_text(S::PURPOSE.module.0, shader.module_text()));
+        Self(S::PURPOSE.entry_points.iter().map(|entry_point| ComputePipeline::new(&module, entry_point)).collect())
     }
 
     /// Compiles them.

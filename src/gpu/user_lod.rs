@@ -39,9 +39,7 @@ pub static LOD_PURPOSE: UserPurpose = UserPurpose {
 pub struct LodShader(UserText);
 
 impl UserShader for LodShader {
-    fn purpose() -> &'static UserPurpose {
-        &LOD_PURPOSE
-    }
+    const PURPOSE: &'static UserPurpose = &LOD_PURPOSE;
 
     fn new(own: UserText) -> Self {
         Self(own)

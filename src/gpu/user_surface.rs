@@ -26,9 +26,7 @@ pub static SURFACE_PURPOSE: UserPurpose = UserPurpose {
 pub struct SurfaceShader(UserText);
 
 impl UserShader for SurfaceShader {
-    fn purpose() -> &'static UserPurpose {
-        &SURFACE_PURPOSE
-    }
+    const PURPOSE: &'static UserPurpose = &SURFACE_PURPOSE;
 
     fn new(own: UserText) -> Self {
         Self(own)

@@ -40,10 +40,15 @@ pub struct Engine {
 
 impl Engine {
     pub fn new(gpu: Gpu) -> Self {
-        let renderer = Arc::new(Renderer::new(&gpu));
-        let (leaks, silhouettes) = (Arc::new(LeakCounter::new()), Arc::new(SilhouetteDrawer::new()));
-        let (pipelines, picker, chunks_read) = Default::default();
-        Self { gpu, pipelines, renderer, picker, leaks, silhouettes, chunks_read }
+        Self {
+            pipelines: Arc::default(),
+            renderer: Arc::new(Renderer::new(&gpu)),
+            picker: Arc::default(),
+            leaks: Arc::new(LeakCounter::new()),
+            silhouettes: Arc::new(SilhouetteDrawer::new()),
+            chunks_read: Arc::default(),
+            gpu,
+        }
     }
 
     /// Makes an engine on the machine's best adapter, without a window.

@@ -119,12 +119,12 @@ const STACK: usize = 256 << 20;
 /// # Errors
 /// Where and why it can't be used.
 pub fn compile<S: UserShader>(text: &str) -> Result<S, Fault> {
-    let purpose = S::purpose();
+    let purpose = S::PURPOSE;
     let source = bounded::Source::new(text, purpose)?;
     let has = checked::check(text, &source, purpose)?;
     let functions = source.bounded(purpose)?;
     checked::check_loops(&functions, purpose)?;
-    let shader = S::new(UserText::new(functions, has));
+    let shader = S::new(UserText { text: functions, has });
     checked::check_module(text, &shader.module_text())?;
     Ok(shader)
 }

@@ -97,7 +97,10 @@ impl CageFaces {
                 let point = self.point(corner.position, vertex.map_or(0, |[vertex, ..]| vertex));
                 self.points.push(point);
             }
-            if has_equal(&self.points[start..]) {
+            let mut sorted = self.points[start..].to_vec();
+            sorted.sort_unstable();
+            // A point that it has twice.
+            if sorted.array_windows().any(|[a, b]| a == b) {
                 self.points.truncate(start);
                 left_out += 1;
                 continue;
@@ -264,11 +267,4 @@ impl CageFaces {
         }
         bindings
     }
-}
-
-/// Whether any two of some points are the same.
-fn has_equal(points: &[u32]) -> bool {
-    let mut sorted = points.to_vec();
-    sorted.sort_unstable();
-    sorted.array_windows().any(|[a, b]| a == b)
 }

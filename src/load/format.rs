@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use geometry::choice::choices;
+use geometry::names::joined;
 
 /// The extensions of files that can be read, in lower case.
 pub fn extensions() -> Vec<&'static str> {
@@ -11,9 +12,8 @@ pub fn extensions() -> Vec<&'static str> {
 
 /// The extensions of files that can be read, for messages: ".gltf, .glb, .vrm, .fbx, .obj, .stl, .ply, .off or .3mf".
 pub fn known_extensions() -> String {
-    let mut all: Vec<_> = extensions().iter().map(|extension| format!(".{extension}")).collect();
-    let last = all.pop().unwrap_or_default();
-    format!("{} or {last}", all.join(", "))
+    let all: Vec<_> = extensions().iter().map(|extension| format!(".{extension}")).collect();
+    joined(&all, "or")
 }
 
 /// The extension of a file's name, in lower case.

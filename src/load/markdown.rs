@@ -1,5 +1,7 @@
 //! Building blocks of the Markdown pages that commands write.
 
+use geometry::names::joined;
+
 /// Formats a table. The columns whose indices are in `words` are aligned to the left, all others to the right.
 pub fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String {
     let line = |cells: &mut dyn Iterator<Item = &str>| {
@@ -14,11 +16,7 @@ pub fn table(columns: &[&str], words: &[usize], rows: &[Vec<String>]) -> String 
 
 /// Joins words with commas, and with "and" before the last.
 pub fn listed(words: &[String]) -> String {
-    match words {
-        [] => String::new(),
-        [only] => only.clone(),
-        [all @ .., last] => format!("{} and {last}", all.join(", ")),
-    }
+    joined(words, "and")
 }
 
 /// Escapes a text so that Markdown shows all its characters as they are.

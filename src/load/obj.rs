@@ -127,9 +127,12 @@ impl<'a> Statement<'a> {
         Self { number: line.number, word, rest }
     }
 
-    /// Returns what follows the first word, without a comment.
+    /// Returns what follows the first word, without a comment. A comment starts with a `#` at the start of a word, since names
+    /// may contain one.
     fn rest(&self) -> &'a [u8] {
-        without_comment(self.rest)
+        let begins = |i: &usize| *i == 0 || self.rest[i - 1].is_ascii_whitespace();
+        let comment = memchr::memchr_iter(b'#', self.rest).find(begins);
+        &self.rest[..comment.unwrap_or(self.rest.len())]
     }
 
     fn place(&self) -> FilePosition {
@@ -172,13 +175,6 @@ fn continued<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Result<Cow<'a, [u8]>,
         }
     }
     Ok(all.into())
-}
-
-/// Returns the text before a comment. A comment starts with a `#` at the start of a word, since names may contain one.
-fn without_comment(text: &[u8]) -> &[u8] {
-    let begins = |i: &usize| *i == 0 || text[i - 1].is_ascii_whitespace();
-    let comment = memchr::memchr_iter(b'#', text).find(begins);
-    &text[..comment.unwrap_or(text.len())]
 }
 
 /// What was found among the faces.

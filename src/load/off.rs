@@ -12,7 +12,7 @@ use super::memory_budget::Budget;
 use super::model_file::ModelFile;
 use super::notes::{counted, counts};
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, parsed, shown, words};
+use super::text_lines::{Line, Lines, first_word, numbers, parsed, shown, words};
 use super::uri::Files;
 use geometry::casts::to_byte;
 use geometry::mesh::Material;
@@ -223,11 +223,7 @@ impl Vertices {
     }
 
     fn add(&mut self, kind: VertexKind, row: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
-        let (mut numbers, mut count) = ([f32::NAN; MAX_NUMBERS], 0_usize);
-        for (slot, word) in numbers.iter_mut().zip(words(row)) {
-            *slot = parsed(word).unwrap_or(f32::NAN);
-            count += 1;
-        }
+        let (numbers, count) = numbers::<_, MAX_NUMBERS>(row, |word| parsed(word).unwrap_or(f32::NAN));
         let [x, y, z, w, ..] = numbers;
         let w = if kind.is_homogeneous { w } else { 1.0 };
         let mut at = 3 + usize::from(kind.is_homogeneous);
@@ -327,7 +323,7 @@ impl Reader<'_, '_> {
     }
 
     fn face(&mut self, row: &Line) -> Result<(), ReadError> {
-        let mut words = row.words();
+        let mut words = words(row.text);
         let first = words.next().unwrap_or_default();
         let count: usize = parsed(first)
             .ok_or_else(|| row.place().error(format!("{} isn't the number of a face's corners", shown(first))))?;

@@ -17,7 +17,7 @@ use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::{counted, counts};
 use super::read_error::{FilePosition, ReadError};
-use super::text_lines::{Line, Lines, first_word, has_comma, numbers_or_nan, shown};
+use super::text_lines::{Line, Lines, first_word, numbers_or_nan, shown};
 use geometry::casts::to_usize;
 use geometry::mesh::Material;
 use geometry::mesh::mesh_builder::InputCorner;
@@ -132,6 +132,7 @@ impl Reader<'_> {
         if of_triangles.is_some() {
             self.faces.color()?;
         }
+        let position = |bytes: &[u8; 12]| Vec3::from(bytemuck::cast::<_, [[u8; 4]; 3]>(*bytes).map(f32::from_le_bytes));
         for (i, (triangle, bits)) in triangles.iter().zip(attributes).enumerate() {
             if i % 4096 == 0 {
                 self.at(HEADER + i * TRIANGLE)?;
@@ -139,7 +140,7 @@ impl Reader<'_> {
             // The first vector is the normal.
             let [_, a, b, c, ..] = triangle.as_chunks::<12>().0 else { continue };
             let color = of_triangles.map_or(Vec4::ONE, |colors| colors.of_triangle(bits));
-            self.add([a, b, c].map(position_of), color, FilePosition::Byte(HEADER + i * TRIANGLE))?;
+            self.add([a, b, c].map(position), color, FilePosition::Byte(HEADER + i * TRIANGLE))?;
         }
         if is_uncounted {
             let shown = format!("The header says that the file has 0 triangles. The {said} that follow it are shown.");
@@ -201,7 +202,7 @@ impl Reader<'_> {
                 b"" | b"outer" | b"endloop" => {}
                 b"vertex" => {
                     let rest = first_word(line.text).1;
-                    self.found.with_commas += usize::from(has_comma(rest));
+                    self.found.with_commas += usize::from(rest.contains(&b','));
                     if let Some(slot) = positions.get_mut(count) {
                         *slot = numbers_or_nan(rest).into();
                     }
@@ -253,10 +254,6 @@ fn keyword(line: &Line) -> Vec<u8> {
         }
     }
     word
-}
-
-fn position_of(&[a, b, c, d, e, f, g, h, i, j, k, l]: &[u8; 12]) -> Vec3 {
-    Vec3::new(f32::from_le_bytes([a, b, c, d]), f32::from_le_bytes([e, f, g, h]), f32::from_le_bytes([i, j, k, l]))
 }
 
 fn unexpected(line: &Line, expected: &str) -> ReadError {

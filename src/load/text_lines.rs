@@ -71,13 +71,9 @@ impl<'a> Lines<'a> {
     }
 }
 
-impl<'a> Line<'a> {
+impl Line<'_> {
     pub(super) fn place(&self) -> FilePosition {
         FilePosition::Line(self.number)
-    }
-
-    pub(super) fn words(&self) -> impl Iterator<Item = &'a [u8]> + use<'a> {
-        words(self.text)
     }
 }
 
@@ -100,8 +96,19 @@ pub(super) fn parsed<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
 
 /// Parses the first N words as numbers, and ignores further words. What isn't there is NaN.
 pub(super) fn numbers_or_nan<const N: usize>(text: &[u8]) -> [f32; N] {
-    let mut words = words(text);
-    [(); N].map(|()| words.next().map_or(f32::NAN, number_or_nan))
+    numbers(text, number_or_nan).0
+}
+
+/// Parses the first N words; words that aren't there are parsed as empty ones. Returns how many words there are, too, up to one
+/// more than N.
+pub(super) fn numbers<T: Copy, const N: usize>(text: &[u8], parse: impl Fn(&[u8]) -> T) -> ([T; N], usize) {
+    let (mut numbers, mut count) = ([parse(b""); N], 0);
+    for word in words(text) {
+        count += 1;
+        let Some(number) = numbers.get_mut(count - 1) else { break };
+        *number = parse(word);
+    }
+    (numbers, count)
 }
 
 /// Parses a number; what isn't one is NaN. A comma may stand for the point, as programs write it that take numbers from the system's
@@ -115,11 +122,6 @@ fn with_point(word: &[u8]) -> Option<Vec<u8>> {
     let at = memchr(b',', word)?;
     let is_single = memchr(b',', &word[at + 1..]).is_none() && memchr(b'.', word).is_none();
     is_single.then(|| [&word[..at], b".", &word[at + 1..]].concat())
-}
-
-/// Whether numbers have a comma instead of a point, which is worth a warning.
-pub(super) fn has_comma(text: &[u8]) -> bool {
-    memchr(b',', text).is_some()
 }
 
 /// Returns a text in UTF-8, if it is in UTF-16 and says so with a byte order mark.

@@ -50,7 +50,7 @@ const UNREAD: [UnreadFormat; 8] = [
     UnreadFormat {
         is: "a Collada file",
         extensions: &["dae"],
-        begins: |start, _| is_xml(start) && find(start, b"<COLLADA").is_some(),
+        begins: |start, _| start.trim_ascii_start().starts_with(b"<") && find(start, b"<COLLADA").is_some(),
         advice: "convert it with `assimp export FILE.dae FILE.glb -fglb2`",
     },
     UnreadFormat {
@@ -93,10 +93,6 @@ const UNREAD: [UnreadFormat; 8] = [
         advice: "unpack it and open the model that it held",
     },
 ];
-
-fn is_xml(start: &[u8]) -> bool {
-    start.trim_ascii_start().starts_with(b"<")
-}
 
 /// Whether a zip archive's first file is one of USD, as the format asks for.
 fn is_usdz(start: &[u8]) -> bool {

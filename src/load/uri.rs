@@ -42,7 +42,9 @@ impl<'a> Files<'a> {
     /// A clause that says what is wrong and what to do, without the URI.
     pub(super) fn read(&self, uri: &str, is_kept: bool) -> Result<Vec<u8>, String> {
         let take = |bytes| if is_kept { self.budget.hold(bytes) } else { self.budget.borrow(bytes) };
-        if let Some(data) = strip_scheme(uri, "data:") {
+        if let Some((scheme, data)) = uri.split_at_checked(5)
+            && scheme.eq_ignore_ascii_case("data:")
+        {
             take(data.len() as u64)?;
             return read_data(data, MAX_DATA);
         }
@@ -136,12 +138,6 @@ pub(super) fn shown(uri: &str) -> String {
     // Without control characters.
     let start = on_one_line(start);
     if rest.is_empty() { start } else { format!("{start}...") }
-}
-
-/// Returns what follows a scheme, in upper or lower case.
-fn strip_scheme<'a>(uri: &'a str, scheme: &str) -> Option<&'a str> {
-    let (start, rest) = uri.split_at_checked(scheme.len())?;
-    start.eq_ignore_ascii_case(scheme).then_some(rest)
 }
 
 fn read_data(data: &str, limit: usize) -> Result<Vec<u8>, String> {

@@ -20,17 +20,9 @@ pub(super) fn repair_warnings(repairs: &Repairs, import: &Import) -> Vec<String>
 
 /// Returns warnings about a crease band: that the mesh has no crease, or that the band is narrower than requested in places.
 pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if band.creases == 0 {
-        warnings.push("no edge has split normals, so no crease band was made.".to_owned());
-    }
-    if band.narrowed > 0 {
-        warnings.push(format!(
-            "edges and triangles too small for the full width of the crease band, which is narrower there: {}.",
-            band.narrowed
-        ));
-    }
-    warnings
+    let none = (band.creases == 0).then(|| "no edge has split normals, so no crease band was made.".to_owned());
+    let narrowed = "edges and triangles too small for the full width of the crease band, which is narrower there";
+    none.into_iter().chain(counted([(band.narrowed as usize, narrowed)])).collect()
 }
 
 /// Returns a warning about triangles whose corners all have the same texture coordinates: displacement moves such a

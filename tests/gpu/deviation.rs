@@ -45,7 +45,7 @@ fn drawn(
     engine.count(scene, &inputs, &mut Timing::Off).expect("counts");
     let reference_shape = ReferenceShape::from_shape(shape).expect("a shape that is sampled from a surface");
     let field = deviation_from(scene, &DeviationTarget::ReferenceShape(Arc::new(reference_shape)));
-    let scale = deviation_scale(field.worst().expect("something is emitted").value, scene.ulp());
+    let scale = deviation_scale(field.worst().expect("something is emitted").value, scene.ulp);
     scene.set_deviation(&engine.gpu, Some((&field, scale)));
     engine.draw(scene, target, camera, settings, &mut Timing::Off).expect("a draw");
     (field, target.read(&engine.gpu).expect("a readback"))
@@ -87,7 +87,7 @@ fn a_flat_face_is_far_in_its_middle_and_exact_in_its_corners() {
     let (field, picture) = drawn(&mut scene, Shape::Icosahedron, &camera, &target, &settings(Surface::Flat, 1.0));
     let worst = field.worst().expect("something is emitted");
     assert!((worst.value - GAP).abs() < 1e-6, "{}", worst.value);
-    let scale = deviation_scale(worst.value, scene.ulp());
+    let scale = deviation_scale(worst.value, scene.ulp);
     let centroid = (corners[0] + corners[1] + corners[2]) / 3.0;
     let (middle, off) = place_of(&picture, &camera, &scene, centroid, &scale);
     assert!((middle - scale.place(GAP as f32)).abs() < 0.03 && middle > 0.9 && off < 8.0, "{middle}, off by {off}");
@@ -174,7 +174,7 @@ fn two_surfaces_beside_each_other_look_as_they_do_alone() {
         engine().count(scene, &settings.inputs(view), &mut Timing::Off).expect("counts");
         deviation_from(scene, &DeviationTarget::ReferenceShape(reference_shape.clone()))
     });
-    let scale = deviation_scale(fields[0].worst().expect("something is emitted").value, scene.ulp());
+    let scale = deviation_scale(fields[0].worst().expect("something is emitted").value, scene.ulp);
     let [right_hand, _, to_eye] = camera.axes();
     for ((half, field), aside) in SplitSide::BOTH.into_iter().zip(&fields).zip([-0.5, 0.5]) {
         // Not its worst point: there are twenty of them, and the last bits would choose.

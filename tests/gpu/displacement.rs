@@ -288,7 +288,7 @@ fn lod_by_error_holds_with_gentle_heights() {
         let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
         let results = engine().measure_all(&mut scene, &wanted).expect("a readback");
         let worst = results.screen_error.expect("it is in view");
-        assert!(worst.px <= 1.0, "{shape:?}: {} px", worst.px);
+        assert!(worst.value <= 1.0, "{shape:?}: {} px", worst.value);
         let without = settings.with(Tessellation { displacement: Displacement::Off, ..settings.tessellation });
         let plain = on_gpu(&mut scene, &crate::passes::inputs(&loaded, &without)).triangles.len() as u64;
         engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");

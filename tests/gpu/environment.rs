@@ -39,7 +39,7 @@ fn lit_by_file() -> Settings {
 fn scene_in(mesh: Mesh, panorama: Panorama) -> Scene {
     let mut scene = scene_of(mesh, 0.0);
     let environment = Environment::from_panorama(&engine().gpu, panorama).expect("a small environment");
-    scene.set_environment(Some(Arc::new(environment)));
+    scene.environment = Some(Arc::new(environment));
     scene
 }
 

@@ -32,7 +32,7 @@ fn is_capped(written: &[HullFactors], partitioning: Partitioning) -> bool {
 fn deviation_px(mesh: &Mesh, topology: &Topology, inputs: &Inputs, out: &Tessellated) -> f64 {
     let mut measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, out.triangles.len() as u64);
     measurement.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
-    measurement.worst().map_or(0.0, |worst| worst.px)
+    measurement.worst().map_or(0.0, |worst| worst.value)
 }
 
 /// What rounding adds to a distance in px: emitted positions are off by a few units in the last place of coordinates

@@ -138,7 +138,7 @@ fn details_scale_the_tolerance_and_edges_as_published_keep_each_patch_its_own() 
         let mut measured =
             ScreenErrorMeasurement::new(&loaded.mesh, &loaded.topology, &inputs, out.triangles.len() as u64);
         measured.take(&EmittedChunk::whole(&out.vertices, &out.triangles));
-        let worst = measured.worst().expect("triangles").px;
+        let worst = measured.worst().expect("triangles").value;
         assert!(worst <= f64::from(0.5 / detail.min(1.0)) + 1e-3, "{detail}: {worst} px");
         let published = Settings::from(Tessellation { edges: Edges::AsPublished, ..own });
         let alone = on_gpu(&mut scene, &crate::passes::inputs(&loaded, &published));
@@ -210,6 +210,6 @@ fn a_part_may_be_as_far_off_as_its_detail_allows() {
     let inputs = inputs(&loaded, &Settings::from(Tessellation::default().by_error(0.5)));
     on_gpu(&mut scene, &inputs);
     let above = engine().patches_above(&mut scene, &inputs, 0.5).expect("a readback");
-    let worst = above.worst.expect("triangles").px;
+    let worst = above.worst.expect("triangles").value;
     assert!(above.patches == 0 && worst > 0.5, "{above:?}");
 }

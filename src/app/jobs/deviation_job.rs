@@ -99,7 +99,7 @@ impl DeviationJob {
             Some(Ok(Some(field))) => {
                 self.walk = None;
                 let largest = field.largest();
-                let scale = deviation_scale(largest.at_least, scene.ulp());
+                let scale = deviation_scale(largest.at_least, scene.ulp);
                 scene.set_deviation(gpu, Some((&field, scale)));
                 self.generation += 1;
                 let (worst, rms, left_out) = (field.worst(), field.rms(), field.left_out);

@@ -67,7 +67,7 @@ impl App {
         }
         if has.light != wanted.light {
             let open = self.environment.as_ref().filter(|_| wanted.light > 0);
-            scene.set_environment(open.map(|open| open.content.environment.clone()));
+            scene.environment = open.map(|open| open.content.environment.clone());
             has.light = wanted.light;
         }
         if has.matcap != wanted.matcap {

@@ -16,7 +16,7 @@ use inspect::measure::EmittedChunk;
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
 use inspect::settings::{ARENA_BYTES, Choice, ColorSource, Overlays, Settings, SplitSide};
-use inspect::shot::files::write_factors;
+use inspect::shot::files::{to_json, write_factors, write_text};
 use inspect::shot::{Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
 
 /// How much of the progress is for reading the mesh back from the device; the rest is for writing the file.
@@ -89,7 +89,7 @@ impl ShotParts {
         Self { engine, make, subject, view }.with_shot(|shot| {
             shot.picture(Some(StatsWanted { error: true }), progress)?;
             progress.check()?;
-            shot.write_stats(None, path)
+            shot.stats()?.map_or(Ok(()), |stats| write_text(path, &to_json(&stats)?))
         })
     }
 

@@ -259,7 +259,7 @@ impl App {
         let Some(open) = S::slot(self) else { return };
         let is_shown = open.shader.as_ref().is_some_and(|(_, generation)| *generation == shown);
         if is_shown && report.is_some_and(|report| report.stopped > 0) {
-            open.error = Some(GpuError::UserShaderTimedOut(S::purpose().name).to_string());
+            open.error = Some(GpuError::UserShaderTimedOut(S::PURPOSE.name).to_string());
             open.shader = open.before.take();
             if open.shader.is_none() {
                 let replaced = open.replaced;

@@ -107,7 +107,7 @@ impl App {
             .filter_map(|half| self.deviating(half)?.found.as_ref())
             .map(|found| found.largest.at_least)
             .reduce(f64::max)?;
-        Some(deviation_scale(largest, scene.ulp()))
+        Some(deviation_scale(largest, scene.ulp))
     }
 
     fn scale_deviation(&mut self) {

@@ -85,7 +85,8 @@ impl App {
             let camera = &mut self.viewport.camera;
             (camera.field_of_view, camera.roll) = (Camera::default().field_of_view, 0.0);
             let size = framed_size(self.viewport.picture.size(), &self.settings);
-            self.viewport.camera.frame(&document.scene.drawn_bounds(&self.settings), size);
+            let reach = self.settings.reach(document.scene.tessellator.mesh());
+            self.viewport.camera.frame(&document.scene.bounds.grown(reach), size);
             self.viewport.framed = Some(self.viewport.camera);
         }
     }

@@ -286,7 +286,7 @@ impl App {
         let scene = match (shape, document.stand_in.scene()) {
             (Shape::StandIn, Some(stand_in)) => {
                 stand_in.matcap.clone_from(&document.scene.matcap);
-                stand_in.set_environment(light);
+                stand_in.environment = light;
                 stand_in
             }
             _ => &mut document.scene,

@@ -94,7 +94,7 @@ fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topo
     let topology = Topology::build_afforded(&cut, 0.0, budget, progress)?;
     budget.hold((PER_PATCH * topology.patches.len()) as u64)?;
     let fans = Fans::new(&cut, &topology);
-    if !fans.any_split() {
+    if fans.normals.iter().all(Option::is_none) {
         return Ok((cut, topology));
     }
     let agreed = rebuilt(&cut, &topology, budget, progress, |patch, add| {

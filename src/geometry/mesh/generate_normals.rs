@@ -91,7 +91,8 @@ fn with_fans(
         for (points, normals) in normals_of(mesh, &around, block, angles) {
             let mut normals = normals.as_slice();
             for point in points {
-                let corners = around.of_mut(point);
+                let place = around.start(point)..around.ends[point] as usize;
+                let corners = &mut around.list[place];
                 let (own, others) = normals.split_at(corners.len());
                 normals = others;
                 fan.number(mesh, corners, own, &mut added)?;
@@ -153,11 +154,6 @@ impl CornersByPoint {
 
     fn of(&self, point: usize) -> &[u32] {
         &self.list[self.start(point)..self.ends[point] as usize]
-    }
-
-    fn of_mut(&mut self, point: usize) -> &mut [u32] {
-        let start = self.start(point);
-        &mut self.list[start..self.ends[point] as usize]
     }
 
     fn start(&self, point: usize) -> usize {

@@ -4,7 +4,6 @@
 
 pub mod adjacency;
 mod alike_corners;
-mod bounding_box_tree;
 pub mod bounds;
 pub mod build_limits;
 mod cell_chains;

@@ -108,7 +108,10 @@ impl<'a> Ears<'a> {
         let (mut any, mut sweep) = (0, left / 2);
         while left > 3 {
             if left == sweep {
-                self.forget_outward();
+                // Corners that have been removed or now turn outward need no more tests.
+                let mut inward = std::mem::take(&mut self.inward);
+                inward.retain(|&i| !self.gone[i] && self.turn(i) <= 0.0);
+                self.inward = inward;
                 sweep /= 2;
             }
             let ear = self.next_ear().unwrap_or_else(|| {
@@ -131,13 +134,6 @@ impl<'a> Ears<'a> {
             }
         }
         None
-    }
-
-    /// Drops the corners that have been removed or now turn outward from those that are tested.
-    fn forget_outward(&mut self) {
-        let mut inward = std::mem::take(&mut self.inward);
-        inward.retain(|&i| !self.gone[i] && self.turn(i) <= 0.0);
-        self.inward = inward;
     }
 
     /// Returns the first corner from `from` on that is left, and sets `from` to it.

@@ -325,13 +325,13 @@ impl Rig {
 }
 
 impl Reach {
-    /// `tangents` are displacements of tangents.
+    /// `tangents` are the displacements of tangents.
     pub fn new(bindings: &[Binding], deltas: &[Delta], tangents: &[[f32; 3]]) -> Self {
         let largest = |sum: f64, vector: &[f32; 3]| vector.iter().map(|x| f64::from(x.abs())).fold(sum, f64::max);
-        let displacements = deltas.iter().flat_map(|delta| [&delta.position, &delta.normal]).chain(tangents);
+        let deltas = deltas.iter().flat_map(|delta| [&delta.position, &delta.normal]);
         Self {
             position: bindings.iter().map(|binding| &binding.position).fold(0.0, largest),
-            delta: displacements.fold(0.0, largest),
+            delta: deltas.chain(tangents).fold(0.0, largest),
         }
     }
 }

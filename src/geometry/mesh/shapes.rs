@@ -87,7 +87,7 @@ impl Shape {
     /// its normals. A shape without levels stays as it is.
     pub fn build_at(self, level: u32) -> Mesh {
         let triangles = match self {
-            Self::CubeSplit => polyhedra::cube_split(),
+            Self::CubeSplit => polyhedra::cube(|position, normal| normal + 0.6 * position),
             Self::CubeSmooth => polyhedra::cube_smooth(),
             Self::Icosahedron => polyhedra::icosphere(level),
             Self::Icosphere => polyhedra::icosphere(1 + level),
@@ -130,6 +130,15 @@ impl FromStr for Shape {
 
 fn corner(position: Vec3, normal: Vec3, uv: Vec2) -> Corner {
     Corner { position, normal: normal.normalize(), uv }
+}
+
+/// Returns the triangles of all cells of a grid, column by column.
+fn grid(
+    columns: usize,
+    rows: usize,
+    cell: impl Fn(usize, usize) -> [[Corner; 3]; 2],
+) -> impl Iterator<Item = [Corner; 3]> {
+    (0..columns).flat_map(move |i| (0..rows).map(move |j| [i, j])).flat_map(move |[i, j]| cell(i, j))
 }
 
 /// Returns two triangles for the quad a b c d, which is counter-clockwise, cut along its diagonal a-c.

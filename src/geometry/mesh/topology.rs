@@ -183,7 +183,9 @@ impl Topology {
     ) -> Result<Self, BuildError> {
         let take = |bytes: usize| budget.hold(bytes as u64);
         let welding = Borrowed::from(budget);
-        budget.borrow(weld_bytes(mesh.corners.len(), tolerance))?;
+        // Further lists of the points, and a table of cells; lists and table double as they grow.
+        let within = if tolerance > 0.0 { 80 } else { 0 };
+        budget.borrow((WELD_BYTES + within) * mesh.corners.len() as u64)?;
         let (mut points, corner_points) = weld_corners(mesh, tolerance);
         points.shrink_to_fit();
         drop(welding);
@@ -393,13 +395,6 @@ pub(super) fn weld_corners(mesh: &Mesh, tolerance: f32) -> (Vec<Vec3>, Vec<u32>)
 /// Returns whether a triangle with corners on these points is degenerate.
 pub(super) fn is_degenerate([a, b, c]: [u32; 3]) -> bool {
     a == b || b == c || c == a
-}
-
-/// Returns the greatest amount of memory that [`weld_corners`] needs temporarily, in bytes.
-fn weld_bytes(corners: usize, tolerance: f32) -> u64 {
-    // Further lists of the points, and a table of cells; lists and table double as they grow.
-    let within = if tolerance > 0.0 { 80 } else { 0 };
-    (WELD_BYTES + within) * corners as u64
 }
 
 /// Returns the lowest corner on each point, and whether the point has more than one.

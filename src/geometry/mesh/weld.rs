@@ -122,18 +122,13 @@ pub fn weld_alike(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync, tol
     // Join equal positions first: they must stay together even if a nearer point comes between them.
     let (firsts, mut point_of) = weld_exactly(count, place);
     if tolerance.is_nan() || tolerance <= 0.0 {
-        return (points_at(&firsts, |first| place(first).0), point_of);
+        let mut points: Vec<Vec3> = zeroed_vec(firsts.len());
+        fill(&mut points, LEAST, |i| place(firsts[i] as usize).0);
+        return (points, point_of);
     }
     let (points, merged) = merge_within(firsts.iter().map(|first| place(*first as usize)), tolerance);
     point_of.iter_mut().for_each(|point| *point = merged[*point as usize]);
     (points, point_of)
-}
-
-/// Returns the position at each of these indices.
-fn points_at(firsts: &[u32], position: impl Fn(usize) -> Vec3 + Sync) -> Vec<Vec3> {
-    let mut points: Vec<Vec3> = zeroed_vec(firsts.len());
-    fill(&mut points, LEAST, |i| position(firsts[i] as usize));
-    points
 }
 
 /// Joins distinct positions as [`weld_alike`] does, within a tolerance above 0.

@@ -97,7 +97,7 @@ pub fn farthest(
     let Some(&[first, ..]) = from.triangles.first() else { return Ok(None) };
     let search = Search { to, goal };
     let mut state = State::default();
-    state.best.point = to.scaled(from.positions[first as usize].as_dvec3());
+    state.best.point = from.positions[first as usize].as_dvec3() * to.scale;
     let corners = search.corners(from);
     let some: Vec<_> = corners.iter().step_by(STRIDE).map(|corner| Corner { reach: 0.0, ..*corner }).collect();
     search.nearest(from, &some, &mut state, progress)?;
@@ -105,7 +105,7 @@ pub fn farthest(
     drop(corners);
     let all: Vec<usize> = (0..from.triangles.len()).collect();
     for_blocks(&mut state, &all, progress, |&i, best| {
-        let corners = from.triangles[i].map(|corner| to.scaled(from.positions[corner as usize].as_dvec3()));
+        let corners = from.triangles[i].map(|corner| from.positions[corner as usize].as_dvec3() * to.scale);
         let faces = from.triangles[i].map(|corner| nearest[corner as usize]);
         search.piece(to_u32(i), Polygon::new(corners), &faces, 0, best)
     })?;
@@ -234,19 +234,19 @@ impl State {
     fn result(&self, search: &Search, from: Soup) -> Farthest {
         let (to, best) = (search.to, self.best);
         let size = from.triangles.iter().flatten().map(|corner| from.positions[*corner as usize].abs().max_element());
-        let largest = to.scaled(DVec3::splat(size.fold(0.0, f32::max).into())).x.max(to.largest_coordinate());
+        let largest = (f64::from(size.fold(0.0, f32::max)) * to.scale).max(to.largest_coordinate());
         let margin = ROUNDING * largest;
         let bound = self.open.iter().map(|piece| piece.bound).fold(self.closed.max(best.distance), f64::max);
         let nearest = to.nearest(best.point, 0, 0.0);
         let at_least = to.proven_distance(best.point, nearest.distance) - margin;
         Farthest {
             distance: Interval {
-                at_least: to.unscaled(at_least.clamp(0.0, best.distance)),
-                at_most: to.unscaled(bound + margin),
+                at_least: at_least.clamp(0.0, best.distance) / to.scale,
+                at_most: (bound + margin) / to.scale,
             },
             triangle: best.triangle,
-            point: best.point / to.scale(),
-            nearest: to.closest_at(nearest.place, best.point) / to.scale(),
+            point: best.point / to.scale,
+            nearest: to.closest_at(nearest.place, best.point) / to.scale,
         }
     }
 }
@@ -259,7 +259,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// The largest bound that is near enough to a distance, in scaled units.
     fn enough(&self, distance: f64) -> f64 {
-        (distance * (1.0 + self.goal.relative)).max(distance + self.goal.absolute * self.to.scale())
+        (distance * (1.0 + self.goal.relative)).max(distance + self.goal.absolute * self.to.scale)
     }
 
     /// The corners that triangles use.
@@ -268,7 +268,7 @@ impl Search<'_> {
         for (i, triangle) in from.triangles.iter().enumerate() {
             for (k, &index) in triangle.iter().enumerate() {
                 let end = from.positions[triangle[(k + 1) % 3] as usize].as_dvec3();
-                let side = self.to.scaled(from.positions[index as usize].as_dvec3() - end).length();
+                let side = ((from.positions[index as usize].as_dvec3() - end) * self.to.scale).length();
                 for index in [index, triangle[(k + 1) % 3]] {
                     let corner = &mut corners[index as usize];
                     *corner = Corner { index, triangle: corner.triangle.min(to_u32(i)), reach: corner.reach.max(side) };
@@ -294,7 +294,7 @@ impl Search<'_> {
             let (mut best, mut hint) = (before, 0);
             let mut places = Vec::with_capacity(block.len());
             for Corner { index, triangle, reach } in block {
-                let point = self.to.scaled(from.positions[*index as usize].as_dvec3());
+                let point = from.positions[*index as usize].as_dvec3() * self.to.scale;
                 // Across the way to the nearest point, the distance to a triangle grows about with the square of what one
                 // moves. Where this isn't so, the pieces' own searches find a better triangle.
                 let growth = reach * (reach / self.enough(best.distance)).min(1.0);

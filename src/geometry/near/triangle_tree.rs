@@ -19,7 +19,7 @@ pub struct TriangleTree {
     numbers: Vec<u32>,
     /// A power of two that brings coordinates near 1, so that the areas of boxes are within the range of f32. It causes
     /// no rounding.
-    scale: f64,
+    pub(super) scale: f64,
 }
 
 /// The nearest point of a triangle.
@@ -116,13 +116,29 @@ impl TriangleTree {
     }
 
     /// Calls `visit` with each triangle whose box overlaps that of these corners, and with some others.
-    pub(super) fn overlapping(&self, corners: [Vec3; 3], mut visit: impl FnMut(u32)) {
+    pub(super) fn overlapping(&self, corners: [Vec3; 3], visit: impl FnMut(u32)) {
         let own = Bounded(corners.map(|corner| (corner.as_dvec3() * self.scale).as_vec3())).aabb();
+        self.in_boxes(|Aabb { min, max }| own.min.cmple(*max).all() && own.max.cmpge(*min).all(), visit);
+    }
+
+    /// Calls `visit` with each triangle whose box is within `reach` of the segment from a to b, and with some others nearby.
+    pub(crate) fn near_segment(&self, ends: [DVec3; 2], reach: f64, visit: impl FnMut(u32)) {
+        let ends = ends.map(|end| end * self.scale);
+        // Twice the reach, so that rounding doesn't lose what lies exactly at it.
+        let margin = 2.0 * reach * self.scale;
+        let crosses = |bounds: &Aabb| {
+            let [min, max] = [bounds.min, bounds.max].map(|corner| Vec3::from(corner).as_dvec3());
+            crosses(ends, min - margin, max + margin)
+        };
+        self.in_boxes(crosses, visit);
+    }
+
+    /// Calls `visit` with each triangle of the boxes that `is_met` is true for.
+    fn in_boxes(&self, is_met: impl Fn(&Aabb) -> bool, mut visit: impl FnMut(u32)) {
         let mut open = vec![0];
         while let Some(index) = open.pop() {
             let node = &self.tree.nodes[index as usize];
-            let Aabb { min, max } = node.aabb();
-            if own.min.cmpgt(*max).any() || own.max.cmplt(*min).any() {
+            if !is_met(node.aabb()) {
                 continue;
             }
             match node.is_leaf() {
@@ -189,19 +205,6 @@ impl TriangleTree {
                 }
             }
         }
-    }
-
-    /// The factor from object units to scaled ones.
-    pub(super) fn scale(&self) -> f64 {
-        self.scale
-    }
-
-    pub(super) fn scaled(&self, p: DVec3) -> DVec3 {
-        p * self.scale
-    }
-
-    pub(super) fn unscaled(&self, distance: f64) -> f64 {
-        distance / self.scale
     }
 
     /// The largest coordinate, scaled.
@@ -305,4 +308,74 @@ pub fn closest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> ([f64; 3], DVec3)
         if p.distance_squared(y.1) < p.distance_squared(x.1) { y } else { x }
     };
     nearer(nearer(sides[0], sides[1]), sides[2])
+}
+
+/// Returns whether a segment has a point in a box.
+fn crosses([a, b]: [DVec3; 2], min: DVec3, max: DVec3) -> bool {
+    let (mut from, mut to) = (0.0_f64, 1.0_f64);
+    for axis in 0..3 {
+        let (start, way) = (a[axis], b[axis] - a[axis]);
+        if way == 0.0 {
+            if start < min[axis] || start > max[axis] {
+                return false;
+            }
+        } else {
+            let (x, y) = ((min[axis] - start) / way, (max[axis] - start) / way);
+            from = from.max(x.min(y));
+            to = to.min(x.max(y));
+        }
+    }
+    from <= to
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The numbers of the places that the tree visits near a segment, in order.
+    fn near(places: impl Iterator<Item = Vec3> + Clone, ends: [DVec3; 2], reach: f64) -> Vec<u32> {
+        let mut visited = Vec::new();
+        if let Some(tree) = TriangleTree::new(places.map(|place| [place; 3])) {
+            tree.near_segment(ends, reach, |i| visited.push(i));
+        }
+        visited.sort_unstable();
+        visited
+    }
+
+    #[test]
+    fn empty_trees_and_trees_of_one_position() {
+        let count = |place: Vec3, count| near(std::iter::repeat_n(place, count), [DVec3::ZERO, DVec3::X], 0.0).len();
+        assert_eq!(count(Vec3::X, 0), 0);
+        assert_eq!(count(Vec3::X / 2.0, 1000), 1, "of equal ones, the first");
+        assert_eq!(count(Vec3::Y, 1000), 0);
+    }
+
+    #[test]
+    fn a_segment_through_many_places_visits_few() {
+        let places = (0..200).flat_map(|y| (0..200).map(move |x| Vec3::new(x as f32, y as f32, 0.0)));
+        let across = [DVec3::new(-1.0, 10.4, 0.0), DVec3::new(300.0, 30.6, 0.0)];
+        let count = near(places, across, 0.01).len();
+        assert!(count < 1500, "{count} of 40000");
+    }
+
+    proptest! {
+        #[test]
+        fn all_positions_within_reach_are_visited(
+            places in prop::collection::hash_set(prop::array::uniform3(-9_i8..9), 0..60),
+            ends in prop::array::uniform2(prop::array::uniform3(-9_i8..9)),
+            reach in 0_u8..4,
+        ) {
+            let [a, b] = ends.map(|end| DVec3::from(end.map(f64::from)));
+            let reach = f64::from(reach);
+            let places: Vec<Vec3> = places.into_iter().map(|place| Vec3::from(place.map(f32::from))).collect();
+            let visited = near(places.iter().copied(), [a, b], reach);
+            prop_assert!(visited.windows(2).all(|pair| pair[0] < pair[1]), "visited twice");
+            for (place, i) in places.iter().map(|place| place.as_dvec3()).zip(0..) {
+                let t = ((place - a).dot(b - a) / (b - a).length_squared().max(1e-9)).clamp(0.0, 1.0);
+                let distance = place.distance(a.lerp(b, t));
+                prop_assert!(distance > reach || visited.contains(&i), "missed at {distance}");
+            }
+        }
+    }
 }

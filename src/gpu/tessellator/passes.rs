@@ -4,24 +4,27 @@ use std::collections::HashSet;
 
 use super::Tessellator;
 use crate::bound_pass::{BoundPass, Step, Workgroups};
+use crate::buffer::empty;
 use crate::compute_pipeline::Pass;
 use crate::layout::{EmitArgs, Params, Slab};
 use crate::minimum::{self, Minimum};
 use crate::params::params_of;
-use crate::pass_inputs::PassInputs;
+use crate::pass_inputs::{BoundPasses, PassInputs};
 use crate::pipelines::{
     CENTERS, CHUNKS, COUNTS, CURVE_NETS, DIRECTIONS, DISPLACE, DRAWS, EDGE_FACTORS, EMIT_TRIANGLES, EMIT_VERTICES,
-    FACTOR_LEVELS, FRAMES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
+    FACTOR_LEVELS, FRAMES, HULL_FACTORS, LEAST_TRIANGLES, PATCH_DIRECTIONS, POINT_LEVELS, SCAN, grid,
 };
-use crate::readback::Readback;
-use crate::recorder::{RecordPasses, Recorder, Timing};
+use crate::readback::{Readback, read_buffer};
+use crate::recorder::{RecordPasses, Recorder, Timing, submit_untimed};
 use crate::search_passes::search_passes;
 use crate::slab::SCAN_BLOCK;
 use crate::{Given, GpuError, UserPipelines};
 use geometry::cores::each;
-use geometry::tessellate::{Displacement, Lod, Normals, Partitioning, Tessellation, minimum_inputs};
+use geometry::tessellate::{
+    Displacement, HullFactors, Inputs, Lod, LodView, Normals, Partitioning, Tessellation, minimum_inputs,
+};
 
-/// What settings say about which passes run, and with which constants.
+/// What parameters say about which passes run, and with which constants.
 #[derive(Clone, Copy)]
 struct Choices {
     by_error: bool,
@@ -32,16 +35,7 @@ struct Choices {
 }
 
 impl Choices {
-    fn new(tessellation: &Tessellation) -> Self {
-        Self {
-            by_error: tessellation.used_lod().is_by_error(),
-            has_rows: tessellation.partitioning.has_rows(),
-            displaces: tessellation.displacement.is_on(),
-            normals: tessellation.normals as u32,
-        }
-    }
-
-    fn from_params(params: &Params) -> Self {
+    fn new(params: &Params) -> Self {
         Self {
             by_error: params.lod == Lod::Error as u32,
             has_rows: params.partitioning == Partitioning::Rows as u32,
@@ -106,7 +100,7 @@ impl Tessellator {
             record(recorder, "directions", &self.directions()?);
             self.nets_done = Some(shape);
         }
-        let choices = Choices::from_params(&self.params);
+        let choices = Choices::new(&self.params);
         record(recorder, "factors", &self.factors(choices)?);
         record(recorder, "levels", &self.levels(choices)?);
         for slab in 0..self.slabs.len() {
@@ -121,11 +115,11 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare(&self, tessellation: &Tessellation) -> Result<(), GpuError> {
-        let choices = Choices::new(tessellation);
+        let inputs = Inputs::new(tessellation, LodView::default());
+        let choices = Choices::new(&params_of(&inputs, &self.mesh, &self.buffers, self.given.as_ref(), false));
         // What takes longest comes first, each pass once.
         let on = self.inputs_of_passes();
-        let searches =
-            if choices.by_error && self.given.is_none() { search_passes(&on, choices.has_rows) } else { vec![] };
+        let searches = if choices.by_error { search_passes(&on, choices.has_rows) } else { vec![] };
         let searches: HashSet<Pass> = searches.into_iter().map(|(pass, _)| pass).collect();
         each(&Vec::from_iter(searches), |pass| on.bound(*pass).map(drop))?;
         let of_slabs =
@@ -162,7 +156,29 @@ impl Tessellator {
     /// # Errors
     /// Out of memory, or a lost device.
     pub fn prepare_minimum(&self, partitioning: Partitioning) -> Result<(), GpuError> {
-        minimum::prepare(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows())
+        let search = minimum::search(&self.gpu, &self.pipelines, self.buffers.patch_count, partitioning.has_rows());
+        let mut passes = [EDGE_FACTORS, LEAST_TRIANGLES, search].into_iter();
+        passes.try_for_each(|pass| self.pipelines.get(pass).get(&self.gpu).map(|_| ()))
+    }
+
+    /// What the hull shader writes, one for each patch: the counts pass computes it too, but doesn't store it. The counts must be
+    /// known.
+    ///
+    /// # Errors
+    /// More patches than the adapter binds memory for, or a lost device.
+    pub fn hull_factors(&self) -> Result<Vec<HullFactors>, GpuError> {
+        let (gpu, patches) = (&self.gpu, self.buffers.patch_count);
+        let written = empty::<HullFactors>(gpu, "hull factors", patches as usize)?;
+        let own = [("written_factors", &written)];
+        let on = PassInputs { own: &own, bound: &BoundPasses::default(), ..self.inputs_of_passes() };
+        let step = on.over(HULL_FACTORS, patches)?;
+        submit_untimed(gpu, |recorder| {
+            record(recorder, "hull factors", &[step]);
+            Ok(())
+        })?;
+        let mut factors = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &written, 0, written.size())?);
+        factors.truncate(patches as usize);
+        Ok(factors)
     }
 
     /// What passes over the mesh are bound to.
@@ -285,7 +301,7 @@ impl Tessellator {
         slab_index: usize,
         chunk_index: u32,
     ) -> Result<(), GpuError> {
-        let (vertices, triangles, displace) = self.emission(slab_index, Choices::from_params(&self.params))?;
+        let (vertices, triangles, displace) = self.emission(slab_index, Choices::new(&self.params))?;
         let slab = &self.slabs[slab_index];
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
         let run = |pass: &mut wgpu::ComputePass, bound: &BoundPass, field: usize| {

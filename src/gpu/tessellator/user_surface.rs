@@ -53,8 +53,8 @@ impl Tessellator {
     /// What a shader of the user's own is called whose loops took too long, if one's did when the counts were last known.
     pub fn stopped_shader(&self) -> Option<&'static str> {
         let reports = [
-            (SurfaceShader::purpose().name, self.user_surface_report()),
-            (LodShader::purpose().name, self.user_lod_report()),
+            (SurfaceShader::PURPOSE.name, self.user_surface_report()),
+            (LodShader::PURPOSE.name, self.user_lod_report()),
         ];
         let is_stopped = |report: &Option<UserReport>| report.is_some_and(|report| report.stopped > 0);
         reports.iter().find(|(_, report)| is_stopped(report)).map(|(name, _)| *name)

@@ -5,7 +5,7 @@ use glam::{Mat4, Vec3};
 use super::Engine;
 use crate::measure::{
     Accuracy, AccuracyMeasurement, AccuracyOptions, DeviationField, DeviationMeasurement, DeviationTarget, Measured,
-    PatchesAbove, ScreenError, ScreenErrorMeasurement, Sizes, Survey, Visitor,
+    PatchesAbove, ScreenErrorMeasurement, Sizes, Survey, Visitor, WorstPoint,
 };
 use crate::reference_shape::ReferenceShape;
 use crate::render::{Camera, Leak, LeakCount, Leaks, Scene};
@@ -36,7 +36,7 @@ pub struct Measurements<'a> {
 pub struct MeasurementResults {
     pub survey: Option<Measured>,
     /// None also if nothing is in view.
-    pub screen_error: Option<ScreenError>,
+    pub screen_error: Option<WorstPoint>,
     /// The patches that LOD by error found to be flat, whose error is the distance to the nearest point of the surface;
     /// counted with the error.
     pub flat_patches: Option<u64>,

@@ -9,8 +9,7 @@ use crate::measure::{EmittedChunk, PointsAgreement, RequestedFactors, Visitor};
 use crate::render::Scene;
 use geometry::progress::Progress;
 use geometry::tessellate::{HullFactors, Inputs, PatchFactors, Tessellated, Tessellation, Vertex};
-use gpu::layout::Chunk;
-use gpu::layout::CurveNet;
+use gpu::layout::{Chunk, CurveNet};
 use gpu::{Given, Gpu, GpuError, Readback, Timing, put_together, read_buffer, read_buffers, submit_untimed};
 
 /// A chunk on its way back from the device.
@@ -103,7 +102,7 @@ impl Engine {
     pub fn patch_factors(&self, scene: &Scene) -> Result<Vec<PatchFactors>, GpuError> {
         let item = size_of::<PatchFactors>() as u64;
         let parts = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
-        Ok(cast(&read_buffers(&self.gpu, parts)?))
+        Ok(bytemuck::pod_collect_to_vec(&read_buffers(&self.gpu, parts)?))
     }
 
     /// The factors that LOD, a file or an LOD shader gave, before the tessellator clamps and rounds them.
@@ -118,8 +117,8 @@ impl Engine {
             None => {}
         }
         let (buffer, edges) = scene.tessellator.edge_factors();
-        let bytes = u64::from(scene.tessellator.buffers().factor_count) * size_of::<f32>() as u64;
-        Ok(RequestedFactors::new(edges, convention, cast::<f32>(&read_buffer(&self.gpu, buffer, 0, bytes)?)))
+        let factors = items(&self.gpu, buffer, scene.tessellator.buffers().factor_count)?;
+        Ok(RequestedFactors::new(edges, convention, factors))
     }
 
     /// The factors that an LOD shader gave every patch, as it gave them; none without such a shader. The counts must be known.
@@ -128,9 +127,7 @@ impl Engine {
     /// The device was lost.
     pub fn user_factors(&self, scene: &Scene) -> Result<Vec<HullFactors>, GpuError> {
         let Some(buffer) = scene.tessellator.user_factors() else { return Ok(Vec::new()) };
-        let patches = scene.tessellator.topology().patches.len();
-        let bytes = read_buffer(&self.gpu, buffer, 0, (patches * size_of::<HullFactors>()) as u64)?;
-        Ok(cast(&bytes))
+        items(&self.gpu, buffer, scene.tessellator.buffers().patch_count)
     }
 
     /// How the control points that a surface shader gave the sides of every edge agree; none without such a shader. The counts
@@ -144,8 +141,7 @@ impl Engine {
             return Ok(None);
         }
         let buffers = tessellator.buffers();
-        let bytes = u64::from(buffers.curve_count) * size_of::<CurveNet>() as u64;
-        let nets: Vec<CurveNet> = cast(&read_buffer(&self.gpu, &buffers.curve_nets, 0, bytes)?);
+        let nets: Vec<CurveNet> = items(&self.gpu, &buffers.curve_nets, buffers.curve_count)?;
         let nets: Vec<_> = nets.iter().map(|net| [net.ab, net.ba].map(Vec3::from)).collect();
         let curves = buffers.grouping.curves(tessellator.mesh(), topology);
         Ok(Some(PointsAgreement::new(topology, &curves, &nets)))
@@ -200,8 +196,7 @@ impl Engine {
     pub fn minimum(&self, scene: &mut Scene) -> Result<Vec<u32>, GpuError> {
         submit_untimed(&self.gpu, |recorder| scene.tessellator.record_minimum(recorder))?;
         let Some(buffer) = scene.tessellator.minimum() else { return Ok(Vec::new()) };
-        let bytes = u64::from(scene.tessellator.buffers().patch_count) * size_of::<u32>() as u64;
-        Ok(cast(&read_buffer(&self.gpu, buffer, 0, bytes)?))
+        items(&self.gpu, buffer, scene.tessellator.buffers().patch_count)
     }
 
     /// The whole tessellated mesh, read back. The counts must be known.
@@ -219,7 +214,9 @@ impl Engine {
     }
 }
 
-/// Copies bytes that were read back into values, since the bytes may not be aligned.
-fn cast<T: bytemuck::AnyBitPattern + bytemuck::NoUninit>(bytes: &[u8]) -> Vec<T> {
-    bytemuck::pod_collect_to_vec(bytes)
+/// Reads the first items of a buffer.
+fn items<T: bytemuck::Pod>(gpu: &Gpu, buffer: &wgpu::Buffer, count: u32) -> Result<Vec<T>, GpuError> {
+    let bytes = read_buffer(gpu, buffer, 0, u64::from(count) * size_of::<T>() as u64)?;
+    // The bytes may not be aligned.
+    Ok(bytemuck::pod_collect_to_vec(&bytes))
 }

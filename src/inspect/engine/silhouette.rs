@@ -2,7 +2,7 @@
 
 use super::Engine;
 use crate::measure::{OutlineOf, SampleGrid, Silhouette};
-use crate::render::{Scene, SilhouetteCoverage, padded_clip};
+use crate::render::{Added, Scene, channel, padded_clip};
 use geometry::progress::Progress;
 use geometry::tessellate::{Clip, Convention, Edges, Inputs, LodView, Partitioning, Tessellation};
 use gpu::{Gpu, GpuError, Readback, Tessellator, Timing, submit_untimed};
@@ -36,7 +36,7 @@ pub struct SilhouetteDrawing {
     /// See [`sibling`].
     pub tessellator: Tessellator,
     pub grid: SampleGrid,
-    coverage: SilhouetteCoverage,
+    coverage: Added,
     /// The inputs for each of [`OutlineOf::ALL`] that is still to be drawn, in that order.
     rest: Vec<(OutlineOf, Inputs)>,
     is_set: bool,
@@ -69,7 +69,7 @@ impl SilhouetteDrawing {
         if self.next_chunk < self.tessellator.chunk_count() {
             submit_untimed(gpu, |recorder| {
                 self.tessellator.emit(recorder, self.next_chunk)?;
-                self.coverage.draw(recorder, of, Some(&self.tessellator.chunk(self.next_chunk)));
+                self.coverage.draw(recorder, channel(of), Some(&self.tessellator.chunk(self.next_chunk)));
                 Ok(())
             })?;
             self.next_chunk += 1;
@@ -84,7 +84,7 @@ impl SilhouetteDrawing {
     fn read(&mut self, gpu: &Gpu) -> Result<Readback, GpuError> {
         let mut texels = submit_untimed(gpu, |recorder| {
             // An empty mesh covers nothing, which has to be drawn as well.
-            self.coverage.draw(recorder, OutlineOf::Triangles, None);
+            self.coverage.draw(recorder, channel(OutlineOf::Triangles), None);
             Ok(self.coverage.read(gpu, recorder))
         })?;
         texels.request();

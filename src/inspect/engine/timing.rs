@@ -10,8 +10,8 @@ use geometry::tessellate::LodView;
 use gpu::{GpuError, PassTime, Timing, take_times};
 
 with_defaults! {
-    /// How many times something is timed: as many as fit into `within`, but at least `least` and at most `most`.
-    /// By default they are enough for one picture, without a long wait.
+    /// How many times something is timed: as many as fit into `within`, but at least `least` and at most `most`. By default that
+    /// is enough for one picture, without a long wait.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub struct Runs {
         pub least: u32 = 1,

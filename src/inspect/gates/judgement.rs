@@ -160,7 +160,8 @@ fn count<'a>(kind: GateKind, facts: &'a Facts) -> Count<'a> {
     };
     let measured = || known(facts.measured);
     let defects = |find: fn(&Mesh, &Topology) -> Defects, text| defects(facts, find, text);
-    let edges = |kind, text| self::defects(facts, |_, topology| Defects::of_kind(topology, kind), text);
+    let edges =
+        |kind, text| self::defects(facts, |_, topology| Defects::edges(topology, |edge| edge.kind == kind), text);
     match kind {
         GateKind::Cracks => some(measured()?.cracks.cracked().len() as u64, "# edge[ is|s are] cracked", worst_crack),
         GateKind::Factors => {
@@ -450,7 +451,7 @@ fn worst_deviation(facts: &Facts) -> Option<Place> {
 
 fn worst_error(facts: &Facts) -> Option<Place> {
     let worst = facts.above?.worst?;
-    let words = format!("the farthest, {} px, is of", hundredths(worst.px));
+    let words = format!("the farthest, {} px, is of", hundredths(worst.value));
     Some(on_patch(facts, &words, worst.patch, worst.emitted.as_vec3()))
 }
 

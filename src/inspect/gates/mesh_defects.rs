@@ -34,11 +34,6 @@ impl Defects {
         }
     }
 
-    /// Edges of this kind.
-    pub(super) fn of_kind(topology: &Topology, kind: EdgeKind) -> Self {
-        Self::edges(topology, |edge| edge.kind == kind)
-    }
-
     /// Edges of two triangles wound opposite ways.
     pub(super) fn winding(_: &Mesh, topology: &Topology) -> Self {
         Self::edges(topology, |edge| matches!(topology.edge_sides(edge), [a, b] if a.reversed() == b.reversed()))
@@ -93,7 +88,7 @@ impl Defects {
         })
     }
 
-    fn edges(topology: &Topology, is_one: impl Fn(&Edge) -> bool) -> Self {
+    pub(super) fn edges(topology: &Topology, is_one: impl Fn(&Edge) -> bool) -> Self {
         let found = topology.edges.iter().enumerate().filter(|(_, edge)| is_one(edge));
         Self::Edges(found.map(|(index, _)| to_u32(index)).collect())
     }

@@ -113,11 +113,6 @@ impl GateKind {
         self.limit_name().map_or_else(|| self.name().to_owned(), |limit| format!("{}:{limit}", self.name()))
     }
 
-    /// Whether it judges one tessellation from one camera, so that it says nothing of many.
-    pub const fn is_of_one_tessellation(self) -> bool {
-        !matches!(self.subject(), GateSubject::Mesh | GateSubject::Survey)
-    }
-
     /// Whether it judges the mesh as it was loaded.
     pub const fn is_of_mesh(self) -> bool {
         matches!(self.subject(), GateSubject::Mesh)

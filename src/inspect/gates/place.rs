@@ -141,8 +141,8 @@ impl EdgeSpot {
 
     /// A camera that faces the edge.
     pub(super) fn camera(&self, judged: &Camera, bounds: &Bounds) -> Camera {
-        let mut camera = moving(judged);
-        camera.frame_edge(self.ends, self.facing, bounds);
+        let (mut camera, [a, b]) = (moving(judged), self.ends);
+        camera.frame_at(a * 0.5 + b * 0.5, a.distance(b), self.facing, bounds);
         camera
     }
 }

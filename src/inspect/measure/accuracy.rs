@@ -7,16 +7,15 @@ mod mean_square;
 mod to_reference;
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::thread;
+use std::thread::available_parallelism;
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use serde::Serialize;
 
-use super::screen_error::Screen;
+use super::screen_error::{Screen, WorstPoint, worse};
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
-use geometry::cores::on_threads;
+use geometry::cores::{in_blocks, on_threads};
 use geometry::defaults::with_defaults;
 use geometry::near::Interval;
 use geometry::progress::{Cancelled, Progress};
@@ -39,7 +38,14 @@ with_defaults! {
         /// When the intervals of the largest distances are narrow enough.
         pub narrow: Narrow = Narrow::default(),
         /// The number of threads. The result doesn't depend on it.
-        pub threads: usize = thread::available_parallelism().map_or(1, |cores| cores.get()),
+        pub threads: usize = available_parallelism().map_or(1, |cores| cores.get()),
+    }
+}
+
+impl AccuracyOptions {
+    fn on_threads<R: Send>(&self, mut work: impl FnMut() -> R + Send) -> R {
+        // Where the system starts no more threads, those that there are do the work.
+        on_threads(self.threads, &mut work).unwrap_or_else(|_| work())
     }
 }
 
@@ -76,26 +82,6 @@ pub struct Angles {
     pub largest: f64,
     /// Root mean square over the area of what was emitted.
     pub rms: Rms,
-}
-
-/// The place where a distance or angle is largest.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WorstPoint {
-    /// The largest value that was found, in object units, px or degrees.
-    pub value: f64,
-    /// The patch that emitted the point.
-    pub patch: u32,
-    /// The emitted point, in object units.
-    pub emitted: DVec3,
-    /// The point of the reference surface, in object units.
-    pub reference_shape: DVec3,
-}
-
-impl WorstPoint {
-    /// The place with its distance on screen, in px; `None` if it isn't in view.
-    fn in_px(self, screen: &Screen) -> Option<Self> {
-        screen.distance_px(self.emitted, self.reference_shape).map(|value| Self { value, ..self })
-    }
 }
 
 /// The results of the comparison with a reference surface.
@@ -145,8 +131,8 @@ impl Accuracy {
     }
 }
 
-/// The number of blocks that threads take one after another, and the most items in one. Sums are made block by block, so that
-/// they don't depend on the number of threads.
+/// The number of blocks that cores take one after another, and the most items in one. Sums are made block by block, so that they
+/// don't depend on the number of cores.
 const BLOCKS: usize = 256;
 const LARGEST_BLOCK: usize = 1024;
 
@@ -190,7 +176,7 @@ impl<'a> AccuracyMeasurement<'a> {
     fn to_emitted(&self) -> Result<Option<(Distances, WorstPoint, u64)>, Cancelled> {
         let Some(tree) = self.emitted.tree() else { return Ok(None) };
         let points = self.reference_shape.samples(self.options.samples);
-        let sums = blocks(points.len(), self.options.threads, |range| {
+        let sums = blocks(points.len(), |range| {
             self.progress.check()?;
             let (mut sums, mut hint) = (MeanSquare::default(), 0);
             for sample in &points[range] {
@@ -215,8 +201,7 @@ impl<'a> AccuracyMeasurement<'a> {
         if let Some(cancelled) = self.cancelled {
             return Err(cancelled);
         }
-        // Where the system starts no more threads, those that there are do the work.
-        on_threads(self.options.threads, || self.results()).unwrap_or_else(|_| self.results())
+        self.options.on_threads(|| self.results())
     }
 
     fn results(&self) -> Result<Option<Accuracy>, Cancelled> {
@@ -264,39 +249,14 @@ impl Visitor for AccuracyMeasurement<'_> {
         self.sums.not_finite += vertices.iter().filter(|vertex| !is_finite(vertex)).count() as u64;
         let whole = |triangle: &&[u32; 3]| triangle.iter().all(|index| is_finite(&vertices[*index as usize]));
         let triangles: Vec<[u32; 3]> = triangles.iter().filter(whole).copied().collect();
-        self.cancelled = self.take_chunk(vertices, &triangles).err();
+        let options = self.options;
+        self.cancelled = options.on_threads(|| self.take_chunk(vertices, &triangles)).err();
     }
 }
 
-/// The point with the larger value, or `a` if both are equal.
-pub(super) fn worse(a: WorstPoint, b: WorstPoint) -> WorstPoint {
-    if b.value > a.value { b } else { a }
-}
-
 /// Cuts `count` items into blocks, runs `work` on each, and returns the results in order.
-pub(super) fn blocks<T: Send>(count: usize, threads: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
-    let block_size = (count / BLOCKS).clamp(1, LARGEST_BLOCK);
-    let next = AtomicUsize::new(0);
-    let run = || {
-        let mut done = Vec::new();
-        loop {
-            let block = next.fetch_add(1, Ordering::Relaxed);
-            let start = block * block_size;
-            if start >= count {
-                return done;
-            }
-            done.push((block, work(start..count.min(start + block_size))));
-        }
-    };
-    let mut done: Vec<(usize, T)> = thread::scope(|scope| {
-        let threads: Vec<_> = (0..threads.max(1)).map(|_| scope.spawn(run)).collect();
-        let join = |thread: thread::ScopedJoinHandle<_>| {
-            thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
-        };
-        threads.into_iter().flat_map(join).collect()
-    });
-    done.sort_unstable_by_key(|(block, _)| *block);
-    done.into_iter().map(|(_, made)| made).collect()
+pub(super) fn blocks<T: Send>(count: usize, work: impl Fn(Range<usize>) -> T + Sync) -> Vec<T> {
+    in_blocks(count, (count / BLOCKS).clamp(1, LARGEST_BLOCK), work)
 }
 
 #[cfg(test)]

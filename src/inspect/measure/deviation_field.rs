@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::thread;
 
 use glam::DVec3;
 
-use super::accuracy::{Comparison, Emitted, Largest, Narrow, WorstPoint, blocks, worse};
+use super::accuracy::{Comparison, Emitted, Largest, Narrow, blocks};
+use super::screen_error::{WorstPoint, worse};
 use super::visitor::{EmittedChunk, Visitor};
 use crate::reference_shape::ReferenceShape;
 use geometry::mesh::{Mesh, Topology};
@@ -109,11 +109,10 @@ impl<'a> DeviationMeasurement<'a> {
         let taken = chunk.triangles.len().min(self.room as usize);
         self.room -= taken as u64;
         self.field.left_out += (chunk.triangles.len() - taken) as u64;
-        let threads = thread::available_parallelism().map_or(1, |cores| cores.get());
         let (steps, total) = (self.field.steps, self.triangles.clamp(1, MOST_TRIANGLES));
         let finished = AtomicU64::new(MOST_TRIANGLES - self.room - taken as u64);
         let (this, progress) = (&*self, self.progress);
-        let done = blocks(taken, threads, |range| {
+        let done = blocks(taken, |range| {
             let (mut sums, count) = (Sums::default(), range.len() as u64);
             for triangle in &chunk.triangles[range] {
                 progress.check()?;

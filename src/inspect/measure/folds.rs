@@ -95,7 +95,7 @@ fn of_whole_patches(topology: &Topology, ulp: f64, vertices: &[Vertex], triangle
     for triangle in triangles {
         let own = vertices[triangle[0] as usize].patch();
         if own != patch {
-            (patch, patch_facing) = (own, facing(corners(topology, own)));
+            (patch, patch_facing) = (own, facing(topology.patch_positions(own).map(|corner| corner.as_dvec3())));
         }
         let domain = triangle.map(|index| vertices[index as usize].domain());
         let places = triangle.map(at);
@@ -109,11 +109,6 @@ fn of_whole_patches(topology: &Topology, ulp: f64, vertices: &[Vertex], triangle
         }
     }
     found
-}
-
-fn corners(topology: &Topology, patch: u32) -> [DVec3; 3] {
-    let corners = topology.patch_corners(patch);
-    corners.map(|corner| topology.points[topology.corner_points[corner as usize] as usize].as_dvec3())
 }
 
 #[cfg(test)]
@@ -173,7 +168,7 @@ mod tests {
         let mesh = Shape::Icosahedron.build();
         let topology = Topology::build(&mesh, &Progress::new()).expect("nobody cancels");
         let corner = |patch: u32, at: usize, domain: [u32; 2]| Vertex {
-            position: corners(&topology, patch)[at].as_vec3().to_array(),
+            position: topology.patch_positions(patch)[at].to_array(),
             key: pack_key(patch, domain),
             ..bytemuck::Zeroable::zeroed()
         };
@@ -186,7 +181,7 @@ mod tests {
         let folded = found(&topology, &vertices, &[[0, 1, 2], [6, 7, 8], [3, 4, 5], [6, 7, 8]]);
         let [folded] = folded[..] else { panic!("one patch is folded: {folded:?}") };
         assert_eq!((folded.patch, folded.folds), (1, 2));
-        let [a, b, c] = corners(&topology, 1);
+        let [a, b, c] = topology.patch_positions(1).map(|corner| corner.as_dvec3());
         assert!((folded.area - (b - a).cross(c - a).length()).abs() < 1e-6, "twice the patch: {}", folded.area);
         assert!(folded.place().distance(((a + b + c) / 3.0).as_vec3()) < 1e-6, "{:?}", folded.largest);
         let front = facing(folded.largest.map(Vec3::as_dvec3));

@@ -1,6 +1,7 @@
 //! The error on screen: the distance in px between what was emitted and its limit surface.
 
 use glam::{DMat4, DVec2, DVec3, DVec4};
+use serde::{Serialize, Serializer};
 
 use super::visitor::{EmittedChunk, Visitor};
 use geometry::cores::in_ranges;
@@ -17,7 +18,7 @@ pub struct ScreenErrorMeasurement<'a> {
     screen: Screen,
     /// The number of segments that each edge of a triangle is divided into for sampling.
     steps: u32,
-    worst: Option<ScreenError>,
+    worst: Option<WorstPoint>,
     /// Patches with a larger distance than this, in px, are counted. Those of parts with a detail have a part of it.
     tolerance_px: f64,
     above: u64,
@@ -31,14 +32,31 @@ pub(super) struct Screen {
     half_viewport: DVec2,
 }
 
-/// The place with the largest distance on screen.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScreenError {
-    pub px: f64,
+/// The place where a distance or angle is largest. As JSON it has the place alone, which stands beside intervals of the value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WorstPoint {
+    /// The largest value that was found, in object units, px or degrees.
+    #[serde(skip)]
+    pub value: f64,
+    /// The patch that emitted the point.
     pub patch: u32,
-    /// The emitted point and that of the limit surface, in object units.
+    /// The emitted point, in object units.
+    #[serde(serialize_with = "coordinates")]
     pub emitted: DVec3,
-    pub limit: DVec3,
+    /// The point of the reference surface, or of the limit surface, in object units.
+    #[serde(rename = "reference_surface", serialize_with = "coordinates")]
+    pub reference_shape: DVec3,
+}
+
+fn coordinates<S: Serializer>(place: &DVec3, serializer: S) -> Result<S::Ok, S::Error> {
+    place.to_array().serialize(serializer)
+}
+
+impl WorstPoint {
+    /// The place with its distance on screen, in px; `None` if it isn't in view.
+    pub(super) fn in_px(self, screen: &Screen) -> Option<Self> {
+        screen.distance_px(self.emitted, self.reference_shape).map(|value| Self { value, ..self })
+    }
 }
 
 /// The patches that are farther from their surface than a tolerance.
@@ -47,7 +65,7 @@ pub struct PatchesAbove {
     pub tolerance_px: f32,
     pub patches: u64,
     /// The worst place of all patches; none if nothing was in view.
-    pub worst: Option<ScreenError>,
+    pub worst: Option<WorstPoint>,
 }
 
 /// Up to this many triangles, edges are divided into 8 segments for sampling; up to ten times as many, into 4; else into 2.
@@ -79,7 +97,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
     }
 
     /// The worst place so far; `None` if nothing was in view.
-    pub fn worst(&self) -> Option<ScreenError> {
+    pub fn worst(&self) -> Option<WorstPoint> {
         self.worst
     }
 
@@ -89,7 +107,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
     }
 
     /// The worst place on some triangles, and the patches of these that are above the tolerance, in order.
-    fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> (Option<ScreenError>, Vec<u32>) {
+    fn worst_of(&self, vertices: &[Vertex], triangles: &[[u32; 3]]) -> (Option<WorstPoint>, Vec<u32>) {
         let mut known: Option<(u32, ControlNet, bool)> = None;
         let mut above = Vec::new();
         let worst = triangles.iter().filter_map(|triangle| {
@@ -101,7 +119,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
             let worst = self.worst_on(corners, &net, slides);
             known = Some((patch, net, slides));
             let detail = || f64::from(self.limit.detail(patch));
-            if worst.is_some_and(|worst| worst.px * detail() > self.tolerance_px) && above.last() != Some(&patch) {
+            if worst.is_some_and(|worst| worst.value * detail() > self.tolerance_px) && above.last() != Some(&patch) {
                 above.push(patch);
             }
             worst
@@ -109,11 +127,11 @@ impl<'a> ScreenErrorMeasurement<'a> {
         (worst.reduce(worse), above)
     }
 
-    fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet, slides: bool) -> Option<ScreenError> {
+    fn worst_on(&self, corners: [&Vertex; 3], net: &ControlNet, slides: bool) -> Option<WorstPoint> {
         let (patch, steps) = (corners[0].patch(), self.steps);
         let domains = corners.map(|vertex| vertex.exact_domain());
         let positions = corners.map(|vertex| DVec3::from(vertex.position.map(f64::from)));
-        let mut worst: Option<ScreenError> = None;
+        let mut worst: Option<WorstPoint> = None;
         for i in 0..=steps {
             for j in 0..=steps - i {
                 if [i, j, steps - i - j].contains(&steps) {
@@ -122,12 +140,12 @@ impl<'a> ScreenErrorMeasurement<'a> {
                 let weights = [i, j, steps - i - j].map(|x| f64::from(x) / f64::from(steps));
                 let [u, v] = [0, 1].map(|k| (0..3).map(|c| weights[c] * domains[c][k]).sum());
                 let emitted = (0..3).map(|c| positions[c] * weights[c]).sum();
-                let limit = match slides {
+                let reference_shape = match slides {
                     true => self.limit.nearest(net, [u, v], emitted, |p| self.screen.place(p)),
                     false => self.limit.position(patch, net, u, v),
                 };
-                let px = self.screen.distance_px(emitted, limit);
-                worst = worst.into_iter().chain(px.map(|px| ScreenError { px, patch, emitted, limit })).reduce(worse);
+                let place = WorstPoint { value: 0.0, patch, emitted, reference_shape }.in_px(&self.screen);
+                worst = worst.into_iter().chain(place).reduce(worse);
             }
         }
         worst
@@ -180,8 +198,9 @@ fn in_view(clip: DVec4) -> bool {
     clip.x.abs() <= clip.w && clip.y.abs() <= clip.w && clip.z <= clip.w
 }
 
-fn worse(a: ScreenError, b: ScreenError) -> ScreenError {
-    if b.px > a.px { b } else { a }
+/// The point with the larger value, or `a` if both are equal.
+pub(super) fn worse(a: WorstPoint, b: WorstPoint) -> WorstPoint {
+    if b.value > a.value { b } else { a }
 }
 
 #[cfg(test)]
@@ -213,7 +232,7 @@ mod tests {
                 // The corner itself is 10 px off, and isn't sampled.
                 let expected = 10.0 * f64::from(steps - 1) / f64::from(steps);
                 let worst = measurement.worst().expect("it is in view");
-                assert!((worst.px - expected).abs() < 1e-4, "{triangles}, corner {shifted}: {worst:?}");
+                assert!((worst.value - expected).abs() < 1e-4, "{triangles}, corner {shifted}: {worst:?}");
             }
         }
     }

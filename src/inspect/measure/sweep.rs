@@ -6,7 +6,6 @@
 //! All patches have the same factor and so the same triangles in the domain. A place's triangle is found once per factor.
 
 use std::ops::RangeInclusive;
-use std::thread;
 
 use glam::{DVec3, Vec3};
 
@@ -68,9 +67,8 @@ pub fn sweep(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: RangeIn
     };
     let places = Places::new(places());
     let states = States { mesh, topology, inputs, places: &places };
-    // Blocks keep all threads busy, since high factors take far longer than low ones.
-    let threads = thread::available_parallelism().map_or(1, usize::from);
-    let steps = blocks(steps.len(), threads, |range| {
+    // Blocks keep all cores busy, since high factors take far longer than low ones.
+    let steps = blocks(steps.len(), |range| {
         let mut block = steps[range].to_vec();
         states.measure(&mut block, step);
         block

@@ -2,12 +2,10 @@
 
 use glam::Mat4;
 
-use super::render_pipeline::PipelineParts;
+use super::render_pipeline::{PipelineParts, blended};
 use super::target::color_attachment;
-use gpu::{
-    ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, VERTEX_HALF, flat_texture, uniform_buffer,
-    whole,
-};
+use gpu::embed::VERTEX_LAYOUTS;
+use gpu::{ChunkBuffers, Gpu, GpuError, Lazy, Readback, Recorder, ShaderModule, flat_texture, uniform_buffer, whole};
 
 /// What such draws add, and to what textures.
 pub(super) struct Adding {
@@ -37,7 +35,12 @@ impl Adding {
     /// Out of memory, or a lost device.
     pub(super) fn start(&self, gpu: &Gpu, size: [u32; 2], clip_from_object: Mat4) -> Result<Added, GpuError> {
         let module = self.module.get(gpu)?;
-        let pipeline = self.pipeline.get_or_make(gpu, || self.pipeline(gpu, module))?;
+        let pipeline = self.pipeline.get_or_make(gpu, || {
+            let blend = Some(blended(self.factor, wgpu::BlendFactor::One, wgpu::BlendFactor::One));
+            let target = wgpu::ColorTargetState { format: self.format, blend, write_mask: self.channels };
+            let parts = PipelineParts::new(module, ["adding_vertex", self.fragment], Some(target));
+            PipelineParts { vertex_buffers: VERTEX_LAYOUTS[..1].to_vec(), ..parts }.pipeline(gpu)
+        })?;
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
         let texture = gpu.device.create_texture(&flat_texture(self.fragment, size, self.format, usage));
         let matrix = clip_from_object.to_cols_array_2d();
@@ -46,31 +49,10 @@ impl Adding {
         let group = self.module.bind(gpu, "adding_vertex", &layout, |_| Some(uniform.as_entire_binding()));
         Ok(Added { texture, pipeline: pipeline.clone(), group, is_cleared: false })
     }
-
-    /// The vertex shader gets positions in object units at location 0.
-    fn pipeline(&self, gpu: &Gpu, module: &wgpu::ShaderModule) -> wgpu::RenderPipeline {
-        let add = wgpu::BlendComponent {
-            src_factor: self.factor,
-            dst_factor: wgpu::BlendFactor::One,
-            operation: wgpu::BlendOperation::Add,
-        };
-        let vertex = wgpu::VertexBufferLayout {
-            array_stride: VERTEX_HALF,
-            step_mode: wgpu::VertexStepMode::Vertex,
-            attributes: &wgpu::vertex_attr_array![0 => Float32x3],
-        };
-        let target = wgpu::ColorTargetState {
-            format: self.format,
-            blend: Some(wgpu::BlendState { color: add, alpha: add }),
-            write_mask: self.channels,
-        };
-        let parts = PipelineParts::new(module, ["adding_vertex", self.fragment], Some(target));
-        PipelineParts { vertex_buffers: vec![Some(vertex)], ..parts }.pipeline(gpu)
-    }
 }
 
 /// What was added so far.
-pub(super) struct Added {
+pub(crate) struct Added {
     texture: wgpu::Texture,
     pipeline: wgpu::RenderPipeline,
     group: wgpu::BindGroup,
@@ -79,7 +61,7 @@ pub(super) struct Added {
 
 impl Added {
     /// Records drawing a chunk that was emitted; without one nothing is added. `constant` is that of the blend factor.
-    pub(super) fn draw(&mut self, recorder: &mut Recorder, constant: wgpu::Color, chunk: Option<&ChunkBuffers>) {
+    pub(crate) fn draw(&mut self, recorder: &mut Recorder, constant: wgpu::Color, chunk: Option<&ChunkBuffers>) {
         let view = whole(&self.texture);
         let color = color_attachment(&view, (!self.is_cleared).then_some(wgpu::Color::TRANSPARENT));
         self.is_cleared = true;
@@ -96,7 +78,7 @@ impl Added {
     }
 
     /// Records a copy of all samples, row by row.
-    pub(super) fn read(&self, gpu: &Gpu, recorder: &mut Recorder) -> Readback {
+    pub(crate) fn read(&self, gpu: &Gpu, recorder: &mut Recorder) -> Readback {
         Readback::from_texture(gpu, recorder.encoder(), &self.texture)
     }
 }

@@ -29,7 +29,7 @@ const FRUSTUM_REACH: f32 = 1.2;
 const BULGE: f32 = 2.0;
 
 with_defaults! {
-    /// A camera that looks at `target` from `distance` away; by default in front of the origin, 1 object unit away.
+    /// A camera that looks at `target` from `distance` away: by default in front of the origin.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Camera {
         pub target: Vec3 = Vec3::ZERO,

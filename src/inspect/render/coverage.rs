@@ -28,22 +28,10 @@ pub(super) struct Sieve {
 }
 
 /// The pipelines of these passes, each made when it is first needed.
-pub(super) struct CoveragePipelines {
-    marks: ComputePipeline,
-    starts: ComputePipeline,
-    keep: ComputePipeline,
-}
-
-impl CoveragePipelines {
-    /// Compiles nothing yet.
-    pub(super) fn new() -> Self {
-        let module = Arc::new(ShaderModule::new("pass_coverage"));
-        Self {
-            marks: ComputePipeline::new(&module, "coverage_marks_main"),
-            starts: ComputePipeline::new(&module, "coverage_starts_main"),
-            keep: ComputePipeline::new(&module, "coverage_keep_main"),
-        }
-    }
+pub(super) fn coverage_pipelines() -> [ComputePipeline; 3] {
+    let module = Arc::new(ShaderModule::new("pass_coverage"));
+    let entry_points = ["coverage_marks_main", "coverage_starts_main", "coverage_keep_main"];
+    entry_points.map(|entry_point| ComputePipeline::new(&module, entry_point))
 }
 
 /// Buffers for the triangles that are kept of a chunk.
@@ -92,7 +80,7 @@ impl Coverage {
     pub(super) fn keep(
         &self,
         recorder: &mut Recorder,
-        pipelines: &CoveragePipelines,
+        pipelines: &[ComputePipeline; 3],
         gpu: &Gpu,
         chunk: &ChunkBuffers,
         view: CoverageView,
@@ -120,8 +108,8 @@ impl Coverage {
             };
             Some(buffer.as_entire_binding())
         };
-        let [marks, starts, keep] = [&pipelines.marks, &pipelines.starts, &pipelines.keep];
-        let (marks, starts, keep) = (marks.bind(gpu, buffer)?, starts.bind(gpu, buffer)?, keep.bind(gpu, buffer)?);
+        let [marks, starts, keep] = pipelines.each_ref().map(|pipeline| pipeline.bind(gpu, buffer));
+        let (marks, starts, keep) = (marks?, starts?, keep?);
         let tiles = grid(chunk.chunk.triangle_count.div_ceil(TILE) * WORKGROUP);
         recorder.compute("coverage", |pass| {
             marks.dispatch(pass, tiles);

@@ -1,7 +1,7 @@
 //! The picture of the difference between both halves of a split view.
 
 use super::group_layouts::{FRAGMENT, IMAGE, group_layout};
-use super::render_pipeline::PipelineParts;
+use super::render_pipeline::{PipelineParts, blended};
 use super::target::{SHOWN_FORMAT, Target, color_attachment};
 use gpu::{Gpu, GpuError, Lazy, Recorder, ShaderModule, bind_group, whole};
 
@@ -26,8 +26,7 @@ impl DifferenceDrawer {
         let module = self.module.get(gpu)?;
         let pipeline = self.pipeline.get_or_make(gpu, || {
             let (under, over) = (wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One);
-            let blend = wgpu::BlendComponent { src_factor: under, dst_factor: over, ..Default::default() };
-            let blend = Some(wgpu::BlendState { color: blend, alpha: blend });
+            let blend = Some(blended(under, over, over));
             let shown = wgpu::ColorTargetState { blend, ..SHOWN_FORMAT.into() };
             let parts = PipelineParts::new(module, ["difference_vertex", "difference_fragment"], Some(shown));
             PipelineParts { layouts: Some(vec![Some(&self.layout)]), ..parts }.pipeline(gpu)

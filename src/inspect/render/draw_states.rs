@@ -2,13 +2,23 @@
 
 use super::draws::{Draw, Faces, LayerDraw, Occluded, Shading, SurfaceDraw, Triangles};
 use super::needs::{Cut, Needs};
-use super::render_pipeline::depth_state;
+use super::render_pipeline::{blended, depth_state};
 use super::scene::LineSegment;
 use super::target::COLOR_FORMAT;
 use crate::settings::NormalsAt;
 use gpu::embed::VERTEX_LAYOUTS;
 
 impl SurfaceDraw {
+    fn module(self, samples: u32) -> &'static str {
+        match (self.layer, self.triangles, self.shading) {
+            (Some(_), ..) if samples > 1 => "layers_multisampled",
+            (Some(_), ..) => "layers_single",
+            (None, Triangles::Bare, Shading::Lit(_)) => "draw_lit",
+            (None, Triangles::Bare, _) => "draw_plain",
+            (None, Triangles::Indexed | Triangles::Pulled, _) => "draw_surface",
+        }
+    }
+
     fn vertex_entry(self) -> &'static str {
         match (self.triangles, self.shading) {
             (Triangles::Bare, Shading::Plain) => "plain_vertex",
@@ -53,26 +63,15 @@ impl SurfaceDraw {
 }
 
 impl Draw {
-    /// The name of the vertex shader.
-    pub(super) fn vertex_entry(self) -> &'static str {
+    /// The module of the shaders, in a picture with so many samples, and the names of the vertex and the fragment shader.
+    pub(super) fn shaders(self, samples: u32) -> (&'static str, [&'static str; 2]) {
         match self {
-            Self::Surface(surface) => surface.vertex_entry(),
-            Self::LayerClear { .. } => "clear_vertex",
-            Self::Background => "background_vertex",
-            Self::Ground => "ground_vertex",
-            Self::Lines(_) => "line_vertex",
-            Self::Normals(_) => "normal_vertex",
-        }
-    }
-
-    /// The name of the fragment shader.
-    pub(super) fn fragment_entry(self) -> &'static str {
-        match self {
-            Self::Surface(surface) => surface.fragment_entry(),
-            Self::LayerClear { .. } => "clear_fragment",
-            Self::Background => "background_fragment",
-            Self::Ground => "ground_fragment",
-            Self::Lines(_) | Self::Normals(_) => "line_fragment",
+            Self::Surface(own) => (own.module(samples), [own.vertex_entry(), own.fragment_entry()]),
+            Self::LayerClear { .. } => ("draw_clear", ["clear_vertex", "clear_fragment"]),
+            Self::Background => ("draw_background", ["background_vertex", "background_fragment"]),
+            Self::Ground => ("draw_ground", ["ground_vertex", "ground_fragment"]),
+            Self::Lines(_) => ("draw_lines", ["line_vertex", "line_fragment"]),
+            Self::Normals(_) => ("draw_lines", ["normal_vertex", "line_fragment"]),
         }
     }
 
@@ -131,11 +130,11 @@ impl Draw {
                 (Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING), wgpu::ColorWrites::ALL)
             }
             (_, Some(LayerDraw::Filter)) => {
-                let filter = both(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src, wgpu::BlendFactor::SrcAlpha);
+                let filter = blended(wgpu::BlendFactor::Zero, wgpu::BlendFactor::Src, wgpu::BlendFactor::SrcAlpha);
                 (Some(filter), wgpu::ColorWrites::ALL)
             }
             (_, Some(LayerDraw::Add)) => {
-                let add = both(wgpu::BlendFactor::One, wgpu::BlendFactor::One, wgpu::BlendFactor::One);
+                let add = blended(wgpu::BlendFactor::One, wgpu::BlendFactor::One, wgpu::BlendFactor::One);
                 (Some(add), wgpu::ColorWrites::ALL)
             }
             (Self::Ground | Self::Lines(_) | Self::Normals(_), _) => {
@@ -160,13 +159,6 @@ impl Draw {
             _ => Vec::new(),
         }
     }
-}
-
-/// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha that are there.
-fn both(drawn: wgpu::BlendFactor, color: wgpu::BlendFactor, alpha: wgpu::BlendFactor) -> wgpu::BlendState {
-    let component =
-        |there| wgpu::BlendComponent { src_factor: drawn, dst_factor: there, operation: wgpu::BlendOperation::Add };
-    wgpu::BlendState { color: component(color), alpha: component(alpha) }
 }
 
 /// The attributes of a [`LineSegment`]: start, end, colour, half its width, and how many lie over each other.

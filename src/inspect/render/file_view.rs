@@ -31,10 +31,8 @@ impl Camera {
             azimuth: azimuth.to_degrees() as f32,
             elevation: elevation.to_degrees() as f32,
             distance: depth,
-            orthographic: false,
-            field_of_view: FIELD_OF_VIEW,
             roll: roll.to_degrees() as f32,
-            rows: None,
+            ..Self::default()
         };
         match file.projection {
             Projection::Perspective(angle) => {

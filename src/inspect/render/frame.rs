@@ -28,6 +28,7 @@ pub(super) fn frame(
     let in_px = settings.deviation_in == SurfaceUnit::Px;
     let section = if settings.section.is_some() { SECTION_BIT } else { 0 };
     let compared = if settings.shows_difference() { COMPARED_BIT } else { 0 };
+    let ground = Ground::under(&scene.bounds);
     let frame = Frame {
         clip_from_object: clip_from_object(camera, viewport, &scene.bounds, settings).to_cols_array_2d(),
         key_light: (up * 0.7 + back - right * 0.5).normalize().extend(0.0).to_array(),
@@ -40,7 +41,7 @@ pub(super) fn frame(
         scale_least: scale.least,
         scale_most: scale.most,
         px_per_unit: if in_px { camera.px_where_w_is_1(viewport.y) } else { 0.0 },
-        ground: Ground::under(&scene.bounds).packed(),
+        ground: ground.middle.extend(ground.spacing).to_array(),
         scale: scale.colors.map(|[r, g, b]| [r, g, b, 0].map(|byte| f32::from(byte) / 255.0)),
         left: place.area[0] as f32,
         coarseness: target.coarseness as f32,

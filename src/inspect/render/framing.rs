@@ -79,12 +79,6 @@ impl Camera {
         (right * place.x + up * place.y + back * place.z).as_vec3()
     }
 
-    /// Puts an edge in the middle, two thirds of the view's height long, seen from the direction `facing`. If that is zero, the
-    /// direction stays. `bounds` are the mesh's.
-    pub fn frame_edge(&mut self, [a, b]: [Vec3; 2], facing: Vec3, bounds: &Bounds) {
-        self.frame_at(a * 0.5 + b * 0.5, a.distance(b), facing, bounds);
-    }
-
     /// Puts a place in the middle, with what is `length` long there two thirds of the view's height long, seen from the direction
     /// `facing`. If that is zero, the direction stays. `bounds` are the mesh's.
     pub fn frame_at(&mut self, target: Vec3, length: f32, facing: Vec3, bounds: &Bounds) {
@@ -209,7 +203,7 @@ mod tests {
         let viewport = vec2(800.0, 600.0);
         let mut camera = Camera::framing(&unit_bounds(), viewport);
         let (ends, facing) = ([vec3(0.5, 1.0, 0.0), vec3(0.7, 1.0, 0.1)], vec3(0.3, 0.8, -0.6).normalize());
-        camera.frame_edge(ends, facing, &unit_bounds());
+        camera.frame_at(0.5 * (ends[0] + ends[1]), ends[0].distance(ends[1]), facing, &unit_bounds());
         assert!(camera.axes()[2].distance(facing) < 1e-5);
         let clip = camera.clip_from_object(viewport, &unit_bounds());
         let [a, b] = ends.map(|p| project(clip, viewport, p).expect("in front of the eye"));

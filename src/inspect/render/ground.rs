@@ -32,11 +32,6 @@ impl Ground {
     pub(super) fn is_seen_from_above(&self, camera: &Camera) -> bool {
         if camera.orthographic { camera.axes()[2].y > 0.0 } else { camera.eye().y > self.middle.y }
     }
-
-    /// As `Frame` in `shaders/draw_types.wgsl` has it.
-    pub(super) fn packed(&self) -> [f32; 4] {
-        self.middle.extend(self.spacing).to_array()
-    }
 }
 
 /// The axes x, y and z as lines from the origin.

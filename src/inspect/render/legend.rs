@@ -112,8 +112,8 @@ pub fn legend_side(scene: &Scene, camera: &Camera, settings: &Settings, [size, r
         let of_half = halves.filter_map(|(half, place)| {
             let (own, settings) = scene.half(half).zip(settings.half(half))?;
             let clip = clip_from_object(camera, viewport, &own.bounds, &settings);
-            let [_, _, width, height] =
-                intersection(legend, place.part(covered_area(&own.drawn_bounds(&settings), clip, size)).area);
+            let bounds = own.bounds.grown(settings.reach(own.tessellator.mesh()));
+            let [_, _, width, height] = intersection(legend, place.part(covered_area(&bounds, clip, size)).area);
             Some(width * height)
         });
         of_half.sum()

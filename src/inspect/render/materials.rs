@@ -1,16 +1,19 @@
 //! Materials on the device: their constants, images and samplers.
 
+use std::collections::HashMap;
+use std::sync::Mutex;
+
 use super::environment::Environment;
 use super::group_layouts::{Binding, FRAGMENT, IMAGE, SAMPLER, UNIFORM, depths, group_layout};
 use super::layout::{self, LEAST_SEEN, MapPlace};
 use super::mipmap_pass::Mipmaps;
 use super::needs::BEHIND;
 use super::punctual::upload_lights;
-use super::textures::{ImageUse, Samplers, Textures, white};
+use super::textures::{ImageUse, Textures, sampler, white};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look, Map, MapUv, Material, Sampling, Slot, Wrap};
 use gpu::shader_constants::image_binding;
-use gpu::{Gpu, GpuError, bind_group, uniform_buffer};
+use gpu::{Gpu, GpuError, bind_group, made_once, uniform_buffer};
 
 /// Where the bindings of the light from all around begin in the group of a lit material; the same in `shaders/environment.wgsl`.
 const LIGHT_BINDING: u32 = 16;
@@ -37,7 +40,8 @@ pub struct Materials {
     white: wgpu::TextureView,
     /// For a mesh without lights.
     no_lights: wgpu::Buffer,
-    samplers: Samplers,
+    /// One for each way in which images are sampled.
+    samplers: Mutex<HashMap<Sampling, wgpu::Sampler>>,
     pub(super) mipmaps: Mipmaps,
 }
 
@@ -69,7 +73,7 @@ impl Materials {
             found_layout: group_layout(gpu, "found material", &found),
             white: white(gpu),
             no_lights: upload_lights(gpu, &[]),
-            samplers: Samplers::default(),
+            samplers: Mutex::default(),
             mipmaps: Mipmaps::new(),
         }
     }
@@ -90,7 +94,7 @@ impl Materials {
         textures: &mut Textures,
     ) -> Result<UploadedMaterial, GpuError> {
         let constants = uniform_buffer(gpu, "material", bytemuck::bytes_of(&constants(material)));
-        let sampler = |sampling| self.samplers.get(gpu, sampling);
+        let sampler = |sampling| made_once(&self.samplers, sampling, || sampler(gpu, sampling));
         let mut images = std::array::from_fn(|_| (self.white.clone(), sampler(Sampling::default())));
         images[1 + BEHIND].1 = sampler(Sampling { wrap: [Wrap::Clamp; 2], ..Sampling::default() });
         if let Some(texture) = &material.texture {

@@ -55,6 +55,7 @@ mod usual;
 pub mod view_projection;
 mod window;
 
+pub(crate) use adding::Added;
 pub use camera::{Camera, Standpoint};
 pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use ground::{Ground, axis_lines};
@@ -71,7 +72,7 @@ pub use pick::{Picked, PickedTriangle, Picker, Picking, Pixel};
 pub use renderer::{DraftPipelines, Renderer};
 pub use scale::{DENSITY_SCALE, EXCESS_SCALE, FACTOR_SCALE, Scale};
 pub use scene::{LeftPose, LineSegment, Scene};
-pub(crate) use silhouette::{SilhouetteCoverage, SilhouetteDrawer, padded_clip};
+pub(crate) use silhouette::{SilhouetteDrawer, channel, padded_clip};
 pub use target::{Target, samples};
 pub use usual::{Usual, texel_density};
 pub use window::WindowPipelines;

@@ -170,7 +170,11 @@ impl<'a> Run<'a> {
         first: bool,
     ) -> Result<(), GpuError> {
         let module = search.module.get(self.gpu)?;
-        let draw = search.draw.get_or_make(self.gpu, || pipeline(self.gpu, module, search.vertex))?;
+        let draw = search.draw.get_or_make(self.gpu, || {
+            let depth = Some(depth_state(true, wgpu::CompareFunction::Greater));
+            let parts = PipelineParts::new(module, [search.vertex, "pick_fragment"], Some(FORMAT.into()));
+            PipelineParts { depth, ..parts }.pipeline(self.gpu)
+        })?;
         let color = color_attachment(&self.drawn, Some(wgpu::Color::TRANSPARENT));
         let depth = depth_attachment(&self.depth, first.then_some(0.0));
         let resource = |name: &str| self.resource(scene, name);
@@ -211,10 +215,4 @@ fn pixel_from_object(pixel: &Pixel) -> Mat4 {
     let narrow =
         DMat4::from_cols(DVec4::X * size.x, DVec4::Y * size.y, DVec4::Z, (-middle * size).extend(0.0).extend(1.0));
     (narrow * pixel.clip_from_object.as_dmat4()).as_mat4()
-}
-
-fn pipeline(gpu: &Gpu, module: &wgpu::ShaderModule, vertex: &str) -> wgpu::RenderPipeline {
-    let depth = Some(depth_state(true, wgpu::CompareFunction::Greater));
-    let parts = PipelineParts::new(module, [vertex, "pick_fragment"], Some(FORMAT.into()));
-    PipelineParts { depth, ..parts }.pipeline(gpu)
 }

@@ -1,7 +1,7 @@
 //! The pipelines that draw a scene, each made when it is first needed, and their bind group layouts.
 
 use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use super::draws::{Draw, Shading, SurfaceDraw, Triangles};
 use super::environment::Backdrop;
@@ -9,17 +9,13 @@ use super::group_layouts::{FRAGMENT, READ, UNIFORM, VERTEX, depths, group_layout
 use super::materials::Materials;
 use super::render_pipeline::PipelineParts;
 use super::target::samples;
-use gpu::{Gpu, GpuError, Lazy, ShaderModules};
+use gpu::{Gpu, GpuError, Lazy, ShaderModules, made_once};
 
-/// The pipeline of each [`Draw`], and the layouts of their bind groups.
+/// The pipeline of each [`Draw`], and the layouts of their bind groups but for those of materials, group 1.
 pub(super) struct DrawPipelines {
     /// Group 0: the frame, points, corners, patches, the arena's vertices and indices, the frame once more as a uniform, curve
     /// nets, the parameters of the passes, and details of corners.
     pub scene_layout: wgpu::BindGroupLayout,
-    /// Group 1: a material's constants, texture and sampler.
-    material_layout: wgpu::BindGroupLayout,
-    /// Group 1 where materials are lit: all of a material, and the light.
-    lit_layout: wgpu::BindGroupLayout,
     /// Group 1 of the background: a panorama, its sampler, and how the light is shown.
     pub background_layout: wgpu::BindGroupLayout,
     /// Group 2: the slab of the chunk that is drawn, and the factors of the slab's patches.
@@ -27,9 +23,6 @@ pub(super) struct DrawPipelines {
     /// Group 3: what was measured of a chunk's triangles, their distances to the reference surface, and of patches, their own
     /// least.
     pub measured_layout: wgpu::BindGroupLayout,
-    /// Group 1 where layers are found: what says where a material shows what is behind it, and the depths of what hides everything
-    /// behind it.
-    found_layout: wgpu::BindGroupLayout,
     /// Group 3 where layers are drawn: the same, and the depths of the layer that was found last.
     pub layer_layout: wgpu::BindGroupLayout,
     modules: ShaderModules,
@@ -38,7 +31,7 @@ pub(super) struct DrawPipelines {
 
 impl DrawPipelines {
     /// Makes the layouts. Compiles nothing yet.
-    pub(super) fn new(gpu: &Gpu, materials: &Materials) -> Self {
+    pub(super) fn new(gpu: &Gpu) -> Self {
         let both = VERTEX | FRAGMENT;
         // Vertex shaders have as many storage buffers as WebGPU allows.
         let scene = [
@@ -49,9 +42,6 @@ impl DrawPipelines {
         let [measured, least] = [(0, FRAGMENT, READ), (1, VERTEX, READ)];
         Self {
             scene_layout: group_layout(gpu, "scene", &scene.concat()),
-            material_layout: materials.layout.clone(),
-            lit_layout: materials.lit_layout.clone(),
-            found_layout: materials.found_layout.clone(),
             background_layout: group_layout(gpu, "background", &Backdrop::BINDINGS),
             chunk_layout: group_layout(gpu, "chunk", &[(0, VERTEX, UNIFORM), (1, VERTEX, READ)]),
             measured_layout: group_layout(gpu, "measured", &[measured, least]),
@@ -65,45 +55,37 @@ impl DrawPipelines {
     ///
     /// # Errors
     /// Out of memory, or a lost device.
-    pub(super) fn get(&self, gpu: &Gpu, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
-        let module = self.modules.get(match draw {
-            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) if samples(gpu) > 1 => "layers_multisampled",
-            Draw::Surface(SurfaceDraw { layer: Some(_), .. }) => "layers_single",
-            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, shading: Shading::Lit(_), .. }) => "draw_lit",
-            Draw::Surface(SurfaceDraw { triangles: Triangles::Bare, .. }) => "draw_plain",
-            Draw::Surface(_) => "draw_surface",
-            Draw::LayerClear { .. } => "draw_clear",
-            Draw::Background => "draw_background",
-            Draw::Ground => "draw_ground",
-            Draw::Lines(_) | Draw::Normals(_) => "draw_lines",
-        });
+    pub(super) fn get(&self, gpu: &Gpu, materials: &Materials, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
+        let (module, entry_points) = draw.shaders(samples(gpu));
+        let module = self.modules.get(module);
         let module = module.get(gpu)?;
         // Nothing is made while the lock is held, so that a picture doesn't wait for pipelines of another.
-        let own = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner).entry(draw).or_default().clone();
+        let own = made_once(&self.pipelines, draw, Arc::default);
         let parts = || PipelineParts {
             constants: draw.constants(),
-            layouts: Some(self.layouts(draw)),
+            layouts: Some(self.layouts(materials, draw)),
             vertex_buffers: draw.vertex_buffers(),
             cull_mode: draw.cull_mode(),
             depth: Some(draw.depth_stencil()),
             samples: samples(gpu),
-            ..PipelineParts::new(module, [draw.vertex_entry(), draw.fragment_entry()], draw.color_target())
+            ..PipelineParts::new(module, entry_points, draw.color_target())
         };
         own.get_or_make(gpu, || parts().pipeline(gpu)).cloned()
     }
 
     /// The layouts of the groups that a pipeline binds.
-    fn layouts(&self, draw: Draw) -> Vec<Option<&wgpu::BindGroupLayout>> {
+    fn layouts<'a>(&'a self, materials: &'a Materials, draw: Draw) -> Vec<Option<&'a wgpu::BindGroupLayout>> {
         let (scene, chunk) = (Some(&self.scene_layout), Some(&self.chunk_layout));
         match draw {
             Draw::Surface(SurfaceDraw { triangles, shading, layer, .. }) => {
                 let material = match (layer, shading) {
-                    (Some(layer), _) if layer.finds() => &self.found_layout,
-                    (_, Shading::Lit(_)) => &self.lit_layout,
-                    _ => &self.material_layout,
+                    (Some(layer), _) if layer.finds() => &materials.found_layout,
+                    (_, Shading::Lit(_)) => &materials.lit_layout,
+                    _ => &materials.layout,
                 };
                 let last = if layer.is_some() { &self.layer_layout } else { &self.measured_layout };
                 let has_overlays = layer.is_some() || triangles != Triangles::Bare;
+                // Overlays read the factors of the patches in a chunk.
                 let chunk = chunk.filter(|_| triangles != Triangles::Bare);
                 let mut layouts = vec![scene, Some(material)];
                 if has_overlays {

@@ -83,3 +83,14 @@ pub(super) fn depth_state(is_written: bool, compare: wgpu::CompareFunction) -> w
         bias: wgpu::DepthBiasState::default(),
     }
 }
+
+/// A sum of what is drawn and what is there, with these factors: of what is drawn, and of the colour and the alpha there.
+pub(super) fn blended(
+    drawn: wgpu::BlendFactor,
+    color: wgpu::BlendFactor,
+    alpha: wgpu::BlendFactor,
+) -> wgpu::BlendState {
+    let component =
+        |there| wgpu::BlendComponent { src_factor: drawn, dst_factor: there, operation: wgpu::BlendOperation::Add };
+    wgpu::BlendState { color: component(color), alpha: component(alpha) }
+}

@@ -11,7 +11,7 @@ mod surfaces;
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::coverage::CoveragePipelines;
+use super::coverage::coverage_pipelines;
 use super::difference::DifferenceDrawer;
 use super::draws::Draw;
 use super::environment::Environment;
@@ -24,7 +24,7 @@ use super::target::samples;
 use super::{Camera, Scene, Target};
 use crate::settings::Settings;
 use geometry::mesh::Texture;
-use gpu::{Gpu, GpuError, Lazy, Recorder, uniform_buffer};
+use gpu::{ComputePipeline, Gpu, GpuError, Lazy, Recorder, uniform_buffer};
 
 pub use preparation::DraftPipelines;
 
@@ -35,9 +35,9 @@ pub struct Renderer {
     studio: Lazy<Arc<Environment>>,
     matcaps: Matcaps,
     pipelines: DrawPipelines,
-    coverage: CoveragePipelines,
+    coverage: [ComputePipeline; 3],
     difference: DifferenceDrawer,
-    /// The buffer that is bound where deviations, or patches' minimum triangle counts, aren't known.
+    /// The buffer without samples that is bound where deviations, or patches' minimum triangle counts, aren't known.
     unknown: wgpu::Buffer,
     samples: u32,
     /// From this many triangles per pixel on, those that cover no sample are removed before the others are drawn.
@@ -58,17 +58,15 @@ const SIFT_FROM_IN_SOFTWARE: f32 = f32::INFINITY;
 impl Renderer {
     /// Makes layouts, a sampler and a white texture. Compiles nothing yet.
     pub fn new(gpu: &Gpu) -> Self {
-        let materials = Materials::new(gpu);
         Self {
             gpu: gpu.clone(),
-            pipelines: DrawPipelines::new(gpu, &materials),
-            materials,
+            materials: Materials::new(gpu),
+            pipelines: DrawPipelines::new(gpu),
             studio: Lazy::default(),
             matcaps: Matcaps::default(),
-            coverage: CoveragePipelines::new(),
+            coverage: coverage_pipelines(),
             difference: DifferenceDrawer::new(gpu),
-            // It has no samples.
-            unknown: uniform_buffer(gpu, "deviation", bytemuck::bytes_of(&0.0_f32)),
+            unknown: uniform_buffer(gpu, "unknown", bytemuck::bytes_of(&0.0_f32)),
             samples: samples(gpu),
             shares_shaders: gpu.is_software(),
             peels_everywhere: false,
@@ -133,7 +131,7 @@ impl Renderer {
     }
 
     fn get(&self, draw: Draw) -> Result<wgpu::RenderPipeline, GpuError> {
-        self.pipelines.get(&self.gpu, draw)
+        self.pipelines.get(&self.gpu, &self.materials, draw)
     }
 
     fn kind(&self, is_draft: bool) -> PictureKind {

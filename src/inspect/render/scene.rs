@@ -15,7 +15,7 @@ use super::materials::{Materials, UploadedMaterial};
 use super::punctual::upload_lights;
 use super::{Scale, Usual};
 use crate::measure::DeviationField;
-use crate::settings::{Settings, SplitSide};
+use crate::settings::SplitSide;
 use geometry::mesh::{Bounds, Mesh, Moment, Topology};
 use geometry::numbers::ulp_at;
 use geometry::tessellate::bounds_through;
@@ -27,15 +27,15 @@ pub struct Scene {
     pub tessellator: Tessellator,
     /// The mesh's bounds at rest, or all through the clip that was framed: see [`Self::frame_clip`].
     pub bounds: Bounds,
-    /// See [`ulp`].
-    pub(super) ulp: f32,
+    /// One unit in the last place of the mesh's largest coordinate, in object units.
+    pub ulp: f32,
     /// At rest.
     usual: Usual,
     pub(super) materials: Vec<UploadedMaterial>,
     /// The lights of the file, if it has some.
     pub(super) lights: Option<wgpu::Buffer>,
-    /// The light of a file, if one is open.
-    pub(super) environment: Option<Arc<Environment>>,
+    /// The light of a file, which pictures with [`Lighting::Environment`](crate::settings::Lighting) have; none for the studio's.
+    pub environment: Option<Arc<Environment>>,
     pub(super) lines: Option<(wgpu::Buffer, u32)>,
     /// Made when a picture first has enough triangles.
     pub(super) coverage: Option<Coverage>,
@@ -229,11 +229,6 @@ impl Scene {
         }
     }
 
-    /// The bounds with room for displacement under these settings. A picture of everything must hold them.
-    pub fn drawn_bounds(&self, settings: &Settings) -> Bounds {
-        self.bounds.grown(settings.reach(self.tessellator.mesh()))
-    }
-
     /// Poses the mesh as at a moment of one of its clips, or at rest. It takes effect with the next tessellation.
     ///
     /// # Errors
@@ -277,16 +272,6 @@ impl Scene {
     /// Numbers that are usual on the mesh, which colour scales are made for.
     pub fn usual(&self) -> Usual {
         Usual { radius: self.bounds.radius(), ..self.usual }
-    }
-
-    /// One unit in the last place of the mesh's largest coordinate, in object units.
-    pub fn ulp(&self) -> f32 {
-        self.ulp
-    }
-
-    /// Sets the light of a file, which pictures with [`Lighting::Environment`](crate::settings::Lighting) have; none for the studio's.
-    pub fn set_environment(&mut self, environment: Option<Arc<Environment>>) {
-        self.environment = environment;
     }
 
     /// Replaces the lines that are drawn over the mesh.

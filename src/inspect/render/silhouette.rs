@@ -4,7 +4,7 @@ use glam::{Mat4, Vec3};
 
 use super::adding::{Added, Adding};
 use crate::measure::{OutlineOf, SampleGrid};
-use gpu::{ChunkBuffers, Gpu, GpuError, Readback, Recorder};
+use gpu::{Gpu, GpuError};
 
 /// Draws what triangles cover.
 pub(crate) struct SilhouetteDrawer(Adding);
@@ -21,23 +21,14 @@ impl SilhouetteDrawer {
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
-    pub(crate) fn start(
-        &self,
-        gpu: &Gpu,
-        grid: SampleGrid,
-        clip_from_object: Mat4,
-    ) -> Result<SilhouetteCoverage, GpuError> {
+    pub(crate) fn start(&self, gpu: &Gpu, grid: SampleGrid, clip_from_object: Mat4) -> Result<Added, GpuError> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         let [width, height] = grid.size();
         if width > limit || height > limit {
-            let [width, height] = grid.picture;
-            return Err(GpuError::PictureTooLarge {
-                width,
-                height,
-                limit: limit.saturating_sub(grid.padded()[0] - width),
-            });
+            let ([width, height], [padded, _]) = (grid.picture, grid.padded());
+            return Err(GpuError::PictureTooLarge { width, height, limit: limit.saturating_sub(padded - width) });
         }
-        self.0.start(gpu, grid.size(), padded_clip(grid, clip_from_object)).map(SilhouetteCoverage)
+        self.0.start(gpu, grid.size(), padded_clip(grid, clip_from_object))
     }
 }
 
@@ -47,20 +38,10 @@ pub(crate) fn padded_clip(grid: SampleGrid, clip_from_object: Mat4) -> Mat4 {
     Mat4::from_scale(Vec3::new(x, y, 1.0)) * clip_from_object
 }
 
-/// What is covered so far.
-pub(crate) struct SilhouetteCoverage(Added);
-
-impl SilhouetteCoverage {
-    /// Records drawing a chunk that was emitted; without one nothing is added.
-    pub(crate) fn draw(&mut self, recorder: &mut Recorder, of: OutlineOf, chunk: Option<&ChunkBuffers>) {
-        let [r, g, b] = OutlineOf::ALL.map(|other| f64::from(u8::from(other == of)));
-        self.0.draw(recorder, wgpu::Color { r, g, b, a: 0.0 }, chunk);
-    }
-
-    /// Records a copy of all samples, as [`crate::measure::Silhouette::find`] takes them.
-    pub(crate) fn read(&self, gpu: &Gpu, recorder: &mut Recorder) -> Readback {
-        self.0.read(gpu, recorder)
-    }
+/// The blend constant that marks what is covered in the channel of one outline.
+pub(crate) fn channel(of: OutlineOf) -> wgpu::Color {
+    let [r, g, b] = OutlineOf::ALL.map(|other| f64::from(u8::from(other == of)));
+    wgpu::Color { r, g, b, a: 0.0 }
 }
 
 #[cfg(test)]

@@ -23,7 +23,8 @@ pub struct Target {
     resolved: wgpu::Texture,
     resolved_srgb: wgpu::TextureView,
     multisampled: Option<wgpu::TextureView>,
-    depth: wgpu::TextureView,
+    /// What passes attach, for shaders that read it.
+    pub(super) depth: wgpu::TextureView,
     /// Made when a picture first has layers: see [`super::layers`].
     layer_depths: Lazy<[wgpu::TextureView; 2]>,
     /// Pictures of both halves, made when a difference is first drawn: see [`super::difference`].
@@ -107,10 +108,7 @@ impl Target {
 
     /// The view for showing the picture. Its values are encoded as sRGB, or are linear light for a texture that encodes them.
     pub(super) fn shown_view(&self, is_linear: bool) -> wgpu::TextureView {
-        if is_linear {
-            return self.resolved_srgb.clone();
-        }
-        whole(&self.resolved)
+        if is_linear { self.resolved_srgb.clone() } else { whole(&self.resolved) }
     }
 
     /// Width and height in px.
@@ -130,11 +128,6 @@ impl Target {
     /// The depth attachment for one of several passes. Depth is reversed, so the first clears it to 0, the far end.
     pub fn depth(&self, first: bool) -> wgpu::RenderPassDepthStencilAttachment<'_> {
         depth_attachment(&self.depth, first.then_some(0.0))
-    }
-
-    /// The depths that [`Self::depth`] attaches, for shaders that read them.
-    pub(super) fn depths(&self) -> &wgpu::TextureView {
-        &self.depth
     }
 
     /// Two more textures of depths, for layers. They are made at the first call.

@@ -1,7 +1,6 @@
 //! Images and samplers on the device.
 
-use std::collections::HashMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 use super::mipmap_pass::{AlphaTest, Mipmaps, level_bytes};
 use geometry::mesh::mipmap::{MipFilter, covered, halved, level_count};
@@ -77,21 +76,6 @@ impl Textures {
     }
 }
 
-/// Samplers, one for each way in which images are sampled.
-#[derive(Default)]
-pub(super) struct Samplers {
-    made: Mutex<HashMap<Sampling, wgpu::Sampler>>,
-}
-
-impl Samplers {
-    /// The sampler for a way of sampling.
-    pub(super) fn get(&self, gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
-        // What is behind the lock is whole even if a thread panicked while it held it.
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        made.entry(sampling).or_insert_with(|| sampler(gpu, sampling)).clone()
-    }
-}
-
 /// The greatest level of a sampler without mip levels. Half a level more would be level 1; with 0, no image would ever count as
 /// smaller than its pixels, and the filter for that wouldn't be used (Vulkan specification, VkSamplerCreateInfo).
 const LEVEL_0_ALONE: f32 = 0.25;
@@ -106,7 +90,7 @@ fn anisotropy(sampling: Sampling, is_software: bool) -> u16 {
     if is_linear && !is_software { ANISOTROPY } else { 1 }
 }
 
-fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
+pub(super) fn sampler(gpu: &Gpu, sampling: Sampling) -> wgpu::Sampler {
     let wrap = sampling.wrap.map(|wrap| match wrap {
         Wrap::Repeat => wgpu::AddressMode::Repeat,
         Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,

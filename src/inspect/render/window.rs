@@ -25,9 +25,13 @@ impl WindowPipelines {
         let module = module.get(gpu)?;
         gpu.attempt(|| {
             let layout = group_layout(gpu, "window", &[(0, FRAGMENT, IMAGE), (1, FRAGMENT, SAMPLER)]);
-            let fill = pipeline(gpu, module, format, ["fill_vertex", "fill_fragment"], &[]);
-            let entry_points = ["picture_vertex", "picture_fragment"];
-            let picture = pipeline(gpu, module, format, entry_points, &[Some(&layout)]);
+            let pipeline = |entry_points, layouts| {
+                let constants = vec![("window_encodes", f64::from(u8::from(format.is_srgb())))];
+                let parts = PipelineParts::new(module, entry_points, Some(format.into()));
+                PipelineParts { constants, layouts: Some(layouts), ..parts }.pipeline(gpu)
+            };
+            let fill = pipeline(["fill_vertex", "fill_fragment"], vec![]);
+            let picture = pipeline(["picture_vertex", "picture_fragment"], vec![Some(&layout)]);
             Self { format, fill, picture, layout }
         })
     }
@@ -45,16 +49,4 @@ impl WindowPipelines {
         let bound = [(0, picture), (1, wgpu::BindingResource::Sampler(&sampler))];
         bind_group(gpu, "window", &self.layout, bound)
     }
-}
-
-fn pipeline(
-    gpu: &Gpu,
-    module: &wgpu::ShaderModule,
-    format: wgpu::TextureFormat,
-    entry_points: [&str; 2],
-    layouts: &[Option<&wgpu::BindGroupLayout>],
-) -> wgpu::RenderPipeline {
-    let constants = vec![("window_encodes", f64::from(u8::from(format.is_srgb())))];
-    let parts = PipelineParts::new(module, entry_points, Some(format.into()));
-    PipelineParts { constants, layouts: Some(layouts.to_vec()), ..parts }.pipeline(gpu)
 }

@@ -1,4 +1,4 @@
-//! How the mesh's own materials are lit, and how bright light becomes a picture.
+//! How the mesh's own materials are lit, how bright light becomes a picture, and lit spheres in place of both.
 
 use super::choices;
 
@@ -52,5 +52,23 @@ choices! {
             "Keeps base colours as they are, and compresses highlights without a change of hue (Khronos PBR Neutral \
              Tone Mapper, 2024).";
         None => "none", "None", "Colours are shown as they are, and what is brighter than white is white.";
+    }
+}
+
+choices! {
+    /// A matcap: a picture of a lit sphere, from which every place of a surface takes the colour that the sphere has at the same
+    /// normal (Sloan et al., The Lit Sphere, 2001).
+    #[derive(Default, Hash)]
+    pub enum Matcap {
+        #[default]
+        RedClay => "red-clay", "Red clay",
+            "Dark red clay with a soft sheen, as in sculpting programs. It shows fine relief.";
+        Chrome => "chrome", "Chrome",
+            "A mirror under a bright sky, with a sharp horizon and lamps. Their reflections show dents and kinks.";
+        Pearl => "pearl", "Pearl",
+            "Pale and smooth, with colours that change towards the outline. It shows soft changes of form.";
+        TwoTone => "two-tone", "Two-tone",
+            "Warm light from the left and cool light from the right, which meet in a soft line. It shows the large \
+             form.";
     }
 }

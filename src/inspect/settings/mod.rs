@@ -5,7 +5,6 @@
 
 mod choice;
 pub mod light;
-mod matcap;
 pub mod options;
 mod overlays;
 mod value;
@@ -19,8 +18,7 @@ use load::Import;
 
 pub(crate) use choice::choices;
 pub use choice::{Choice, Description, descriptions};
-pub use light::{FileLights, Lighting, NormalMaps, ToneCurve};
-pub use matcap::Matcap;
+pub use light::{FileLights, Lighting, Matcap, NormalMaps, ToneCurve};
 pub use overlays::{ColorSource, Colors, Control, Overlay, Overlays};
 pub use value::{Access, Declaration, Kind, Range, Value};
 

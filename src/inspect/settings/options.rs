@@ -39,7 +39,7 @@ macro_rules! field {
 }
 
 /// Declares options in a list, each with where settings have its value and what values it takes. Most always have a value, are saved
-/// under their own name, and always have an effect, which isn't said.
+/// under their own name, and always have an effect, which isn't said. Switches have no placeholder.
 macro_rules! options {
     (@or [] $usual:expr) => { $usual };
     (@or [$given:expr] $usual:expr) => { $given };
@@ -48,7 +48,7 @@ macro_rules! options {
         $option:ident: $access:expr, $kind:expr => {
             name: $name:literal,
             label: $label:literal,
-            placeholder: $placeholder:literal,
+            $(placeholder: $placeholder:literal,)?
             text: $text:literal,
             $(unset: $unset:expr,)?
             $(saved_as: $saved_as:expr,)?
@@ -63,7 +63,7 @@ macro_rules! options {
             pub static $option: Declaration = Declaration {
                 name: $name,
                 label: $label,
-                placeholder: $placeholder,
+                placeholder: options!(@or [$($placeholder)?] ""),
                 text: $text,
                 kind: $kind,
                 unset: options!(@or [$(Some($unset))?] None),
@@ -256,7 +256,6 @@ options! {
     CULL_BACK_FACES: field!(tessellation.cull_back_faces), Kind::Switch => {
         name: "cull-back-faces",
         label: "Cull back faces",
-        placeholder: "",
         text: "Leaves out patches that show only their backs, if the mesh is closed, wound outward and single-sided.",
     }
 
@@ -353,7 +352,6 @@ options! {
     ENVIRONMENT_BACKGROUND: field!(environment_background), Kind::Switch => {
         name: "environment-background",
         label: "Show environment",
-        placeholder: "",
         text: "Shows the light from all around behind the mesh, in place of the background's colour. Transparent pictures stay \
                transparent there.",
         no_effect: not_in_studio,
@@ -576,7 +574,6 @@ options! {
     SHOW_HIDDEN: field!(import.show_hidden), Kind::Switch => {
         name: "show-hidden",
         label: "Show hidden",
-        placeholder: "",
         text: "Also load the meshes that an FBX or glTF file hides, on nodes and layers that are switched off.",
     }
 

@@ -195,13 +195,13 @@ impl CopiedCommand<'_> {
         }
         line.switch("--transparent", self.view.transparent);
         line.switch("--legend", self.view.legend);
-        line.option("--size", Px(self.view.size));
+        line.option("--size", px(self.view.size));
         let ShotView { camera, lod_camera, size, .. } = &self.view;
         self.camera(line, "", camera);
         let lod_camera = lod_camera.map(|(camera, viewport)| (camera, viewport.to_array().map(|side| side as u32)));
         if let Some((lod_camera, lod_size)) = lod_camera.filter(|own| *own != (*camera, *size)) {
             self.camera(line, "lod-", &lod_camera);
-            line.changed("--lod-size", &Px(lod_size), &Px(*size));
+            line.changed("--lod-size", &px(lod_size), &px(*size));
         }
     }
 
@@ -225,13 +225,8 @@ impl CopiedCommand<'_> {
 }
 
 /// Width and height in px, as the command line takes them.
-#[derive(PartialEq)]
-struct Px([u32; 2]);
-
-impl Display for Px {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}x{}", self.0[0], self.0[1])
-    }
+fn px([width, height]: [u32; 2]) -> String {
+    format!("{width}x{height}")
 }
 
 /// A command line that options are appended to.

@@ -53,22 +53,20 @@ impl Shot {
             progress.check()?;
         }
         let leaks = if has(GateKind::Leaks) { self.leaks(&inputs)? } else { None };
-        let Self { engine, scene, .. } = self;
         let is_compared = has(GateKind::AboveTolerance);
-        let above = is_compared.then(|| engine.patches_above(scene, &inputs, tolerance_px)).transpose()?;
+        let above = || self.engine.patches_above(&mut self.scene, &inputs, tolerance_px);
+        let above = is_compared.then(above).transpose()?;
         self.error_place = above.and_then(|above| above.worst);
         let deviation =
             has(GateKind::Deviation).then(|| self.deviation_both_ways(gates, &inputs, progress)).transpose()?;
         let crossed = has(GateKind::SelfIntersections).then(|| self.crossed_patches(progress)).transpose()?;
         let pop = has(GateKind::Pops).then(|| self.farthest_pop(progress)).transpose()?;
-        let Self { scene, .. } = self;
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
-        let emitted = Some(scene.tessellator.totals());
         let facts = Facts {
             topology: &self.posed.topology,
             warnings: Some(&self.subject.loaded.warnings),
-            emitted,
+            emitted: Some(self.scene.tessellator.totals()),
             measured: self.results(SplitSide::Right).and_then(|results| results.survey.as_ref()),
             mesh: Some((&self.subject.loaded.mesh, &self.subject.loaded.topology)),
             junctions: junctions.as_deref(),
@@ -219,7 +217,7 @@ impl Shot {
         if let Some(at) = place.spot.at() {
             // The error has a line to where the emitted point should be.
             let worst = self.error_place.filter(|_| judgement.kind == GateKind::AboveTolerance);
-            let mark = worst_lines(at, worst.map_or(at, |worst| worst.limit.as_vec3()));
+            let mark = worst_lines(at, worst.map_or(at, |worst| worst.reference_shape.as_vec3()));
             self.subject.more_lines[SplitSide::Right as usize].extend(mark);
         }
         let picture = self.picture(None, progress);

@@ -38,7 +38,6 @@ pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
 pub use user_shader_report::{not_numbers_said, report_user_lod, report_user_surface, straight_sides_said};
 
-use files::{to_json, write_text};
 use legend::draw_legend;
 use picture_file::write_stamped;
 use reference_surface::{AccuracyStats, DeviationStats};
@@ -47,7 +46,7 @@ use split_titles::draw_titles;
 use crate::engine::{Engine, Loaded, MeasurementResults, Measurements, SilhouetteView};
 use crate::gates::Judgement;
 use crate::measure::{
-    AccuracyOptions, DeviationField, DeviationTarget, ScreenError, Silhouette, patch_edges, patch_width,
+    AccuracyOptions, DeviationField, DeviationTarget, Silhouette, WorstPoint, patch_edges, patch_width,
 };
 use crate::reference_shape::ReferenceShape;
 use crate::render::{
@@ -137,7 +136,7 @@ pub struct Shot {
     /// How gates judged it, if they did.
     judged: Vec<Judgement>,
     /// The worst place of the gate that compares the error with the tolerance.
-    error_place: Option<ScreenError>,
+    error_place: Option<WorstPoint>,
 }
 
 impl Subject {
@@ -187,7 +186,7 @@ impl Shot {
         let mut shot = Self {
             posed: subject.loaded.posed(subject.moment),
             lod_view: view.lod_view(&scene),
-            scale: deviation_scale(0.0, scene.ulp()),
+            scale: deviation_scale(0.0, scene.ulp),
             results: Default::default(),
             silhouette: None,
             judged: Vec::new(),
@@ -389,7 +388,7 @@ impl Shot {
         if fields().next().is_none() {
             return;
         }
-        self.scale = deviation_scale(largest, self.scene.ulp());
+        self.scale = deviation_scale(largest, self.scene.ulp);
         for (half, results) in SplitSide::BOTH.into_iter().zip(&self.results) {
             let field = results.as_ref().and_then(|results| results.deviation.as_ref());
             if let Some((scene, field)) = self.scene.half_mut(half).zip(field) {
@@ -461,15 +460,5 @@ impl Shot {
     /// The deviation that the overlay shows on a half, if the overlay is on.
     fn deviation(&self, half: SplitSide) -> Option<DeviationStats> {
         self.results(half)?.deviation.as_ref().map(|field| DeviationStats::new(field, self.scale))
-    }
-
-    /// Writes the [stats](Self::stats), and what was found about a file of factors, as JSON.
-    ///
-    /// # Errors
-    /// The device was lost, or the file can't be written.
-    pub fn write_stats(&mut self, factors_file: Option<FactorsFile>, path: &Path) -> Result<(), ShotError> {
-        let Some(mut stats) = self.stats()? else { return Ok(()) };
-        stats.factors_file = factors_file;
-        write_text(path, &to_json(&stats)?)
     }
 }

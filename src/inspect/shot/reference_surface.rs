@@ -37,7 +37,7 @@ struct DistanceStats {
     max_of_diagonal: Interval,
     rms_of_diagonal: Rms,
     /// Where the lower end of the largest distance was found.
-    worst: WorstStats,
+    worst: WorstPoint,
 }
 
 impl AccuracyStats {
@@ -46,7 +46,7 @@ impl AccuracyStats {
         let distances = |distances: Distances, worst: WorstPoint| {
             let (Distances { largest: max, rms }, relative) = (distances, accuracy.relative(distances));
             let (max_of_diagonal, rms_of_diagonal) = (relative.largest, relative.rms);
-            DistanceStats { max, rms, max_of_diagonal, rms_of_diagonal, worst: worst.into() }
+            DistanceStats { max, rms, max_of_diagonal, rms_of_diagonal, worst }
         };
         let from_reference = accuracy.from_reference.filter(|_| is_whole);
         Self {
@@ -71,29 +71,14 @@ pub(super) struct DeviationStats {
     /// The distances of the first and the last colour, if distances are in object units; the scale is logarithmic.
     scale: [f32; 2],
     /// None if nothing was emitted.
-    worst: Option<WorstStats>,
+    worst: Option<WorstPoint>,
     /// Triangles without a colour, because there were too many.
     triangles_left_out: u64,
 }
 
-/// Where the distance is largest.
-#[derive(Debug, Serialize)]
-struct WorstStats {
-    patch: u32,
-    emitted: [f64; 3],
-    reference_surface: [f64; 3],
-}
-
-impl From<WorstPoint> for WorstStats {
-    fn from(worst: WorstPoint) -> Self {
-        let [emitted, reference_surface] = [worst.emitted, worst.reference_shape].map(|place| place.to_array());
-        Self { patch: worst.patch, emitted, reference_surface }
-    }
-}
-
 impl DeviationStats {
     pub(super) fn new(field: &DeviationField, scale: Scale) -> Self {
-        let (max, worst) = (field.largest(), field.worst().map(WorstStats::from));
+        let (max, worst) = (field.largest(), field.worst());
         Self { max, rms: field.rms(), scale: [scale.least, scale.most], worst, triangles_left_out: field.left_out }
     }
 }

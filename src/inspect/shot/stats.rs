@@ -19,7 +19,7 @@ use crate::settings::{Settings, SplitSide, Value, options};
 use geometry::mesh::{EdgeCounts, Topology};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::{ScreenView, ulp};
-use gpu::{GpuError, PassTime};
+use gpu::GpuError;
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]
@@ -206,17 +206,7 @@ struct SeamTurnStats {
 
 impl SeamStats {
     fn new(seams: &Seams) -> Self {
-        let has_mapped = seams.mapped.edges > 0;
-        Self {
-            shading: SeamTurnStats::new(&seams.shading),
-            mapped: has_mapped.then(|| SeamTurnStats::new(&seams.mapped)),
-        }
-    }
-}
-
-impl SeamTurnStats {
-    fn new(turns: &SeamTurns) -> Self {
-        Self {
+        let stats = |turns: &SeamTurns| SeamTurnStats {
             edges: turns.edges,
             points: turns.points,
             max_degrees: turns.emitted.most,
@@ -224,7 +214,8 @@ impl SeamTurnStats {
             source_max_degrees: turns.source.most,
             source_mean_degrees: turns.mean(turns.source),
             max_added_degrees: turns.most_added,
-        }
+        };
+        Self { shading: stats(&seams.shading), mapped: (seams.mapped.edges > 0).then(|| stats(&seams.mapped)) }
     }
 }
 
@@ -302,6 +293,7 @@ impl Shot {
             None => None,
         };
         let Loaded { mesh, topology, .. } = &self.posed;
+        let of_mesh = [("load", self.posed.load_ms), ("topology", self.posed.topology_ms)];
         let mirrored = camera.is_mirrored().then_some(self.view.size[0]);
         Ok(Some(Stats {
             // The name of the view, the reference picture and the factors file are known to those who draw.
@@ -335,7 +327,7 @@ impl Shot {
             left: self.half_stats(SplitSide::Left),
             camera: Some(ViewStats::new(camera, self.view.size, &self.scene.bounds)),
             gates: self.judged.clone(),
-            ms: milliseconds(&passes, &self.posed),
+            ms: passes.iter().map(|time| (time.pass, time.ms)).chain(of_mesh).collect(),
         }))
     }
 
@@ -356,16 +348,10 @@ impl Shot {
             cracks: CrackStats::new(measured, topology, self.view()),
             seams: SeamStats::new(&measured.seams),
             folds: measured.folds,
-            max_error_px: results.screen_error.map(|worst| worst.px),
+            max_error_px: results.screen_error.map(|worst| worst.value),
             accuracy: self.accuracy(half),
             deviation: self.deviation(half),
             animation: scene.clip_and_time().map(|(name, time)| AnimationStats { name, time }),
         })
     }
-}
-
-/// The times of passes, of loading and of finding the topology.
-fn milliseconds(passes: &[PassTime], loaded: &Loaded) -> BTreeMap<&'static str, f64> {
-    let of_mesh = [("load", loaded.load_ms), ("topology", loaded.topology_ms)];
-    passes.iter().map(|time| (time.pass, time.ms)).chain(of_mesh).collect()
 }

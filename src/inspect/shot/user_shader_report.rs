@@ -9,8 +9,8 @@ use crate::engine::Engine;
 use crate::measure::{Agreement, PointsAgreement, PointsDisagreement};
 use crate::render::Scene;
 use geometry::mesh::Topology;
-use geometry::numbers::short;
-use gpu::GpuError;
+use geometry::numbers::{numbered, short};
+use gpu::{GpuError, UserReport};
 
 /// Reports on standard error where the factors of an LOD shader disagree, if the scene has one, and how many aren't numbers. The
 /// counts must be known.
@@ -20,7 +20,7 @@ use gpu::GpuError;
 pub fn report_user_lod(engine: &Engine, scene: &Scene) -> Result<(), GpuError> {
     if let Some(agreement) = agreement(engine, scene)? {
         let lines = agreement_lines(scene.tessellator.topology(), &agreement);
-        report(&lines, not_numbers_said(lod_not_numbers(scene)));
+        report(&lines, not_numbers_said(not_numbers(scene.tessellator.user_lod_report())));
     }
     Ok(())
 }
@@ -35,7 +35,10 @@ pub fn report_user_surface(engine: &Engine, scene: &Scene) -> Result<(), GpuErro
         let topology = scene.tessellator.topology();
         let counts = [agreement.edges.len() as u64, agreement.edges_compared];
         let texts = agreement.edges.iter().map(|edge| edge_text(topology, edge));
-        report(&different_lines("control points", counts, &[], texts), straight_sides_said(surface_not_numbers(scene)));
+        report(
+            &different_lines("control points", counts, &[], texts),
+            straight_sides_said(not_numbers(scene.tessellator.user_surface_report())),
+        );
     }
     Ok(())
 }
@@ -48,37 +51,20 @@ fn report(lines: &[String], warning: Option<String>) {
 
 /// What is said about factors that aren't numbers, if there are any.
 pub fn not_numbers_said(count: u32) -> Option<String> {
-    match count {
-        0 => None,
-        1 => Some(
-            "1 factor of the LOD shader isn't a number (NaN): it culls its patch, or inside counts as 1.".to_owned(),
-        ),
-        _ => Some(format!(
-            "{count} factors of the LOD shader aren't numbers (NaN): they cull their patches, or inside count as 1."
-        )),
-    }
+    let text = "# factor[|s] of the LOD shader [isn't a number|aren't numbers] (NaN): [it culls its patch|they cull their \
+                patches], or inside count[s|] as 1.";
+    (count > 0).then(|| numbered(count.into(), text))
 }
 
 /// What is said about sides whose control points aren't numbers, if there are any.
 pub fn straight_sides_said(count: u32) -> Option<String> {
-    match count {
-        0 => None,
-        1 => Some(
-            "1 side got a control point of the surface shader that is infinite or no number (NaN): it is straight."
-                .to_owned(),
-        ),
-        _ => Some(format!(
-            "{count} sides got control points of the surface shader that are infinite or no numbers (NaN): they are straight."
-        )),
-    }
+    let text = "# side[ got a control point|s got control points] of the surface shader that [is|are] infinite or no number[|s] \
+                (NaN): [it is|they are] straight.";
+    (count > 0).then(|| numbered(count.into(), text))
 }
 
-fn lod_not_numbers(scene: &Scene) -> u32 {
-    scene.tessellator.user_lod_report().map_or(0, |report| report.not_numbers)
-}
-
-fn surface_not_numbers(scene: &Scene) -> u32 {
-    scene.tessellator.user_surface_report().map_or(0, |report| report.not_numbers)
+fn not_numbers(report: Option<UserReport>) -> u32 {
+    report.map_or(0, |report| report.not_numbers)
 }
 
 /// How the factors of an LOD shader agree; none without one.
@@ -119,7 +105,7 @@ impl LodShaderStats {
             edges_compared,
             edges_different: edges.len() as u64,
             patches_culled,
-            not_numbers: lod_not_numbers(scene),
+            not_numbers: not_numbers(scene.tessellator.user_lod_report()),
             edges: edges.iter().take(LISTED).map(|edge| EdgeStats::new(topology, edge)).collect(),
         }))
     }
@@ -163,7 +149,7 @@ impl SurfaceShaderStats {
             edges_compared: agreement.edges_compared,
             edges_different: agreement.edges.len() as u64,
             max_distance: agreement.max_distance(),
-            not_numbers: surface_not_numbers(scene),
+            not_numbers: not_numbers(scene.tessellator.user_surface_report()),
             edges: agreement.edges.iter().take(LISTED).map(edge).collect(),
         }))
     }

@@ -63,7 +63,7 @@ impl Bench<'_> {
             ..Measurements::default()
         };
         let MeasurementResults { accuracy, screen_error, .. } = engine.measure_all(scene, &wanted)?;
-        let own_px = screen_error.map(|worst| worst.px);
+        let own_px = screen_error.map(|worst| worst.value);
         let triangles_by_error = match own_px.map(|px| px as f32) {
             Some(px) if px > 0.0 => engine.triangles_by_error(scene, &inputs, px)?,
             _ => None,

@@ -71,7 +71,7 @@ pub(super) fn draw_tile(
     let wanted =
         Measurements { survey: true, screen_error: (!is_shared).then_some(&inputs), ..Measurements::default() };
     let MeasurementResults { survey, screen_error, .. } = engine.measure_all(scene, &wanted)?;
-    let (measured, error_px) = (survey.unwrap_or_default(), screen_error.map(|worst| worst.px));
+    let (measured, error_px) = (survey.unwrap_or_default(), screen_error.map(|worst| worst.value));
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
     if overlays.cracks {
         let gap_px = |crack: &CrackedEdge| crack.gap_px(clip_from_object, target.viewport());

@@ -44,7 +44,10 @@ impl<'a> Curves<'a> {
         for prop in anim.layers.into_iter().flat_map(|layer| &layer.anim_props) {
             for curve in prop.anim_value.curves.iter().flatten() {
                 let [Some(first), Some(last)] = ends(curve) else { continue };
-                if curve.min_value == curve.max_value && !goes_straight_on(curve) {
+                let sides = [&curve.pre_extrapolation, &curve.post_extrapolation];
+                // What goes on in the direction of an end isn't level even if all of its values are the same.
+                let is_straight = sides.iter().any(|how| how.mode as u32 == ExtrapolationMode::Slope as u32);
+                if curve.min_value == curve.max_value && !is_straight {
                     continue;
                 }
                 let [until, from] = edges.entry(prop.element.element_id).or_default();
@@ -81,12 +84,6 @@ impl<'a> Curves<'a> {
 fn ends(curve: &AnimCurve) -> [Option<f64>; 2] {
     let keys = &curve.keyframes;
     [keys.first(), keys.last()].map(|key| key.map(|key| key.time))
-}
-
-/// Whether a curve goes on in the direction of one of its ends, which isn't level even if all of its values are the same.
-fn goes_straight_on(curve: &AnimCurve) -> bool {
-    let sides = [&curve.pre_extrapolation, &curve.post_extrapolation];
-    sides.iter().any(|how| how.mode as u32 == ExtrapolationMode::Slope as u32)
 }
 
 fn goes_on(how: &Extrapolation) -> bool {

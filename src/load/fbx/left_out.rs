@@ -20,11 +20,8 @@ pub(super) fn warn(scene: &Scene, notes: &mut Notes) {
         (dual, "skins for dual quaternions, whose joints are blended linearly"),
         (meshes(|mesh| mesh.skin_deformers.len() > 1), "meshes with several skins, of which the first is used"),
     ]));
-    for warning in &scene.metadata.warnings {
-        if let Some(sentence) = repaired(warning.type_) {
-            notes.push(format!("{sentence}: {}.", warning.count.max(1)));
-        }
-    }
+    let warnings = scene.metadata.warnings.iter();
+    notes.extend(counted(warnings.filter_map(|own| Some((own.count.max(1), repaired(own.type_)?)))));
 }
 
 fn curves(scene: &Scene) -> usize {

@@ -11,7 +11,7 @@ use super::nurbs::Meshes;
 use crate::attachment::{LocalTransform, SceneNodes};
 use crate::memory_budget::Budget;
 use crate::model_file::ModelFile;
-use crate::notes::Notes;
+use crate::notes::{Notes, counted};
 use crate::parts::level_names;
 use crate::read_error::ReadError;
 use geometry::mesh::rig::Clip;
@@ -58,9 +58,7 @@ impl Placed {
         let with_mesh = || (0..nodes.len()).filter(|&node| meshes.of(&nodes[node]).is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
-        if hidden > 0 {
-            notes.push(format!("meshes that the file hides, left out (--show-hidden shows them): {hidden}."));
-        }
+        notes.extend(counted([(hidden, "meshes that the file hides, left out (--show-hidden shows them)")]));
         let carries = carries_shown(scene, &shown, &order, &parents);
         let carries_mesh = SceneNodes::carrying(with_mesh(), &order, &parents);
         let with_weights = |&node: &usize| {

@@ -31,7 +31,10 @@ pub(super) fn normals(mesh: &Mesh, budget: &Budget) -> Result<Option<Vec<Vec3>>,
         return Ok(None);
     }
     budget.borrow(PER_CORNER * mesh.num_indices as u64)?;
-    let smooth = smooth_edges(mesh);
+    // The edges that the file calls smooth.
+    let smooth = mesh.edges.iter().zip(mesh.edge_smoothing.iter()).filter(|(_, is_smooth)| **is_smooth);
+    let smooth = smooth.filter_map(|(edge, _)| Some((sorted(mesh, [edge.a, edge.b])?.0, ())));
+    let smooth: HashMap<Vertices, (), FixedState> = smooth.collect();
     let sets = UnionFind::new(mesh.num_indices);
     let mut sides: HashMap<Vertices, Side, FixedState> = HashMap::default();
     for (i, face) in mesh.faces.iter().enumerate() {
@@ -48,12 +51,6 @@ pub(super) fn normals(mesh: &Mesh, budget: &Budget) -> Result<Option<Vec<Vec3>>,
         }
     }
     Ok(Some(summed(mesh, &sets)))
-}
-
-/// Returns the edges that the file calls smooth.
-fn smooth_edges(mesh: &Mesh) -> HashMap<Vertices, (), FixedState> {
-    let smooth = mesh.edges.iter().zip(mesh.edge_smoothing.iter()).filter(|(_, is_smooth)| **is_smooth);
-    smooth.filter_map(|(edge, _)| Some((sorted(mesh, [edge.a, edge.b])?.0, ()))).collect()
 }
 
 /// Returns the edge between two corners, and the corners in the order of its vertices.

@@ -43,7 +43,7 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
         is_morphing: bool,
         binder: &'b mut NodeBinder<'c>,
     ) -> Self {
-        let frame = binder.frame(vertices.is_skinned(), instance);
+        let frame = binder.frame(vertices.influences.is_some(), instance);
         let mut first_weight = binder.first_weight().filter(|_| is_morphing);
         if let Some(problem) = &vertices.unmorphed {
             binder.binder.give_up(problem.clone());

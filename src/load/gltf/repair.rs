@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 use super::GltfError;
 use super::json::{PER_OBJECT, PER_READ, list, objects};
-use super::notes::Notes;
+use super::notes::{Notes, counted};
 use super::reach::{Reach, has_data};
 use super::schema::is_detail;
 use super::schema_check::{Fault, Faults};
@@ -82,10 +82,8 @@ impl Settled<'_> {
             node.mesh = node.mesh.filter(|_| reach.shown[i]);
             node.skin = node.skin.filter(|_| node.mesh.is_some_and(|mesh| reach.bound[mesh.value()]));
         }
-        if reach.hidden > 0 {
-            let said = "nodes that KHR_node_visibility hides, with meshes that aren't shown (--show-hidden shows them)";
-            notes.push(format!("{said}: {}.", reach.hidden));
-        }
+        let said = "nodes that KHR_node_visibility hides, with meshes that aren't shown (--show-hidden shows them)";
+        notes.extend(counted([(reach.hidden, said)]));
         Ok(())
     }
 

@@ -95,8 +95,11 @@ static NODE: &[Field] = &[
     may("rotation", Numbers(Some(4))),
     may("scale", Numbers(Some(3))),
     may("weights", Numbers(None)),
-    may("extensions", Object(&[may(INSTANCING, Object(&[needed("attributes", Attributes(is_placement))]))])),
+    may("extensions", Object(&[may(INSTANCING, Object(INSTANCES))])),
 ];
+
+static INSTANCES: &[Field] =
+    &[needed("attributes", Attributes(|name| ["TRANSLATION", "ROTATION", "SCALE"].contains(&name)))];
 
 static MESH: &[Field] =
     &[may("name", Name), needed("primitives", List(&Object(PRIMITIVE))), may("weights", Numbers(None))];
@@ -106,7 +109,7 @@ static PRIMITIVE: &[Field] = &[
     may("indices", Index("accessors")),
     may("material", Index("materials")),
     may("mode", Code(&[0, 1, 2, 3, 4, 5, 6])),
-    may("targets", List(&Attributes(is_displacement))),
+    may("targets", List(&Attributes(|name| ["POSITION", "NORMAL", "TANGENT"].contains(&name)))),
     may("extensions", Object(&[may(DRACO, Object(PACKED))])),
 ];
 
@@ -180,14 +183,4 @@ pub(super) fn is_detail(name: &str) -> bool {
 
 fn is_numbered(name: &str, prefix: &str) -> bool {
     name.strip_prefix(prefix).is_some_and(|set| set.parse::<u32>().is_ok())
-}
-
-/// Returns whether an attribute of instances is read.
-pub(super) fn is_placement(name: &str) -> bool {
-    ["TRANSLATION", "ROTATION", "SCALE"].contains(&name)
-}
-
-/// Returns whether an attribute of a morph target is read.
-pub(super) fn is_displacement(name: &str) -> bool {
-    ["POSITION", "NORMAL", "TANGENT"].contains(&name)
 }

@@ -10,6 +10,7 @@ use serde_json::{Map, Value};
 
 use super::GltfError;
 use super::schema::{Field, MemberKind};
+use geometry::names::joined;
 
 /// A member that has a value that it can't have.
 #[derive(Clone, Debug)]
@@ -138,9 +139,9 @@ impl Checker {
             MemberKind::Text | MemberKind::Name => fits(value.is_string(), "text"),
             MemberKind::Flag => fits(value.is_boolean(), "true or false"),
             MemberKind::Code(codes) if value.as_u64().is_some_and(|own| codes.contains(&own)) => Ok(()),
-            MemberKind::Code(codes) => path.should_be(&one_of(codes), value),
+            MemberKind::Code(codes) => path.should_be(&joined(codes, "or"), value),
             MemberKind::Word(words) if value.as_str().is_some_and(|own| words.contains(&own)) => Ok(()),
-            MemberKind::Word(words) => path.should_be(&one_of(words), value),
+            MemberKind::Word(words) => path.should_be(&joined(words, "or"), value),
             MemberKind::Object(fields) => self.fields(value, fields, path),
             MemberKind::List(kind) => each(value, path, |value, path| self.value(value, kind, path)),
             MemberKind::Parts(fields, empty) => each(value, path, |value, path| {
@@ -225,14 +226,6 @@ fn within<T: fmt::Debug>(value: &Value, least: (T, bool), most: (T, bool), path:
         ((least, true), _) => path.fail(format!("is {value}, but must be at least {least:?}")),
         (_, (most, true)) => path.fail(format!("is {value}, but must be at most {most:?}")),
         _ => Ok(()),
-    }
-}
-
-fn one_of<T: ToString>(choices: &[T]) -> String {
-    let choices: Vec<String> = choices.iter().map(T::to_string).collect();
-    match choices.split_last() {
-        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
-        _ => choices.concat(),
     }
 }
 

@@ -73,7 +73,7 @@ pub(super) struct Vertex {
 }
 
 /// The joints of a skin that move each vertex, and their weights, in sets of four.
-struct Influences<'a> {
+pub(super) struct Influences<'a> {
     sets: Vec<[List<'a, [f32; 4]>; 2]>,
 }
 
@@ -155,7 +155,7 @@ pub(super) struct Vertices<'a> {
     pub targets: Vec<MorphTarget<'a>>,
     /// What keeps a clip from changing the weights.
     pub unmorphed: Option<String>,
-    influences: Option<Influences<'a>>,
+    pub influences: Option<Influences<'a>>,
     /// What corners have beside that; none if no material needs it.
     details: Option<VertexDetails<'a>>,
     pub repairs: VertexRepairs,
@@ -234,10 +234,6 @@ impl<'a> Vertices<'a> {
             self.targets.push(MorphTarget { weight, positions, normals, tangents });
         }
         Ok(())
-    }
-
-    pub(super) fn is_skinned(&self) -> bool {
-        self.influences.is_some()
     }
 
     /// Returns a vertex's position and normal in the file; with the morph targets' displacements at rest if

@@ -7,7 +7,7 @@ use super::{Statement, each_statement};
 use crate::memory_budget::Budget;
 use crate::notes::counts;
 use crate::read_error::ReadError;
-use crate::text_lines::{first_word, has_comma, number_or_nan, parsed, words};
+use crate::text_lines::{first_word, number_or_nan, numbers, numbers_or_nan, parsed};
 use geometry::casts::to_byte;
 use geometry::mesh::chunked_vec::ChunkedVec;
 
@@ -106,7 +106,7 @@ impl VertexPiece {
         match statement.word {
             b"v" => {
                 let rest = self.numbers_of(statement);
-                let (numbers, count) = numbers::<NUMBERS>(rest);
+                let (numbers, count) = numbers::<_, NUMBERS>(rest, number_or_nan);
                 let [x, y, z, ..] = numbers;
                 self.flaws.flat += usize::from(count == 2);
                 self.positions.push(Vec3::new(x, y, if count == 2 { 0.0 } else { z }));
@@ -119,11 +119,11 @@ impl VertexPiece {
             }
             b"vn" => {
                 let rest = self.numbers_of(statement);
-                self.normals.push(numbers::<3>(rest).0.into());
+                self.normals.push(numbers_or_nan(rest).into());
             }
             b"vt" => {
                 let rest = self.numbers_of(statement);
-                let ([u, v], count) = numbers(rest);
+                let ([u, v], count) = numbers(rest, number_or_nan);
                 // The file's v points upwards, the mesh's downwards.
                 self.uvs.push(Vec2::new(u, 1.0 - if count > 1 { v } else { 0.0 }));
             }
@@ -137,21 +137,9 @@ impl VertexPiece {
     /// Returns what follows the first word of a statement of numbers, and counts commas.
     fn numbers_of<'a>(&mut self, statement: &Statement<'a>) -> &'a [u8] {
         let rest = statement.rest();
-        self.flaws.with_commas += usize::from(has_comma(rest));
+        self.flaws.with_commas += usize::from(rest.contains(&b','));
         rest
     }
-}
-
-/// Parses the first N words as numbers. What isn't a number, or isn't there, is NaN. Returns how many words there are, too, up to
-/// one more than N.
-fn numbers<const N: usize>(text: &[u8]) -> ([f32; N], usize) {
-    let (mut numbers, mut count) = ([f32::NAN; N], 0);
-    for word in words(text) {
-        count += 1;
-        let Some(number) = numbers.get_mut(count - 1) else { break };
-        *number = number_or_nan(word);
-    }
-    (numbers, count)
 }
 
 /// Parses the number of a smoothing group: 0 for `off`, and for what isn't a number.

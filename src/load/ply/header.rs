@@ -2,7 +2,7 @@
 
 use super::textures;
 use crate::read_error::{FilePosition, ReadError};
-use crate::text_lines::{Line, Lines, first_word, parsed, shown};
+use crate::text_lines::{Line, Lines, first_word, parsed, shown, words};
 
 /// How values are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,48 +12,55 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// The type of a number in a binary file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Scalar {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    F32,
-    F64,
-    I64,
-    U64,
+/// Declares the types of numbers by their Rust types, and their names in the original format and in later ones.
+macro_rules! scalars {
+    ($($name:ident is $kind:ident, $old:literal or $new:literal;)+) => {
+        /// The type of a number in a binary file.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(super) enum Scalar {
+            $($name),+
+        }
+
+        impl Scalar {
+            fn named(name: &[u8]) -> Option<Self> {
+                [$(($old, $new, Self::$name)),+].into_iter().find_map(|(old, new, own)| {
+                    (name == str::as_bytes(old) || name == str::as_bytes(new)).then_some(own)
+                })
+            }
+
+            /// Returns the size in bytes.
+            pub(super) fn size(self) -> usize {
+                match self {
+                    $(Self::$name => size_of::<$kind>()),+
+                }
+            }
+
+            /// Decodes the number at the start of some bytes; none if they are too few.
+            pub(super) fn decoded(self, bytes: &[u8], is_big: bool) -> Option<f64> {
+                Some(match self {
+                    $(Self::$name => {
+                        let own = *bytes.first_chunk()?;
+                        let number = if is_big { $kind::from_be_bytes(own) } else { $kind::from_le_bytes(own) };
+                        number as f64
+                    })+
+                })
+            }
+        }
+    };
 }
 
-impl Scalar {
-    fn named(name: &[u8]) -> Option<Self> {
-        Some(match name {
-            b"char" | b"int8" => Self::I8,
-            b"uchar" | b"uint8" => Self::U8,
-            b"short" | b"int16" => Self::I16,
-            b"ushort" | b"uint16" => Self::U16,
-            b"int" | b"int32" => Self::I32,
-            b"uint" | b"uint32" => Self::U32,
-            b"float" | b"float32" => Self::F32,
-            b"double" | b"float64" => Self::F64,
-            // Not in the original format; some programs write them.
-            b"long" | b"int64" => Self::I64,
-            b"ulong" | b"uint64" => Self::U64,
-            _ => return None,
-        })
-    }
-
-    /// Returns the size in bytes.
-    pub(super) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::F64 | Self::I64 | Self::U64 => 8,
-        }
-    }
+// The last two aren't in the original format; some programs write them.
+scalars! {
+    I8 is i8, "char" or "int8";
+    U8 is u8, "uchar" or "uint8";
+    I16 is i16, "short" or "int16";
+    U16 is u16, "ushort" or "uint16";
+    I32 is i32, "int" or "int32";
+    U32 is u32, "uint" or "uint32";
+    F32 is f32, "float" or "float32";
+    F64 is f64, "double" or "float64";
+    I64 is i64, "long" or "int64";
+    U64 is u64, "ulong" or "uint64";
 }
 
 /// A single value, or a list of values after their count.
@@ -116,7 +123,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Header<'_>, ReadError> {
     let (mut encoding, mut elements, mut other_lines, mut images) = (None, Vec::new(), 0, Vec::new());
     lines.next()?;
     while let Some(line) = lines.next()? {
-        let mut words = line.words();
+        let mut words = words(line.text);
         let fault = |reason: String| line.place().error(reason);
         match words.next() {
             None | Some(b"obj_info") => {}
@@ -152,7 +159,7 @@ fn format(word: Option<&[u8]>) -> Result<Encoding, String> {
 }
 
 fn element<'a>(line: &Line<'a>) -> Result<Element<'a>, String> {
-    let mut words = line.words().skip(1);
+    let mut words = words(line.text).skip(1);
     let (Some(name), Some(count), None) = (words.next(), words.next(), words.next()) else {
         return Err("an element needs a name and a number".to_owned());
     };
@@ -161,7 +168,7 @@ fn element<'a>(line: &Line<'a>) -> Result<Element<'a>, String> {
 }
 
 fn property<'a>(line: &Line<'a>) -> Result<Property<'a>, String> {
-    let words: Vec<_> = line.words().skip(1).take(5).collect();
+    let words: Vec<_> = words(line.text).skip(1).take(5).collect();
     let scalar = |name| Scalar::named(name).ok_or_else(|| format!("{} isn't a type of numbers", shown(name)));
     match words[..] {
         [b"list", count, item, name] => {

@@ -164,7 +164,7 @@ impl<'a> Values<'a> {
     pub(super) fn next(&mut self, scalar: Scalar) -> Result<f64, ReadError> {
         match self.encoding {
             Encoding::Text => self.word(),
-            encoding => match decoded(self.bytes, scalar, encoding) {
+            encoding => match scalar.decoded(self.bytes, encoding == Encoding::BigEndian) {
                 Some(value) => {
                     self.bytes = &self.bytes[scalar.size()..];
                     Ok(value)
@@ -225,30 +225,6 @@ impl<'a> Values<'a> {
             _ => self.bytes.len(),
         }
     }
-}
-
-/// Decodes the number at the start of some bytes; none if they are too few.
-fn decoded(bytes: &[u8], scalar: Scalar, encoding: Encoding) -> Option<f64> {
-    /// Returns the bytes of a number, the lowest first.
-    fn own<const N: usize>(bytes: &[u8], encoding: Encoding) -> Option<[u8; N]> {
-        let mut own = *bytes.first_chunk()?;
-        if encoding == Encoding::BigEndian {
-            own.reverse();
-        }
-        Some(own)
-    }
-    Some(match scalar {
-        Scalar::I8 => i8::from_le_bytes(own(bytes, encoding)?).into(),
-        Scalar::U8 => u8::from_le_bytes(own(bytes, encoding)?).into(),
-        Scalar::I16 => i16::from_le_bytes(own(bytes, encoding)?).into(),
-        Scalar::U16 => u16::from_le_bytes(own(bytes, encoding)?).into(),
-        Scalar::I32 => i32::from_le_bytes(own(bytes, encoding)?).into(),
-        Scalar::U32 => u32::from_le_bytes(own(bytes, encoding)?).into(),
-        Scalar::F32 => f32::from_le_bytes(own(bytes, encoding)?).into(),
-        Scalar::F64 => f64::from_le_bytes(own(bytes, encoding)?),
-        Scalar::I64 => i64::from_le_bytes(own(bytes, encoding)?) as f64,
-        Scalar::U64 => u64::from_le_bytes(own(bytes, encoding)?) as f64,
-    })
 }
 
 /// Formats a number for a message.

@@ -14,7 +14,7 @@ use super::xml::{Element, Step};
 use crate::memory_budget::Budget;
 use crate::notes::{Notes, counts};
 use crate::read_error::ReadError;
-use crate::text_lines::{parsed, shown, words};
+use crate::text_lines::{numbers, parsed, shown};
 use geometry::casts::to_u32;
 use geometry::mesh::chunked_vec::ChunkedVec;
 use geometry::names;
@@ -405,12 +405,7 @@ impl<'a> ModelReader<'a> {
 
     /// Parses the rows of a matrix that stands behind a row vector (core specification, section 3.3).
     fn transform(&self, text: &[u8], object: u32) -> Result<DAffine3, ReadError> {
-        let mut numbers = [f64::NAN; 12];
-        let mut count = 0;
-        for word in words(text) {
-            numbers.iter_mut().skip(count).take(1).for_each(|slot| *slot = parsed(word).unwrap_or(f64::NAN));
-            count += 1;
-        }
+        let (numbers, count) = numbers::<_, 12>(text, |word| parsed(word).unwrap_or(f64::NAN));
         if count != 12 || !numbers.iter().all(|number| number.is_finite()) {
             let text = shown(text);
             return Err(self.broken(format!("the transform {text} of object {object} isn't 12 finite numbers")));

@@ -44,7 +44,8 @@ impl Element<'_> {
 
     /// The attribute with this name, after a prefix or without one.
     pub(super) fn attribute(&self, name: &[u8]) -> Option<Cow<'_, [u8]>> {
-        self.attributes().find(|(key, _)| without_prefix(key) == name).map(|(_, value)| value)
+        let is = |key: &[u8]| key.rsplit(|byte| *byte == b':').next() == Some(name);
+        self.attributes().find(|(key, _)| is(key)).map(|(_, value)| value)
     }
 
     /// The same as a text.
@@ -59,11 +60,6 @@ impl Element<'_> {
     pub(super) fn number(&self, name: &[u8]) -> Option<u32> {
         std::str::from_utf8(&self.attribute(name)?).ok()?.trim().parse().ok()
     }
-}
-
-/// Returns an attribute's name without its prefix.
-fn without_prefix(name: &[u8]) -> &[u8] {
-    memchr::memrchr(b':', name).map_or(name, |colon| &name[colon + 1..])
 }
 
 /// Calls `take` with every tag of the part called `part`, and with how many bytes have been read.

@@ -168,5 +168,5 @@ fn deviation(engine: &Engine, subject: &mut Subject) -> Result<f64, GpuError> {
     engine.count(&mut subject.scene, &inputs, &mut Timing::Off)?;
     let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
     let results = engine.measure_all(&mut subject.scene, &wanted)?;
-    Ok(results.screen_error.map_or(0.0, |worst| worst.px))
+    Ok(results.screen_error.map_or(0.0, |worst| worst.value))
 }

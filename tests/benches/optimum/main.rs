@@ -168,7 +168,7 @@ impl Device {
         let error_px = (!written.iter().any(capped)).then(|| {
             let wanted = Measurements { screen_error: Some(&inputs), ..Measurements::default() };
             let measured = self.engine.measure_all(scene, &wanted).expect("room for what is emitted");
-            measured.screen_error.map_or(0.0, |worst| worst.px)
+            measured.screen_error.map_or(0.0, |worst| worst.value)
         });
         Row { case: *case, compared: Compared { triangles, best: None, error_px } }
     }

@@ -273,7 +273,7 @@ pub(crate) fn compare_with_optimum(mesh: &Mesh, topology: &Topology, inputs: &In
     let error_px = (!hull_factors(mesh, topology, inputs).iter().any(capped)).then(|| {
         let mut measurement = ScreenErrorMeasurement::new(mesh, topology, inputs, triangles);
         measurement.take(&EmittedChunk::whole(&own.vertices, &own.triangles));
-        measurement.worst().map_or(0.0, |worst| worst.px)
+        measurement.worst().map_or(0.0, |worst| worst.value)
     });
     let last = levels(inputs.tessellation.partitioning).pop().unwrap_or(64) as f32;
     let start: Vec<u32> = own.edge_factors.iter().map(|factor| factor.min(last) as u32).collect();

@@ -16,7 +16,7 @@ pub(super) struct Fans {
     /// The fan of each corner k of each patch, at 3 * patch + k.
     fan_of: Vec<u32>,
     /// For each fan, the normal that its corners will share; none if they have the same normal already.
-    normals: Vec<Option<Vec3>>,
+    pub normals: Vec<Option<Vec3>>,
 }
 
 impl Fans {
@@ -42,11 +42,6 @@ impl Fans {
             normals[fan[0].0 as usize] = Some(mean(fan.iter().map(|(_, key)| *key)));
         }
         Self { fan_of, normals }
-    }
-
-    /// Returns whether there is a fan whose corners have different normals.
-    pub(super) fn any_split(&self) -> bool {
-        self.normals.iter().any(Option::is_some)
     }
 
     /// Returns the normal that corner `k` of a patch shares with its fan; none if the fan's normals don't differ.

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec3, Vec2};
 
-use super::{corner, quad};
+use super::{corner, grid, quad};
 use crate::mesh::Corner;
 
 /// 4 by 4 control points. The first index runs around the vase, the second one upwards.
@@ -88,13 +88,7 @@ pub(super) fn vase(level: u32) -> Vec<[Corner; 3]> {
         let uv = Vec2::new(i as f32 / columns as f32, 1.0 - j as f32 / rows as f32);
         corner(position.as_vec3(), around.cross(up).normalize().as_vec3(), uv)
     };
-    let mut triangles = Vec::with_capacity(2 * columns * rows);
-    for i in 0..columns {
-        for j in 0..rows {
-            triangles.extend(quad([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]));
-        }
-    }
-    triangles
+    grid(columns, rows, |i, j| quad([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)])).collect()
 }
 
 #[cfg(test)]

@@ -12,10 +12,6 @@ const HALF: f32 = 0.6;
 /// The radii of the ellipsoid along x, y and z.
 pub const ELLIPSOID: Vec3 = Vec3::new(1.0, 0.6, 0.8);
 
-pub(super) fn cube_split() -> Vec<[Corner; 3]> {
-    cube(|position, normal| normal + 0.6 * position)
-}
-
 pub(super) fn cube_smooth() -> Vec<[Corner; 3]> {
     let mut triangles = cube(|position, _| position);
     for corner in triangles.iter_mut().flatten() {
@@ -25,7 +21,8 @@ pub(super) fn cube_smooth() -> Vec<[Corner; 3]> {
     triangles
 }
 
-fn cube(normal: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<[Corner; 3]> {
+/// Returns a cube. `normal` returns the normal at a position on a side, whose own normal it gets too.
+pub(super) fn cube(normal: impl Fn(Vec3, Vec3) -> Vec3) -> Vec<[Corner; 3]> {
     let axes = [Vec3::X, Vec3::Y, Vec3::Z];
     let face = |out: Vec3, right: Vec3| {
         let up = out.cross(right);

@@ -4,7 +4,7 @@ use std::f32::consts::TAU;
 
 use glam::{Vec2, Vec3};
 
-use super::{corner, quad};
+use super::{corner, grid, quad};
 use crate::mesh::Corner;
 
 /// The number of sides of cylinder and cone at level 0, where sides and caps have one row.
@@ -38,8 +38,7 @@ pub(super) fn torus(level: u32) -> Vec<[Corner; 3]> {
         let uv = Vec2::new(fraction(i, columns), 1.0 - fraction(j, rows));
         corner(out * MAJOR + normal * MINOR, normal, uv)
     };
-    let cell = |i, j| quad([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)]);
-    (0..columns).flat_map(|i| (0..rows).flat_map(move |j| cell(i, j))).collect()
+    grid(columns, rows, |i, j| quad([node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)])).collect()
 }
 
 pub(super) fn cylinder(level: u32) -> Vec<[Corner; 3]> {
@@ -49,8 +48,7 @@ pub(super) fn cylinder(level: u32) -> Vec<[Corner; 3]> {
         let position = ring(i, sides, RADIUS) + Vec3::Y * (HALF_HEIGHT * (1.0 - 2.0 * v));
         corner(position, around(i, sides), Vec2::new(fraction(i, sides), v))
     };
-    let cell = |i, j| quad([wall(i, j + 1), wall(i + 1, j + 1), wall(i + 1, j), wall(i, j)]);
-    let walls = (0..sides).flat_map(|i| (0..rows).flat_map(move |j| cell(i, j)));
+    let walls = grid(sides, rows, |i, j| quad([wall(i, j + 1), wall(i + 1, j + 1), wall(i + 1, j), wall(i, j)]));
     walls.chain(cap(HALF_HEIGHT, level)).chain(cap(-HALF_HEIGHT, level)).collect()
 }
 

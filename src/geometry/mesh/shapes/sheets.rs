@@ -4,7 +4,7 @@ use std::f32::consts::{PI, TAU};
 
 use glam::{Vec2, Vec3};
 
-use super::{corner, quad};
+use super::{corner, grid, quad};
 use crate::mesh::Corner;
 
 /// The number of quads along each side of the saddle at level 0.
@@ -22,7 +22,7 @@ pub(super) fn saddle(level: u32) -> Vec<[Corner; 3]> {
         let [x, z] = [uv.x, uv.y].map(|t| 2.0 * SADDLE_HALF * t - SADDLE_HALF);
         corner(Vec3::new(x, (x * x - z * z) / 2.0, z), Vec3::new(-x, 1.0, z), uv)
     };
-    grid(cells, cells, node)
+    sheet(cells, cells, node)
 }
 
 pub(super) fn moebius() -> Vec<[Corner; 3]> {
@@ -35,7 +35,7 @@ pub(super) fn moebius() -> Vec<[Corner; 3]> {
         let (position, normal) = moebius_at(turn, 0.3 * across);
         corner(position, flip * normal, uv)
     };
-    grid(LENGTH, WIDTH, node)
+    sheet(LENGTH, WIDTH, node)
 }
 
 /// Returns position and normal at an angle around the Y axis and a distance from the middle line, which has radius 0.7.
@@ -50,16 +50,10 @@ fn moebius_at(turn: f32, across: f32) -> (Vec3, Vec3) {
     (out * 0.7 + rung * across, rung.cross(ahead))
 }
 
-/// Returns a grid of quads. `node(i, j)` lies at column i and row j; seen from outside, row numbers increase to the
-/// left of the direction in which column numbers increase.
-fn grid(columns: usize, rows: usize, node: impl Fn(usize, usize) -> Corner) -> Vec<[Corner; 3]> {
-    let mut triangles = Vec::with_capacity(2 * columns * rows);
-    for i in 0..columns {
-        for j in 0..rows {
-            triangles.extend(quad([node(i, j), node(i, j + 1), node(i + 1, j + 1), node(i + 1, j)]));
-        }
-    }
-    triangles
+/// Returns the sheet whose corner at column i and row j is `node(i, j)`; seen from outside, row numbers increase to the left
+/// of the direction in which column numbers increase.
+fn sheet(columns: usize, rows: usize, node: impl Fn(usize, usize) -> Corner) -> Vec<[Corner; 3]> {
+    grid(columns, rows, |i, j| quad([node(i, j), node(i, j + 1), node(i + 1, j + 1), node(i + 1, j)])).collect()
 }
 
 #[cfg(test)]

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use glam::DVec4;
-use rayon::prelude::*;
 
 use super::cage::{INFINITELY_SHARP, connected};
 use super::level::{Level, NONE};
+use super::split::of_corners;
 use super::{Linear, Refinement, Scheme};
 use crate::casts::to_u32;
 use crate::choice::choices;
@@ -110,24 +110,9 @@ fn sharpness(cage: &Level, level: &Level, rule: FaceVarying) -> Vec<f32> {
 fn split<T: Linear>(level: &Level, scheme: Scheme, values: &[T]) -> Vec<T> {
     let value = |side: u32| values[side as usize];
     let middle = |side: u32| (value(side) + value(level.polygons.after(side))) * 0.5;
-    match scheme {
-        Scheme::CatmullClark => {
-            let corner = |side: u32| {
-                let all = level.polygons.sides(level.polygons.face_of(side));
-                let share = 1.0 / f64::from(all.end - all.start);
-                let center = all.fold(T::default(), |sum, side| sum + value(side)) * share;
-                [value(side), middle(side), center, middle(level.polygons.before(side))]
-            };
-            (0..to_u32(values.len())).into_par_iter().map(corner).collect::<Vec<_>>().into_flattened()
-        }
-        Scheme::Loop | Scheme::Butterfly => {
-            let face = |face: u32| {
-                let [a, b, c] = [0, 1, 2].map(|k| value(3 * face + k));
-                let [ab, bc, ca] = [0, 1, 2].map(|k| middle(3 * face + k));
-                [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
-            };
-            let split = (0..level.faces()).into_par_iter().map(face);
-            split.collect::<Vec<_>>().into_flattened().into_flattened()
-        }
-    }
+    let other = |side: u32| match scheme {
+        Scheme::CatmullClark => level.polygons.mean(level.polygons.face_of(side), value),
+        Scheme::Loop | Scheme::Butterfly => middle(side),
+    };
+    of_corners(level, scheme, |side, before| [value(side), middle(side), middle(before)], other)
 }

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::Linear;
 use crate::casts::to_u32;
 
 /// Stands for a side that doesn't exist.
@@ -37,6 +38,13 @@ impl Polygons {
             Self::Quads => 4 * face..4 * face + 4,
             Self::Mixed { starts, .. } => starts[face as usize]..starts[face as usize + 1],
         }
+    }
+
+    /// The mean of what the sides of a face have.
+    pub(super) fn mean<T: Linear>(&self, face: u32, value: impl Fn(u32) -> T) -> T {
+        let sides = self.sides(face);
+        let share = 1.0 / f64::from(sides.end - sides.start);
+        sides.fold(T::default(), |sum, side| sum + value(side)) * share
     }
 
     /// The side that follows in its face.
@@ -117,11 +125,6 @@ impl Level {
     /// The side from which all faces around a point are reached counter-clockwise.
     pub(super) fn first_side(&self, point: u32) -> Option<u32> {
         Some(self.first_sides[point as usize]).filter(|&side| side != NONE)
-    }
-
-    /// The side that leaves the same point in the face that follows clockwise.
-    pub(super) fn clockwise(&self, side: u32) -> Option<u32> {
-        self.twin(side).map(|twin| self.polygons.after(twin))
     }
 
     /// The edges around the point where a side starts, counter-clockwise from that side: once around, or up to an edge that

@@ -19,16 +19,13 @@ impl Size {
     #[must_use]
     pub fn refined(self, scheme: Scheme) -> Self {
         let Self { points, edges, faces, corners } = self;
-        let points = points.saturating_add(edges);
+        let (centers, faces) = match scheme {
+            Scheme::CatmullClark => (faces, corners),
+            Scheme::Loop | Scheme::Butterfly => (0, faces.saturating_mul(4)),
+        };
+        let points = points.saturating_add(edges).saturating_add(centers);
         let edges = edges.saturating_mul(2).saturating_add(corners);
-        match scheme {
-            Scheme::CatmullClark => {
-                Self { points: points.saturating_add(faces), edges, faces: corners, corners: corners.saturating_mul(4) }
-            }
-            Scheme::Loop | Scheme::Butterfly => {
-                Self { points, edges, faces: faces.saturating_mul(4), corners: corners.saturating_mul(4) }
-            }
-        }
+        Self { points, edges, faces, corners: corners.saturating_mul(4) }
     }
 
     /// The size so many levels finer.

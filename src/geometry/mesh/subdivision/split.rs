@@ -62,58 +62,30 @@ impl Splitter<'_> {
     fn origins(&self) -> Vec<u32> {
         let level = self.level;
         let [points, edges] = [level.points, level.edge_sides.len()].map(to_u32);
-        let origin = |side: u32| level.origins[side as usize];
         let middle = |side: u32| points + level.edges[side as usize];
-        let center = |side: u32| points + edges + level.polygons.face_of(side);
-        match self.scheme {
-            Scheme::CatmullClark => {
-                self.of_sides(|side, before| [origin(side), middle(side), center(side), middle(before)])
-            }
-            Scheme::Loop | Scheme::Butterfly => {
-                self.of_triangles(|side, before| [origin(side), middle(side), middle(before)], middle)
-            }
-        }
+        let other = |side: u32| match self.scheme {
+            Scheme::CatmullClark => points + edges + level.polygons.face_of(side),
+            Scheme::Loop | Scheme::Butterfly => middle(side),
+        };
+        let corner = |side: u32, before: u32| [level.origins[side as usize], middle(side), middle(before)];
+        of_corners(level, self.scheme, corner, other)
     }
 
     /// The edge of each side of the finer level.
     fn edges(&self) -> Vec<u32> {
         let level = self.level;
         let first_inner = 2 * to_u32(level.edge_sides.len());
-        let inner = |side: u32| first_inner + side;
         // The half of a side's edge where the side starts.
         let start = |side: u32| {
             let edge = level.edges[side as usize];
             let first = level.edge_sides[edge as usize][0];
             2 * edge + u32::from(level.origins[first as usize] != level.origins[side as usize])
         };
-        let end = |side| start(side) ^ 1;
-        match self.scheme {
-            Scheme::CatmullClark => {
-                self.of_sides(|side, before| [start(side), inner(side), inner(before), end(before)])
-            }
-            Scheme::Loop | Scheme::Butterfly => self.of_triangles(
-                |side, before| [start(side), inner(side), end(before)],
-                |side| inner(level.polygons.after(side)),
-            ),
-        }
-    }
-
-    /// What `corner` makes of each side and the one before it, for the quadrilateral there.
-    fn of_sides(&self, corner: impl Fn(u32, u32) -> [u32; 4] + Sync) -> Vec<u32> {
-        let sides = (0..to_u32(self.level.origins.len())).into_par_iter();
-        sides.map(|side| corner(side, self.level.polygons.before(side))).collect::<Vec<_>>().into_flattened()
-    }
-
-    /// What `corner` makes of each side and the one before it, for the triangle there, and `middle` of the sides for the triangle
-    /// between these.
-    fn of_triangles(
-        &self,
-        corner: impl Fn(u32, u32) -> [u32; 3] + Sync,
-        middle: impl Fn(u32) -> u32 + Sync,
-    ) -> Vec<u32> {
-        let faces = (0..self.level.faces()).into_par_iter().map(|face| [3 * face, 3 * face + 1, 3 * face + 2]);
-        let split = faces.map(|[a, b, c]| [corner(a, c), corner(b, a), corner(c, b), [a, b, c].map(&middle)]);
-        split.collect::<Vec<_>>().into_flattened().into_flattened()
+        let other = |side: u32| match self.scheme {
+            Scheme::CatmullClark => first_inner + level.polygons.before(side),
+            Scheme::Loop | Scheme::Butterfly => first_inner + level.polygons.after(side),
+        };
+        of_corners(level, self.scheme, |side, before| [start(side), first_inner + side, start(before) ^ 1], other)
     }
 
     /// The sides on each edge of the finer level.
@@ -144,5 +116,31 @@ impl Splitter<'_> {
         let of_face = |face: u32| 4 * level.polygons.sides(face).start + 2;
         let points = level.first_sides.par_iter().map(of_point);
         points.chain(level.edge_sides.par_iter().map(of_edge)).chain((0..faces).into_par_iter().map(of_face)).collect()
+    }
+}
+
+/// What the corners of the finer level's faces get, in their order. Of the face where a side starts, `corner` says it of the
+/// first, the second and the last corner, by that side and the one before it. `other` says it of the third corner of a
+/// quadrilateral; in place of that, triangles have a fourth one between them, of whose corners it says it by the sides that
+/// these halve.
+pub(super) fn of_corners<T: Send>(
+    level: &Level,
+    scheme: Scheme,
+    corner: impl Fn(u32, u32) -> [T; 3] + Sync,
+    other: impl Fn(u32) -> T + Sync,
+) -> Vec<T> {
+    match scheme {
+        Scheme::CatmullClark => {
+            let face = |side: u32| {
+                let [first, second, last] = corner(side, level.polygons.before(side));
+                [first, second, other(side), last]
+            };
+            (0..to_u32(level.origins.len())).into_par_iter().map(face).collect::<Vec<_>>().into_flattened()
+        }
+        Scheme::Loop | Scheme::Butterfly => {
+            let faces = (0..level.faces()).into_par_iter().map(|face| [3 * face, 3 * face + 1, 3 * face + 2]);
+            let split = faces.map(|[a, b, c]| [corner(a, c), corner(b, a), corner(c, b), [a, b, c].map(&other)]);
+            split.collect::<Vec<_>>().into_flattened().into_flattened()
+        }
     }
 }

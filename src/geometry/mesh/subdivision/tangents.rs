@@ -66,7 +66,8 @@ impl<T: Linear> Values<'_, T> {
     fn sector(&self, side: u32) -> Sector {
         let mut first = side;
         while !self.is_first(first) {
-            first = self.level.clockwise(first).unwrap_or(side);
+            // The side that leaves the same point in the face that follows clockwise.
+            first = self.level.twin(first).map_or(side, |twin| self.level.polygons.after(twin));
             if first == side {
                 // All sides at the point must find the same sector.
                 first = self.level.first_side(self.level.origins[side as usize]).unwrap_or(side);

@@ -38,11 +38,7 @@ pub(super) struct Fans<T> {
 impl<'a, T: Linear> Values<'a, T> {
     pub(super) fn new(level: &'a Level, scheme: Scheme, points: &'a [T]) -> Self {
         let faces = if scheme == Scheme::CatmullClark { level.faces() } else { 0 };
-        let center = |face| {
-            let sides = level.polygons.sides(face);
-            let share = 1.0 / f64::from(sides.end - sides.start);
-            sides.fold(T::default(), |sum, side| sum + points[level.origins[side as usize] as usize]) * share
-        };
+        let center = |face| level.polygons.mean(face, |side| points[level.origins[side as usize] as usize]);
         Self { level, scheme, points, centers: (0..faces).into_par_iter().map(center).collect() }
     }
 

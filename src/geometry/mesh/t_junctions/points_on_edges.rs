@@ -8,10 +8,10 @@ use glam::DVec3;
 use super::line_segment::LineSegment;
 use super::{TRIES, corners, open_edges};
 use crate::casts::to_u32;
-use crate::mesh::bounding_box_tree::BoundingBoxTree;
 use crate::mesh::bounds::Bounds;
 use crate::mesh::weld_preview::TOLERANCES;
 use crate::mesh::{Edge, Topology};
+use crate::near::TriangleTree;
 
 /// The greatest distance of a point from an edge, as a part of the bounding diagonal.
 const NEAR: f64 = 1e-5;
@@ -19,7 +19,9 @@ const NEAR: f64 = 1e-5;
 /// All boundary points, and the lengths that tell points that nearly meet from T-junctions, in object units.
 pub(super) struct PointsOnEdges<'a> {
     topology: &'a Topology,
-    tree: BoundingBoxTree,
+    /// The boundary points that are tried, and a tree of them; none if there are none.
+    tried: Vec<u32>,
+    tree: Option<TriangleTree>,
     /// [`NEAR`] as a length.
     pub tolerance: f64,
     /// [`TOLERANCES`] as lengths.
@@ -33,15 +35,18 @@ impl<'a> PointsOnEdges<'a> {
         let bounds = Bounds::new(topology.points.iter().copied());
         let tolerance = bounds.part(NEAR);
         let shortest = shortest(topology);
-        let tree = BoundingBoxTree::new(boundary_points(topology, &shortest, tolerance));
-        Self { topology, tree, tolerance, welds: TOLERANCES.map(|weld| bounds.part(weld.into())), shortest }
+        let tried = boundary_points(topology, &shortest, tolerance);
+        let tree = TriangleTree::new(tried.iter().map(|point| [topology.points[*point as usize]; 3]));
+        Self { topology, tried, tree, tolerance, welds: TOLERANCES.map(|weld| bounds.part(weld.into())), shortest }
     }
 
     /// Adds the points that lie on an edge.
     pub(super) fn find(&self, edge: &Edge, points: &mut Vec<u32>) {
         let line = LineSegment::from_edge(self.topology, edge);
-        self.tree.near_segment(line.ends, self.tolerance, |place, point| {
-            if self.is_inside(edge, &line, point, place) {
+        let Some(tree) = &self.tree else { return };
+        tree.near_segment(line.ends, self.tolerance, |tried| {
+            let point = self.tried[tried as usize];
+            if self.is_inside(edge, &line, point, self.topology.points[point as usize].as_dvec3()) {
                 points.push(point);
             }
         });
@@ -81,17 +86,16 @@ fn shortest(topology: &Topology) -> Vec<f64> {
 }
 
 /// Returns the ends of all boundary edges, each once, but only the first few in any one place: a cell of a grid.
-fn boundary_points(topology: &Topology, shortest: &[f64], tolerance: f64) -> Vec<(DVec3, u32)> {
+fn boundary_points(topology: &Topology, shortest: &[f64], tolerance: f64) -> Vec<u32> {
     // How many points a cell has, by the bits of its coordinates. They never become integers, which could overflow, and adding 0 turns
     // -0 into +0.
     let mut spots: HashMap<[u64; 3], usize, RandomState> = HashMap::default();
     let cell = |place: DVec3| place.to_array().map(|x| ((x / (2.0 * tolerance)).floor() + 0.0).to_bits());
-    let place_of = |point: u32| topology.points[point as usize].as_dvec3();
     let open = (0..to_u32(topology.points.len())).filter(|&point| shortest[point as usize].is_finite());
     let few = open.filter(|&point| {
-        let count = spots.entry(cell(place_of(point))).or_default();
+        let count = spots.entry(cell(topology.points[point as usize].as_dvec3())).or_default();
         *count += 1;
         *count <= TRIES
     });
-    few.map(|point| (place_of(point), point)).collect()
+    few.collect()
 }

@@ -8,7 +8,7 @@ use geometry::near::{Farthest, Goal, Interval, TriangleTree, farthest};
 use geometry::progress::{Cancelled, Progress};
 
 with_defaults! {
-    /// When an interval is narrow enough; by default after about a minute on two cores at most.
+    /// When an interval is narrow enough: by default after about a minute on two cores at most.
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct Narrow {
         /// The width that suffices, as a part of the distance.

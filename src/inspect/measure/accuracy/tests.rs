@@ -1,4 +1,4 @@
-use glam::{Mat4, Vec2, vec3};
+use glam::{DVec3, Mat4, Vec2, vec3};
 
 use super::*;
 use crate::settings::Settings;

@@ -15,7 +15,7 @@ impl AccuracyMeasurement<'_> {
         let this = &*self;
         let mut used = vec![false; vertices.len()];
         triangles.iter().flatten().for_each(|index| used[*index as usize] = true);
-        let corners = blocks(vertices.len(), this.options.threads, |range| {
+        let corners = blocks(vertices.len(), |range| {
             let mut sums = Sums::default();
             for vertex in range.filter(|vertex| used[*vertex]).map(|vertex| &vertices[vertex]) {
                 let point = Point { position: position(vertex), normal: normal(vertex), patch: vertex.patch() };
@@ -23,7 +23,7 @@ impl AccuracyMeasurement<'_> {
             }
             sums
         });
-        let insides = blocks(triangles.len(), this.options.threads, |range| {
+        let insides = blocks(triangles.len(), |range| {
             let mut sums = Sums::default();
             let sampled = triangles[range].iter().map(|triangle| triangle.map(|index| &vertices[index as usize]));
             sampled.for_each(|corners| this.sample(corners, &mut sums));

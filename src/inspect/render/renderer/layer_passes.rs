@@ -153,7 +153,7 @@ fn layer_area(scene: &Scene, target: &Target, camera: &Camera, settings: &Settin
     }
     let Some(bounds) = scene.tessellator.posed().see_through_bounds() else { return whole };
     let clip_from_object = camera.clip_from_object(target.viewport(), &scene.bounds);
-    let room = settings.reach(scene.tessellator.mesh()) + ROUNDING_ULPS * scene.ulp();
+    let room = settings.reach(scene.tessellator.mesh()) + ROUNDING_ULPS * scene.ulp;
     let inputs = settings.inputs(LodView::default());
     let surfaces = || inputs.surfaces(scene.tessellator.mesh());
     let areas = bounds.iter().flat_map(|own| surfaces().map(|surface| own.of_surface(surface))).map(|own| match own {

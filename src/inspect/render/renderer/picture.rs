@@ -75,7 +75,7 @@ impl Renderer {
         let has_layers = !layer_areas.iter().all(|place| is_empty(place.area));
         let found_materials = |half| match scene.half(half) {
             Some(own) if has_layers => {
-                self.materials.found_groups(&self.gpu, &self.placed(own, half, settings), target.depths())
+                self.materials.found_groups(&self.gpu, &self.placed(own, half, settings), &target.depth)
             }
             _ => Vec::new(),
         };
@@ -173,8 +173,8 @@ impl Renderer {
         // The difference comes under lines over nothing. What is compared has a background: its alpha is that of the wireframe.
         let is_alone = step == Step::Difference;
         let is_empty = if matches!(steps.last(), Some(Step::Difference)) { is_alone } else { target.is_transparent };
-        let own = linear_color(settings.background_color());
-        let background = if is_empty { wgpu::Color::TRANSPARENT } else { own };
+        let [r, g, b] = linear(settings.background_color()).map(f64::from);
+        let background = if is_empty { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } };
         let color = target.color(background, is_first || is_alone, is_last);
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, group, &[]);
@@ -275,10 +275,4 @@ fn draw_lines(pass: &mut wgpu::RenderPass, pipelines: &[wgpu::RenderPipeline; 2]
             pass.draw(0..6, 0..*count);
         }
     }
-}
-
-/// An sRGB colour as the linear one that a clear takes.
-fn linear_color(srgb: [u8; 3]) -> wgpu::Color {
-    let [r, g, b] = linear(srgb).map(f64::from);
-    wgpu::Color { r, g, b, a: 1.0 }
 }
