@@ -46,7 +46,10 @@ impl<'a> Source<'a> {
         let tokens = tokens(text);
         let closed_by = brackets(text, &tokens)?;
         check_names(text, &tokens, purpose)?;
-        check_lengths(text, &tokens)?;
+        let mut statements = tokens.split(|token| matches!(token.text, ";" | "{" | "}"));
+        if let Some(statement) = statements.find(|statement| statement.len() > MOST_TOKENS) {
+            return Err(Fault { line: line_of(text, statement[0].at), kind: FaultKind::LongStatement });
+        }
         let mut source = Self { text, tokens, closed_by, functions: HashMap::new() };
         let found: Vec<_> = (0..source.tokens.len()).filter_map(|at| source.function(at)).collect();
         source.functions = found.into_iter().collect();
@@ -172,14 +175,6 @@ fn check_names(text: &str, tokens: &[Token], purpose: &UserPurpose) -> Result<()
     let needed: HashSet<String> = purpose.needed_names();
     match declared(tokens).iter().map(|(_, name)| name).find(|name| needed.contains(name.text)) {
         Some(token) => fault(token, FaultKind::Taken),
-        None => Ok(()),
-    }
-}
-
-fn check_lengths(text: &str, tokens: &[Token]) -> Result<(), Fault> {
-    let mut statements = tokens.split(|token| matches!(token.text, ";" | "{" | "}"));
-    match statements.find(|statement| statement.len() > MOST_TOKENS) {
-        Some(statement) => Err(Fault { line: line_of(text, statement[0].at), kind: FaultKind::LongStatement }),
         None => Ok(()),
     }
 }
