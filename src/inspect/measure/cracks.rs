@@ -3,7 +3,8 @@
 use glam::{DVec3, Mat4, Vec2, Vec3};
 
 #[cfg(test)]
-use super::outlines::{EdgeSide, OutlinePoint, Outlines};
+use super::outlines::Outlines;
+use super::outlines::{EdgeSide, OutlinePoint};
 use geometry::mesh::{Mesh, Topology};
 use geometry::view::project;
 
