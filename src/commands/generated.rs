@@ -118,10 +118,10 @@ fn colors_and_overlays() -> Vec<Command> {
             Control::Colors(_, given) => (format!("{colors}: {}", given.label()), Some(given.source())),
             Control::Switch(_) => (format!("Overlay: {}", overlay.label()), None),
         };
-        let needs: &[Need] = match overlay {
-            Overlay::Bones => &[Need::Bones],
-            _ if source == Some(ColorSource::TextureCoordinates) => &[Need::TextureCoordinates],
-            _ => &[],
+        let needs: &[Need] = match (overlay == Overlay::Bones, source == Some(ColorSource::TextureCoordinates)) {
+            (true, _) => &[Need::Bones],
+            (false, true) => &[Need::TextureCoordinates],
+            (false, false) => &[],
         };
         let keys = vec![overlay_key(overlay)];
         Command { keys, needs, ..Command::new(Change::Overlay(overlay), name, overlay.text()) }
