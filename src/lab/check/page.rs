@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::report::{Asset, GateResult, Report, Status, View, gate_title};
+use super::report::{Asset, Report, Status, View, gate_title};
 use geometry::numbers::{counted, grouped};
 use inspect::html::{END, begin, escaped};
 
