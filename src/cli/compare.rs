@@ -29,7 +29,8 @@ pub struct Args {
     /// lines a triangle
     #[arg(value_name = "THEIRS")]
     pub theirs: PathBuf,
-    /// The mesh that both tessellate: a mesh file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
+    /// The mesh that both tessellate: a mesh file, or a shape made in code such
+    /// as shape:cube-split, or shape:torus@2 (finer)
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub mesh: Source,
     /// Picture to write, a PNG file: their triangles in the colours of their distance from ours, and what differs as lines

@@ -11,7 +11,8 @@ use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A mesh file, or a shape made in code; without one, each exhibit has the shape that suits it
+    /// A mesh file, or a shape made in code; without one, each exhibit has
+    /// the shape that suits it
     #[arg(value_parser = super::options::source())]
     pub file: Option<Source>,
     /// Folder for a picture of each exhibit, and a page that explains them, gallery.md; made if it isn't there

@@ -65,7 +65,8 @@ use load::{LoadError, MatcapError, Source};
 pub struct Cli {
     #[command(subcommand)]
     pub command: Option<Command>,
-    /// Mesh that the window opens: a mesh file, or a shape made in code such as shape:cube-split, or shape:torus@2 (finer)
+    /// Mesh that the window opens: a mesh file, or a shape made in code such
+    /// as shape:cube-split, or shape:torus@2 (finer)
     #[arg(value_parser = options::source())]
     pub file: Option<Source>,
     #[command(flatten)]

@@ -107,7 +107,8 @@ fn overlay_key(overlay: Overlay) -> KeyboardShortcut {
     })
 }
 
-/// Commands for colours and overlays. Each but the one for the material's colours is a switch: given again, it switches off.
+/// Commands for colours and overlays. Each but the one for the material's colours is a switch: given again, it switches
+/// off.
 fn colors_and_overlays() -> Vec<Command> {
     let (material, colors) = (Colors::default(), "Colours");
     let own = format!("{colors}: {}", material.label());

@@ -1,4 +1,5 @@
-//! The progress of a long job, and the request to cancel it: one handle, shared between the job and the code that waits for it.
+//! The progress of a long job, and the request to cancel it: one handle, shared between the job and the code that waits
+//! for it.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU8, AtomicU32, Ordering};

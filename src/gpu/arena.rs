@@ -36,8 +36,9 @@ pub(super) struct Arena {
 
 /// The memory for a mesh's output. A vertex takes 32 bytes, a triangle 12.
 ///
-/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles. Smaller numbers are raised to those of one patch: 8,256
-/// vertices and 16,129 triangles. WebGPU's default limits allow 4,194,304 vertices and 11,184,810 triangles.
+/// At a factor F a patch has about 0.75 F² vertices and 1.5 F² triangles. Smaller numbers are raised to those of one
+/// patch: 8,256 vertices and 16,129 triangles. WebGPU's default limits allow 4,194,304 vertices and
+/// 11,184,810 triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Capacity {
     /// The most vertices that are emitted.

@@ -63,7 +63,8 @@ fn cofactors(linear: &DMat3) -> DMat3 {
     DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y)) * sign
 }
 
-/// Transforms a normal by the inverse transpose of a linear map, and normalises it; returns none if the result has no direction.
+/// Transforms a normal by the inverse transpose of a linear map, and normalises it; returns none if the result has no
+/// direction.
 pub(super) fn turned(normal: Vec3, linear: &DMat3) -> Option<Vec3> {
     let normal = GivenNormal::new(normal).unit()?;
     if *linear == DMat3::IDENTITY {

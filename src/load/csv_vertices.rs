@@ -67,7 +67,8 @@ const LINES: usize = 1 << 16;
 /// What frame debuggers write where there is no value.
 const NOTHING: [&[u8]; 3] = [b"", b"-", b"---"];
 
-/// Reads a file. `column` names the attribute that is the position, without its components; without it, it is found by its name.
+/// Reads a file. `column` names the attribute that is the position, without its components; without it, it is found
+/// by its name.
 ///
 /// # Errors
 /// [`CsvError`], whose message says what is wrong, where, and what to do.

@@ -8,7 +8,8 @@ use geometry::casts::to_usize;
 use geometry::mesh::Topology;
 use geometry::tessellate::{HullFactors, Partitioning, RowChoice};
 
-/// The first line. `patch` is the index of the triangle, `e0` to `e2` are TessFactor[0..2], `inside` is InsideTessFactor.
+/// The first line. `patch` is the index of the triangle, `e0` to `e2` are TessFactor[0..2], `inside` is
+/// InsideTessFactor.
 const HEADER: [&str; 5] = ["patch", "e0", "e1", "e2", "inside"];
 
 /// The first line under rows. `base` is the number of the edge that is the base, empty if the factors of the edges choose it;

@@ -17,7 +17,8 @@ with_defaults! {
     /// Limits on what a load may read and how much memory it may take.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub struct Limits {
-        /// The size of the largest file that is read, in bytes. It applies to the model's file and to each file that it names.
+        /// The size of the largest file that is read, in bytes. It applies to the model's file and to each file that it
+        /// names.
         pub file: u64 = 2 << 30,
         /// How much memory a load may take, in bytes, beyond four times the size of all its files.
         pub memory: u64 = 512 << 20,
@@ -66,7 +67,8 @@ pub fn file_reason(error: &io::Error) -> String {
     }
 }
 
-/// Opens a regular file for reading. Returns none for a folder, a device or a pipe, since opening those may block for ever.
+/// Opens a regular file for reading. Returns none for a folder, a device or a pipe, since opening those may block for
+/// ever.
 ///
 /// # Errors
 /// The errors of the file system.
@@ -174,8 +176,9 @@ fn read_whole(
 /// The greatest number of symbolic links that are followed to a file that doesn't exist yet.
 const MAX_LINKS: usize = 40;
 
-/// Writes a file: first under another name in the same folder, then renamed. So the old file stays whole if the disk is full or
-/// the process is killed. A pipe or a device is written directly. A symbolic link stays a link, and permissions are kept.
+/// Writes a file: first under another name in the same folder, then renamed. So the old file stays whole if the disk is
+/// full or the process is killed. A pipe or a device is written directly. A symbolic link stays a link, and permissions
+/// are kept.
 ///
 /// # Errors
 /// The errors of the file system. An existing file that is read-only isn't replaced.

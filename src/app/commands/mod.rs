@@ -1,4 +1,5 @@
-//! The menus, keys and search that give commands, all made from the table in [`crate::commands`], and what each command does.
+//! The menus, keys and search that give commands, all made from the table in [`crate::commands`], and what each command
+//! does.
 
 mod copy_command;
 mod key_list;

@@ -89,9 +89,10 @@ impl Layout {
     }
 }
 
-/// Returns the three corners of a patch, followed by its neighbours' corners along the sides 0-1, 1-2 and 2-0. Each pair is in
-/// the patch's own direction: the first corner of the first pair lies on the point of corner 0, the second on the point of corner
-/// 1, and so on. On an edge with one side, or with three or more, the pair holds the patch's own corners.
+/// Returns the three corners of a patch, followed by its neighbours' corners along the sides 0-1, 1-2 and 2-0. Each
+/// pair is in the patch's own direction: the first corner of the first pair lies on the point of corner 0, the second
+/// on the point of corner 1, and so on. On an edge with one side, or with three or more, the pair holds the patch's own
+/// corners.
 ///
 /// # Panics
 /// If `patch` isn't an index into [`Topology::patches`].

@@ -12,7 +12,8 @@ use crate::cores::in_ranges;
 /// The least number of corners that are worth a thread.
 const LEAST: usize = 1 << 16;
 
-/// An axis-aligned bounding box, in object units, and the radius of a sphere around its centre that contains all corners.
+/// An axis-aligned bounding box, in object units, and the radius of a sphere around its centre that contains all
+/// corners.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// The least coordinates, in object units.
@@ -59,12 +60,14 @@ impl Bounds {
         self.min.is_finite() && self.max.is_finite()
     }
 
-    /// Returns a length relative to the diagonal, in object units. The result is an f64, since the diagonal itself may leave f32.
+    /// Returns a length relative to the diagonal, in object units. The result is an f64, since the diagonal itself may
+    /// leave f32.
     pub(super) fn part(&self, relative: f64) -> f64 {
         relative * self.min.as_dvec3().distance(self.max.as_dvec3())
     }
 
-    /// Returns the greatest distance of a corner from [`center`](Self::center): at most half of the diagonal, often less.
+    /// Returns the greatest distance of a corner from [`center`](Self::center): at most half of the diagonal, often
+    /// less.
     pub fn radius(&self) -> f32 {
         self.radius
     }

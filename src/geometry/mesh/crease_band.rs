@@ -1,11 +1,12 @@
 //! Crease bands: bands of small triangles along creases, which leave PN triangles no split normals to tear at. This was
 //! the remedy before PN-AEN. Source: Vlachos, Peters, Boyd and Mitchell 2001, "Curved PN Triangles", on sharp edges.
 //!
-//! An edge is *creased* if its sides have different normals at an end. Every triangle is cut back along its creased edges by the
-//! band's width, and the strip between cut and crease becomes thin triangles. On the crease all sides share one normal, the mean
-//! of theirs; on the cut each triangle keeps its own. So the crease is rounded off within the width. The corners around a point
-//! that are connected by edges (a fan, see `fans`) share one normal too if theirs differ. Then the other edges of the fan are cut
-//! as well, including those of triangles that touch the crease only with that point.
+//! An edge is *creased* if its sides have different normals at an end. Every triangle is cut back along its creased
+//! edges by the band's width, and the strip between cut and crease becomes thin triangles. On the crease all sides
+//! share one normal, the mean of theirs; on the cut each triangle keeps its own. So the crease is rounded off within
+//! the width. The corners around a point that are connected by edges (a fan, see `fans`) share one normal too if theirs
+//! differ. Then the other edges of the fan are cut as well, including those of triangles that touch the crease only
+//! with that point.
 //!
 //! Between its ends a crease still curves by its normals, like any edge of PN triangles. Where it rises by more than
 //! the band's width, triangles of the band fold over. That is a limit of this method, which PN-AEN doesn't have.
@@ -36,7 +37,8 @@ use pieces::Cutter;
 /// The greatest width of a crease band, relative to the bounding diagonal.
 pub const WIDEST: f32 = 0.1;
 
-/// Memory for each patch, in bytes: its corners, their fans, the fans' normals, and the search for patches on the same points.
+/// Memory for each patch, in bytes: its corners, their fans, the fans' normals, and the search for patches on the same
+/// points.
 const PER_PATCH: usize = 160;
 
 /// The width of a crease band, and how many edges and triangles it changed.
@@ -56,8 +58,9 @@ pub struct CreaseBand {
 /// no more than half-way from its corner to the centre of its incircle, so that no triangle turns over. Where there is
 /// room, the band is at least eight units in the last place (ULP) of the largest coordinate wide.
 ///
-/// Corners are moved to the topology's points, so that what was welded within a tolerance is exactly equal from here on; a
-/// further weld isn't needed. Otherwise a mesh without creases doesn't change. Degenerate triangles stay degenerate.
+/// Corners are moved to the topology's points, so that what was welded within a tolerance is exactly equal from here
+/// on; a further weld isn't needed. Otherwise a mesh without creases doesn't change. Degenerate triangles stay
+/// degenerate.
 ///
 /// Afterwards all sides of each edge have the same normals, also on non-manifold edges. A closed mesh stays closed, and
 /// boundary edges are only subdivided. Takes time linear in the number of triangles, except for sorting.

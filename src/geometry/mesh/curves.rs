@@ -58,7 +58,8 @@ pub struct Curve {
 #[derive(Clone, Debug, Default)]
 pub struct Curves {
     pub curves: Vec<Curve>,
-    /// For each side that a curve's control points are computed from, its corners at the start and the end of the curve.
+    /// For each side that a curve's control points are computed from, its corners at the start and the end of the
+    /// curve.
     pub sides: Vec<[u32; 2]>,
     /// Factor f is the factor of the curves `factor_curves[f]..factor_curves[f + 1]`. There is one factor for each
     /// edge, or for each side if nothing is shared.
@@ -157,7 +158,8 @@ impl Curves {
         to_u32(self.factor_curves.len()) - 1
     }
 
-    /// Adds a curve in the edge's direction for the sides `all`. Its control points are computed from the sides `asked`.
+    /// Adds a curve in the edge's direction for the sides `all`. Its control points are computed from the sides
+    /// `asked`.
     fn push_shared(
         &mut self,
         topology: &Topology,
@@ -189,7 +191,8 @@ impl Curves {
         for side in sides.clone() {
             let reversed = self.per_patch && topology.sides[side as usize].reversed();
             let turned = |[a, b]: [u32; 2]| if reversed { [b, a] } else { [a, b] };
-            // The other side, if there is exactly one: the shader in the white paper averages its control points with these.
+            // The other side, if there is exactly one: the shader in the white paper averages its control points with
+            // these.
             let has_other = sides.len() == 2 && with_neighbour(&topology.sides[side as usize]);
             let other = has_other.then(|| sides.start + sides.start + 1 - side);
             let asked = std::iter::once(side).chain(other);

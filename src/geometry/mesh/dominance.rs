@@ -13,8 +13,9 @@ pub struct Dominance {
     pub sides: Vec<u32>,
     /// For each point, its dominant corner: 4 * patch + k for corner k of some patch around the point.
     pub corners: Vec<u32>,
-    /// The corners on point p and their weights are `parts[part_starts[p]..part_starts[p + 1]]`. A corner's weight is the sum of
-    /// the angles, in radians, of its triangles there, so that it doesn't depend on how faces are triangulated. It is never 0.
+    /// The corners on point p and their weights are `parts[part_starts[p]..part_starts[p + 1]]`. A corner's weight is
+    /// the sum of the angles, in radians, of its triangles there, so that it doesn't depend on how faces are
+    /// triangulated. It is never 0.
     pub part_starts: Vec<u32>,
     pub parts: Vec<(u32, f32)>,
     /// The factors of the edges at point p are `factors[factor_starts[p]..factor_starts[p + 1]]`.

@@ -1,4 +1,5 @@
-//! Computes normals for corners without one. A corner may get different normals from different triangles, and is then split.
+//! Computes normals for corners without one. A corner may get different normals from different triangles, and is then
+//! split.
 
 use std::ops::Range;
 

@@ -21,7 +21,8 @@ use crate::progress::{Cancelled, Progress};
 
 use distinct_corners::DistinctCorners;
 
-/// The greatest number of triangles in one list while they are collected. A list that is full isn't copied into a larger one.
+/// The greatest number of triangles in one list while they are collected. A list that is full isn't copied into a
+/// larger one.
 const MAX_RUN: usize = 1 << 16;
 
 /// A corner from a file or a shape. Its normal may be missing or unusable.
@@ -319,11 +320,12 @@ impl MeshBuilder {
         self.len() == 0
     }
 
-    /// Builds the mesh. Triangles are grouped by material and keep their order otherwise. Corners with the same bits (-0 counts
-    /// as 0) are merged, in the order of first use. Materials without triangles are left out. Normals that are missing or have no
-    /// direction are computed (see `normals::fan_normals`); others are scaled to unit length (see [`GivenNormal`]). Coordinates
-    /// of positions that are nearer to 0 than f32's least normal number become 0, since devices may treat them as 0. The mesh's
-    /// `repairs` counts these changes. Takes time linear in the number of triangles.
+    /// Builds the mesh. Triangles are grouped by material and keep their order otherwise. Corners with the same bits
+    /// (-0 counts as 0) are merged, in the order of first use. Materials without triangles are left out. Normals that
+    /// are missing or have no direction are computed (see `normals::fan_normals`); others are scaled to unit
+    /// length (see [`GivenNormal`]). Coordinates of positions that are nearer to 0 than f32's least normal number
+    /// become 0, since devices may treat them as 0. The mesh's `repairs` counts these changes. Takes time linear in the
+    /// number of triangles.
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.

@@ -39,10 +39,12 @@ const CELL_ANGLE: f32 = 1.3;
 /// The greatest number of cells in a grid, unless the grid is the coarsest one.
 const MAX_CELLS: usize = 1024;
 
-/// How far a normal's length may be from 1 without counting as rescaled: as far as the rounding of 8-bit normals takes it.
+/// How far a normal's length may be from 1 without counting as rescaled: as far as the rounding of 8-bit normals takes
+/// it.
 const LENGTH_TOLERANCE: f64 = 1e-2;
 
-/// How far the square of a normal's length may be from 1 for the normal to keep its bits: a little more than rounding to f32.
+/// How far the square of a normal's length may be from 1 for the normal to keep its bits: a little more than rounding
+/// to f32.
 const ROUNDING: f64 = 1e-6;
 
 /// A normal from a file or a caller, checked and of unit length.
@@ -143,11 +145,12 @@ fn rounded(direction: DVec3) -> Vec3 {
 
 /// Computes a unit normal for each face around a point.
 ///
-/// The normal of face f is the mean of the surface normals of all faces g around the point (f among them) that lie within the
-/// crease angle (in degrees, 0 to 180) of f's, each weighted by g's angle at the point. Faces without area have weight 0; their
-/// own normals are the mean over all faces, or +Z if no face has area. If there are more than 256 faces, they are first grouped
-/// in cells of directions, about 1.3 degrees wide (up to 10 where they point in very different directions), and the mean normal
-/// of a cell is used for each of its faces. With a crease angle below 1.3 degrees such faces keep their own normals.
+/// The normal of face f is the mean of the surface normals of all faces g around the point (f among them) that lie
+/// within the crease angle (in degrees, 0 to 180) of f's, each weighted by g's angle at the point. Faces without area have
+/// weight 0; their own normals are the mean over all faces, or +Z if no face has area. If there are more than 256 faces, they
+/// are first grouped in cells of directions, about 1.3 degrees wide (up to 10 where they point in very different directions),
+/// and the mean normal of a cell is used for each of its faces. With a crease angle below 1.3 degrees such faces keep their own
+/// normals.
 ///
 /// Takes time linear in the number of faces, except in fans of up to 256 faces. Source of the weights: Thürmer and
 /// Wüthrich 1998, "Computing vertex normals from polygonal facets".

@@ -1,4 +1,5 @@
-//! Cuts polygons into triangles by ear clipping. Every corner is used, and no triangle of a valid polygon lies outside it.
+//! Cuts polygons into triangles by ear clipping. Every corner is used, and no triangle of a valid polygon lies outside
+//! it.
 //!
 //! Source: O'Rourke 1998, "Computational Geometry in C", section 1.6.6: cutting off an ear changes only whether its two
 //! neighbours are ears. Libraries for this leave out corners on straight edges, which makes T-junctions.
@@ -48,7 +49,8 @@ fn newell(outline: &[Vec3]) -> DVec3 {
     outline.array_windows().map(|&[a, b]| (a.as_dvec3() - first).cross(b.as_dvec3() - first)).sum()
 }
 
-/// Projects the outline along the axis that is nearest to its normal, so that it is counter-clockwise. Coordinates stay exact.
+/// Projects the outline along the axis that is nearest to its normal, so that it is counter-clockwise. Coordinates stay
+/// exact.
 fn flat(outline: &[Vec3], normal: DVec3) -> Vec<DVec2> {
     let size = normal.abs();
     let (u, v, w) = match () {

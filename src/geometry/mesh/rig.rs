@@ -29,7 +29,8 @@ pub struct Rig {
     /// start from, and the sign of its bitangent there. Behind them are what morph targets of weight 1 add to tangents, to which
     /// `deltas` refer. Empty without tangents.
     pub tangents: Vec<[f32; 4]>,
-    /// The displacements by morph targets: one part for each binding, with an entry for each target that moves or turns it.
+    /// The displacements by morph targets: one part for each binding, with an entry for each target that moves or turns
+    /// it.
     pub deltas: Vec<Delta>,
     /// Corners at one position with the same number here stay together in every pose: they have the same joints,
     /// weights and displacements.
@@ -59,7 +60,8 @@ pub struct Reach {
     delta: f64,
 }
 
-/// A corner before it is deformed, in the space that the matrices of its joints start from. The shaders use this struct too.
+/// A corner before it is deformed, in the space that the matrices of its joints start from. The shaders use this struct
+/// too.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Binding {
@@ -186,7 +188,8 @@ impl fmt::Display for AnimatedCounts {
     }
 }
 
-/// The greatest coordinate of a pose, in object units. Control points, which are sums of several positions, then stay within f32.
+/// The greatest coordinate of a pose, in object units. Control points, which are sums of several positions, then stay
+/// within f32.
 pub const LARGEST_COORDINATE: f32 = 1e37;
 
 impl Rig {

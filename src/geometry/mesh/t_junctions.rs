@@ -46,13 +46,14 @@ pub struct TJunction {
 /// smallest of [`TOLERANCES`](super::weld_preview::TOLERANCES) within which the distance lies is less than half of the
 /// length of every boundary edge at both points: then welding joins the two and collapses none of those edges.
 ///
-/// *Beside the edge*: the point lies inside a chain of two or more other boundary edges that connects the edge's ends, as where a
-/// curved surface changes its density. Along the edge, the chain's points come in order, strictly between the ends; across, they
-/// lie within 1/8 of the edge's length (an arc of 56 degrees over its chord). The chain's triangles lie on the other side of the
-/// edge than its own triangle: the direction from the edge to the third corner of its triangle is opposed to the directions from
-/// the chain's edges to theirs. The chain's third corners lie beyond the edge, and none of them is a point of the chain. A height
-/// counts only from a thousandth of the edge's length on. So neither a thin ribbon nor a two-sided leaf is taken for a seam,
-/// since their third corners lie between; nor is a sliver.
+/// *Beside the edge*: the point lies inside a chain of two or more other boundary edges that connects the edge's ends,
+/// as where a curved surface changes its density. Along the edge, the chain's points come in order, strictly between
+/// the ends; across, they lie within 1/8 of the edge's length (an arc of 56 degrees over its chord). The chain's
+/// triangles lie on the other side of the edge than its own triangle: the direction from the edge to the third corner
+/// of its triangle is opposed to the directions from the chain's edges to theirs. The chain's third corners lie beyond
+/// the edge, and none of them is a point of the chain. A height counts only from a thousandth of the edge's length on.
+/// So neither a thin ribbon nor a two-sided leaf is taken for a seam, since their third corners lie between; nor is a
+/// sliver.
 ///
 /// A corner of the edge's own triangle is never its T-junction.
 ///

@@ -24,11 +24,13 @@ const BLOCK: usize = 1 << 16;
 
 /// A mesh's patches and the edges between them.
 ///
-/// Points are in the order of their first appearance among the corners, patches in the order of their triangles, edges in the
-/// order of their two points, and an edge's sides in the order of their patches. So the same mesh always gives the same topology.
+/// Points are in the order of their first appearance among the corners, patches in the order of their triangles, edges
+/// in the order of their two points, and an edge's sides in the order of their patches. So the same mesh always gives
+/// the same topology.
 ///
-/// If most edges have two sides, a topology takes about 62 bytes a triangle. To save memory, what follows from other data isn't
-/// stored: a patch's corners (they are in the mesh's triangles), an edge's points, and the number of its sides.
+/// If most edges have two sides, a topology takes about 62 bytes a triangle. To save memory, what follows from other
+/// data isn't stored: a patch's corners (they are in the mesh's triangles), an edge's points, and the number of its
+/// sides.
 #[derive(Clone, Debug, Default)]
 pub struct Topology {
     /// Welded positions, in object units.
@@ -245,7 +247,8 @@ impl Topology {
         })
     }
 
-    /// Returns whether the three corners of a patch lie in line, to within a unit in the last place of their largest coordinate.
+    /// Returns whether the three corners of a patch lie in line, to within a unit in the last place of their largest
+    /// coordinate.
     pub fn is_in_line(&self, patch: u32) -> bool {
         let corners = self.patch_positions(patch);
         let unit = ulp_at(corners.iter().map(|corner| corner.abs().max_element()).fold(0.0, f32::max));

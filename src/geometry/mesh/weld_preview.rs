@@ -40,7 +40,8 @@ impl fmt::Display for WeldPreview {
     }
 }
 
-/// The tolerances to try, relative to the bounding diagonal: from the rounding of f32 to distances that visibly change a mesh.
+/// The tolerances to try, relative to the bounding diagonal: from the rounding of f32 to distances that visibly change
+/// a mesh.
 pub const TOLERANCES: [f32; 6] = [1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// How many triangles of the mesh are tried to estimate how long most sides are.

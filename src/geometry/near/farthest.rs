@@ -71,7 +71,8 @@ const DEEPEST: u32 = 120;
 /// Every so many cuts a piece is halved, so that pieces shrink whatever the tree is like.
 const HALVED_EVERY: u32 = 6;
 
-/// The least overhang of a piece beyond a triangle of the tree that is cut off, as a part of the distance that is near enough.
+/// The least overhang of a piece beyond a triangle of the tree that is cut off, as a part of the distance that is near
+/// enough.
 const LEAST_BEYOND: f64 = 0.05;
 
 /// Every so many corners of triangles are searched for first, so that the distances of most others needn't be exact.
@@ -83,7 +84,8 @@ const ROUND: usize = 1 << 13;
 /// The number of triangles or pieces that a thread takes at once. Results don't depend on the number of threads.
 const BLOCK: usize = 512;
 
-/// Measures the largest distance from a soup, whose positions must be finite, to a tree. `None` if the soup has no triangle.
+/// Measures the largest distance from a soup, whose positions must be finite, to a tree. `None` if the soup has no
+/// triangle.
 ///
 /// # Errors
 /// `progress` was cancelled.

@@ -57,7 +57,8 @@ impl Boundable for Bounded {
 }
 
 impl TriangleTree {
-    /// Builds the hierarchy from the corners of triangles, which must be finite. Returns `None` if there are no triangles.
+    /// Builds the hierarchy from the corners of triangles, which must be finite. Returns `None` if there are no
+    /// triangles.
     pub fn new(triangles: impl Iterator<Item = [Vec3; 3]> + Clone) -> Option<Self> {
         triangles.clone().next()?;
         let largest = triangles.clone().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f32::max);

@@ -15,7 +15,8 @@ pub fn patch_net(mesh: &Mesh, topology: &Topology, inputs: &Inputs, patch: u32) 
     ControlNets::from_edges(mesh, topology, inputs, edges.into_iter()).patch(patch)
 }
 
-/// The control nets of a mesh: two control points for each curve, and one for each patch, which is computed when needed.
+/// The control nets of a mesh: two control points for each curve, and one for each patch, which is computed when
+/// needed.
 pub(super) struct ControlNets<'a> {
     pub(super) mesh: &'a Mesh,
     pub(super) topology: &'a Topology,

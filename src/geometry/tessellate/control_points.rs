@@ -14,8 +14,9 @@ use super::{Surface, SurfaceFamily};
 /// squared sine of 0.1 degrees. Below it, rounding would decide in which line their tangent planes intersect.
 pub const PARALLEL: f32 = 3.046e-6;
 
-/// Returns the control point near `a` of a PN triangle's edge: the point one third of the way from `a` to `b`, projected into the
-/// tangent plane at `a` (Vlachos et al. 2001, section 3.1: b210 = (2 P1 + P2 - w12 N1) / 3). `normal` is the unit normal at `a`.
+/// Returns the control point near `a` of a PN triangle's edge: the point one third of the way from `a` to `b`,
+/// projected into the tangent plane at `a` (Vlachos et al. 2001, section 3.1: b210 = (2 P1 + P2 - w12 N1) / 3).
+/// `normal` is the unit normal at `a`.
 pub(crate) fn edge_control_point(a: Vec3, b: Vec3, normal: Vec3) -> Vec3 {
     (a * 2.0 + b - normal * (b - a).dot(normal)) * (1.0 / 3.0)
 }
@@ -57,7 +58,8 @@ pub(crate) fn nagata_control_point(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> 
     (a + b - curvature) * 0.5
 }
 
-/// Returns the cubic control point near `a` of a quadratic edge whose middle control point is `middle`, by degree elevation.
+/// Returns the cubic control point near `a` of a quadratic edge whose middle control point is `middle`, by degree
+/// elevation.
 pub(super) fn elevated_control_point(a: Vec3, middle: Vec3) -> Vec3 {
     (a + middle * 2.0) * (1.0 / 3.0)
 }
@@ -97,9 +99,10 @@ pub(crate) fn add_normal(distinct: DistinctNormals, normal: Vec3) -> DistinctNor
     DistinctNormals { count: 3, ..distinct }
 }
 
-/// Returns the control point near `a` of an edge on which two surfaces meet at a crease: the control point of a straight edge,
-/// projected onto the line in which the two tangent planes at `a` intersect (Vlachos et al. 2001, section 3.4). `mean` is the
-/// mean of all sides' proposals; it is returned if the planes are parallel or if there are not two of them.
+/// Returns the control point near `a` of an edge on which two surfaces meet at a crease: the control point of a
+/// straight edge, projected onto the line in which the two tangent planes at `a` intersect (Vlachos et al. 2001,
+/// section 3.4). `mean` is the mean of all sides' proposals; it is returned if the planes are parallel or if there are
+/// not two of them.
 pub(crate) fn crease_control_point(a: Vec3, b: Vec3, distinct: DistinctNormals, mean: Vec3) -> Vec3 {
     let line = distinct.first.cross(distinct.second);
     let length_squared = line.dot(line);

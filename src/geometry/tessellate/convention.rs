@@ -1,9 +1,10 @@
 //! Conventions between hull and domain shader: which edge each tessellation factor is for, and which corner each
 //! barycentric weight belongs to. Twin: `shaders/convention.wgsl`.
 //!
-//! The tessellator knows neither edges nor corners. Its factor i cuts the edge on which weight i is 0. A hull shader decides
-//! which side's factor it writes as factor i, and a domain shader decides which corner it multiplies by weight i. Every order
-//! works if both shaders use the same one. Otherwise edges get the factors of other edges, and the mesh cracks.
+//! The tessellator knows neither edges nor corners. Its factor i cuts the edge on which weight i is 0. A hull shader
+//! decides which side's factor it writes as factor i, and a domain shader decides which corner it multiplies by weight
+//! i. Every order works if both shaders use the same one. Otherwise edges get the factors of other edges, and the mesh
+//! cracks.
 //!
 //! Side k of a patch runs from corner k to corner k + 1 (modulo 3).
 
@@ -38,7 +39,8 @@ impl Convention {
         (0..3).all(|i| factor_side(self, i) == domain_side(self, i))
     }
 
-    /// Inverts [`corner_weights`]: returns the tessellator's U and V for the weights of corners 0 and 1, in 16.16 fixed point.
+    /// Inverts [`corner_weights`]: returns the tessellator's U and V for the weights of corners 0 and 1, in 16.16 fixed
+    /// point.
     pub fn domain_weights(self, [a, b]: [u32; 2]) -> [u32; 2] {
         let on_corners = [a, b, super::FIXED_ONE - a - b];
         [0, 1].map(|i| on_corners[weight_corner(self, i) as usize])

@@ -23,7 +23,8 @@ pub struct CoverageView {
 }
 
 impl CoverageView {
-    /// Builds the view of a picture of `viewport` px. `subpixel_bits` is the adapter's: see `gpu::Gpu::subpixel_bits`.
+    /// Builds the view of a picture of `viewport` px. `subpixel_bits` is the adapter's: see
+    /// `gpu::Gpu::subpixel_bits`.
     pub fn new(
         clip_from_object: Mat4,
         viewport: Vec2,
@@ -83,7 +84,8 @@ fn manhattan_length(a: Vec2) -> f32 {
     a.x.abs() + a.y.abs()
 }
 
-/// Returns whether a triangle is a back face wherever its corners are within `reach` px of `a`, `b` and `c`. Y points down.
+/// Returns whether a triangle is a back face wherever its corners are within `reach` px of `a`, `b` and `c`. Y points
+/// down.
 fn is_back_face(a: Vec2, b: Vec2, c: Vec2, reach: f32) -> bool {
     let ab = b - a;
     let ac = c - a;

@@ -113,10 +113,11 @@ pub const POLAR_WEIGHTS: [f32; 6] = [1.0, 2.0, 1.0, 2.0, 1.0, 2.0];
 
 /// Returns whether a patch shows its back everywhere. The patch must lie beyond the near plane.
 ///
-/// Take the homogeneous screen coordinates (x, y, w) of a point p and of its tangents s and t. The surface shows its front where
-/// p . (s x t) > 0, with or without perspective. Tangents are quadratic polynomials. Their cross product is a quartic polynomial:
-/// a mean of 15 control vectors with weights that aren't negative. The point p lies in the bounding box of the control points. So
-/// the product is negative everywhere if it is negative for each of the 15 vectors and every point of the box.
+/// Take the homogeneous screen coordinates (x, y, w) of a point p and of its tangents s and t. The surface shows its
+/// front where p . (s x t) > 0, with or without perspective. Tangents are quadratic polynomials. Their cross product is
+/// a quartic polynomial: a mean of 15 control vectors with weights that aren't negative. The point p lies in the
+/// bounding box of the control points. So the product is negative everywhere if it is negative for each of the 15
+/// vectors and every point of the box.
 pub(crate) fn faces_away(view: &LodView, net: &ControlNet) -> bool {
     let rows = [clip_row(view, 0), clip_row(view, 1), clip_row(view, 3)];
     let turned = |d: Vec3| Vec3::new(rows[0].dot(d), rows[1].dot(d), rows[2].dot(d));
@@ -167,7 +168,8 @@ pub const OUT_OF_VIEW: u32 = 1;
 /// The patch shows only its back.
 pub const FACING_AWAY: u32 = 2;
 
-/// Returns whether a patch is left out, and why. Patches that show only their backs are left out if `culls_back` is set.
+/// Returns whether a patch is left out, and why. Patches that show only their backs are left out if `culls_back` is
+/// set.
 pub fn cull_reason(clip: Clip, culls_back: bool, view: &LodView, net: &ControlNet) -> u32 {
     let outside = match clip {
         Clip::Off => false,

@@ -58,8 +58,9 @@ fn patch_second_derivatives(surface: Surface, net: &ControlNet, u: u32, v: u32) 
     [by_uu * 6.0, by_uv * 6.0, by_vv * 6.0]
 }
 
-/// Returns the principal curvatures of a surface with these first and second derivatives, the larger one first, in 1 / object
-/// unit. Both are above 0 where the surface bulges towards the side that it faces, and 0 where it has no tangent plane.
+/// Returns the principal curvatures of a surface with these first and second derivatives, the larger one first, in
+/// 1 / object unit. Both are above 0 where the surface bulges towards the side that it faces, and 0 where it has no tangent
+/// plane.
 ///
 /// Their mean is (E N - 2 F M + G L) / (2 (E G - F²)) in the coefficients of both fundamental forms (do Carmo, Differential
 /// geometry of curves and surfaces, 1976, section 3-3). How far they are from it follows from the curvature L / E along the

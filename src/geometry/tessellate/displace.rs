@@ -1,8 +1,9 @@
 //! Displacement: heights that are read from an image at texture coordinates, and the normals of the displaced surface.
 //! Twin: `shaders/displace.wgsl`.
 //!
-//! A point moves by scale * (height - midlevel) along a direction that all patches around it share. Heights are filtered in f32,
-//! not by the device's texture units, whose filter weights have 8 bits: so every device computes the same heights.
+//! A point moves by scale * (height - midlevel) along a direction that all patches around it share. Heights are
+//! filtered in f32, not by the device's texture units, whose filter weights have 8 bits: so every device computes the
+//! same heights.
 //!
 //! A height map is a list of mip levels, level 0 first; a *px* is a pixel of one level. Texture coordinates run from 0
 //! to 1 over the image.
@@ -140,8 +141,9 @@ pub(super) fn spot(u: u32, v: u32) -> Spot {
     corner.map_or_else(on_outline, Spot::Corner)
 }
 
-/// Returns the derivatives by u and by v of the unit vector along a u + b v + c w, where a, b and c are `directions` and w = 1 -
-/// u - v. `direction` is that unit vector, and `length` is the length of the sum. Zero if the sum is nearly zero.
+/// Returns the derivatives by u and by v of the unit vector along a u + b v + c w, where a, b and c are `directions`
+/// and w = 1 - u - v. `direction` is that unit vector, and `length` is the length of the sum. Zero if the sum is nearly
+/// zero.
 pub(crate) fn direction_slopes(directions: [Vec3; 3], direction: Vec3, length: f32) -> [Vec3; 2] {
     let along_u = directions[0] - directions[2];
     let along_v = directions[1] - directions[2];

@@ -86,7 +86,8 @@ pub fn domain_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
     inner_point(plan.row, plan.n, i - plan.outer)
 }
 
-/// Returns point `i` of the outline, which starts at V == 1 with the edge U == 0. Each edge's last point is the next one's first.
+/// Returns point `i` of the outline, which starts at V == 1 with the edge U == 0. Each edge's last point is the next
+/// one's first.
 fn outer_point(plan: &DomainPlan, i: u32) -> [u32; 2] {
     // Choose the row first, so that on a GPU the points of all three edges take the same branch.
     let side = u32::from(i >= plan.start1) + u32::from(i >= plan.start2);

@@ -324,7 +324,8 @@ pub(crate) fn patch_is_minimal(factors: PatchFactors) -> bool {
     edges_are_one && (factors.inside & FACTOR_VALUE) == FIXED_ONE
 }
 
-/// Returns whether the patch is drawn and all its factors are below 2: without tessellation it would look nearly the same.
+/// Returns whether the patch is drawn and all its factors are below 2: without tessellation it would look nearly the
+/// same.
 pub fn patch_is_low(factors: PatchFactors) -> bool {
     let low = |word: u32| word & FACTOR_VALUE < 2 * FIXED_ONE;
     !patch_is_culled(factors) && factors.outside.into_iter().all(low) && low(factors.inside)

@@ -74,7 +74,8 @@ pub(super) fn plane_error(view: &LodView, net: &ControlNet) -> f32 {
     TWO_POINTS * most / nearest
 }
 
-/// Returns a point's difference from a line; a large one, if the point isn't beside the part between `start` and `start + along`.
+/// Returns a point's difference from a line; a large one, if the point isn't beside the part between `start` and
+/// `start + along`.
 fn beside_line(start: Vec3, along: Vec3, p: Vec3) -> Vec3 {
     let share = (p - start).dot(along) / along.dot(along);
     // Rounding doesn't count.

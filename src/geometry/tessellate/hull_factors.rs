@@ -31,7 +31,8 @@ impl HullFactors {
         sides
     }
 
-    /// Returns the factors as a shader compiler passes them to the tessellator: under pow2 they are rounded up to powers of two.
+    /// Returns the factors as a shader compiler passes them to the tessellator: under pow2 they are rounded up to
+    /// powers of two.
     pub fn rounded(self, partitioning: Partitioning) -> Self {
         let rounded = |factor| partitioning.hull_factor(factor);
         Self { edges: self.edges.map(rounded), inside: rounded(self.inside) }

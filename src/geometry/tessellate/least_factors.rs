@@ -170,8 +170,9 @@ pub(super) fn part_errors(patch: &SeenPatch, tolerance: f32, factors: PatchFacto
 /// where the points of edge and ring don't match.
 pub const ROW_REACH: f32 = 6.0;
 
-/// Returns the factor of an edge that is tried after `factor`, whose row has this error beside `inside` segments; [`BEYOND_LAST`]
-/// if none is enough up to the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide, there is no such end.
+/// Returns the factor of an edge that is tried after `factor`, whose row has this error beside `inside` segments;
+/// [`BEYOND_LAST`] if none is enough up to the larger of `least` and `inside`, and [`ROW_REACH`]. Where points may slide, there
+/// is no such end.
 fn next_row_factor(
     partitioning: Partitioning,
     slides: bool,

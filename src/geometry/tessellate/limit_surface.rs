@@ -32,7 +32,8 @@ impl<'a> LimitSurface<'a> {
         self.nets.topology.detail_of(self.nets.mesh, patch)
     }
 
-    /// Returns the point of a patch at weights `u` and `v` (w is the rest of 1), in object units. `net` is the patch's net.
+    /// Returns the point of a patch at weights `u` and `v` (w is the rest of 1), in object units. `net` is the patch's
+    /// net.
     ///
     /// Heights are read at the patch's own texture coordinates from mip level 0. So at a seam the sides of an edge may
     /// have different limits.

@@ -48,8 +48,9 @@ pub(super) struct MeshDisplacement<'a> {
     dominance: Dominance,
     /// The unit direction of displacement of each point.
     directions: Vec<Vec3>,
-    /// The gradients of both texture coordinates at each corner, averaged over the triangles around it. Linear and quadratic
-    /// shading normals are tilted by heights along these, which are as smooth across edges as the normals are.
+    /// The gradients of both texture coordinates at each corner, averaged over the triangles around it. Linear and
+    /// quadratic shading normals are tilted by heights along these, which are as smooth across edges as the normals
+    /// are.
     frames: Vec<[Vec3; 2]>,
     /// What LOD by error knows of the heights over each patch.
     reliefs: Vec<PatchRelief>,
@@ -79,7 +80,8 @@ fn side_weights(side: usize, t: u32) -> [u32; 2] {
 }
 
 impl<'a> MeshDisplacement<'a> {
-    /// Returns what displaces the mesh with these inputs, if anything. Mip levels aren't set yet: see [`Self::with_levels`].
+    /// Returns what displaces the mesh with these inputs, if anything. Mip levels aren't set yet: see
+    /// [`Self::with_levels`].
     pub(super) fn new(nets: &ControlNets<'a>, inputs: &Inputs) -> Option<Self> {
         let (mesh, topology) = (nets.mesh, nets.topology);
         let heights = displacing_heights(mesh, inputs)?;
@@ -205,7 +207,8 @@ impl<'a> MeshDisplacement<'a> {
         Vertex { position: moved.to_array(), normal: pack_normal(normal), ..vertex }
     }
 
-    /// Returns where a patch by itself would read its point's height, and where all patches read it that share the point.
+    /// Returns where a patch by itself would read its point's height, and where all patches read it that share the
+    /// point.
     fn lookups(&self, patch: u32, u: u32, v: u32, segments: f32) -> (Lookup, Lookup) {
         match spot(u, v) {
             Spot::Inside => {
@@ -303,7 +306,8 @@ impl<'a> MeshDisplacement<'a> {
     }
 }
 
-/// Returns the gradients of both texture coordinates at each corner: their mean over the patches around it, weighted by area.
+/// Returns the gradients of both texture coordinates at each corner: their mean over the patches around it, weighted by
+/// area.
 fn frames(mesh: &Mesh, topology: &Topology) -> Vec<[Vec3; 2]> {
     let alike = mesh.alike_corners();
     let mut sums = vec![([Vec3::ZERO; 2], 0.0_f32); mesh.corners.len()];

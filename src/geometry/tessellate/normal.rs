@@ -53,8 +53,9 @@ pub fn edge_normal(a: Vec3, b: Vec3, t: u32) -> Vec3 {
     unit_or(a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT), nearest)
 }
 
-/// Returns the control normal in the middle of an edge (h110 of Vlachos et al. 2001, section 3.3): the sum of the normals at the
-/// ends, mirrored in the plane perpendicular to the edge, at unit length. It is `at_a` if the sum cancels.
+/// Returns the control normal in the middle of an edge (h110 of Vlachos et al. 2001, section 3.3): the sum of the
+/// normals at the ends, mirrored in the plane perpendicular to the edge, at unit length. It is `at_a` if the sum
+/// cancels.
 pub(crate) fn middle_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3) -> Vec3 {
     let along = b - a;
     // Scale the edge, so that its square neither underflows nor overflows: only its direction matters.
@@ -93,7 +94,8 @@ pub(crate) fn quadratic_edge_normal(a: Vec3, b: Vec3, at_a: Vec3, at_b: Vec3, t:
     unit_or(sum, edge_normal(at_a, at_b, t))
 }
 
-/// Returns the unit normal of a surface with these tangents along u and v, or `otherwise` if they are parallel or one is zero.
+/// Returns the unit normal of a surface with these tangents along u and v, or `otherwise` if they are parallel or one
+/// is zero.
 pub(super) fn facing_or(tangents: [Vec3; 2], otherwise: Vec3) -> Vec3 {
     let [along_u, along_v] = tangents;
     let size_u = along_u.abs().max_element();

@@ -98,7 +98,8 @@ pub(super) fn depth_scale(deepest: f32) -> f32 {
     if deepest > 1e-38 { 1.0 / deepest } else { 1.0 }
 }
 
-/// Returns the depth (w) of the near plane, where z = w; 0 in an orthographic view. Along the view, z is a linear function of w.
+/// Returns the depth (w) of the near plane, where z = w; 0 in an orthographic view. Along the view, z is a linear
+/// function of w.
 pub(super) fn near_depth(view: &LodView) -> f32 {
     let (z, w) = (clip_row(view, 2), clip_row(view, 3));
     let square = w.dot(w);

@@ -1,4 +1,5 @@
-//! Meshes deformed into a pose on the CPU, as the deform pass does on the GPU: for measuring, exporting and finding positions.
+//! Meshes deformed into a pose on the CPU, as the deform pass does on the GPU: for measuring, exporting and finding
+//! positions.
 
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -55,7 +56,8 @@ impl PosedMesh {
         self.deformed.get_or_init(make).clone()
     }
 
-    /// Returns the deformed mesh and its topology, or `None` if making them would take long and no one has made them before.
+    /// Returns the deformed mesh and its topology, or `None` if making them would take long and no one has made them
+    /// before.
     pub fn deformed_if_quick(&self) -> Option<Deformed> {
         let is_quick = self.pose.is_none() || self.mesh.corners.len() <= QUICK;
         if is_quick { Some(self.deformed()) } else { self.deformed.get().cloned() }

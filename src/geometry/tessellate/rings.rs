@@ -12,7 +12,8 @@ pub(super) fn rings_before(m: u32, area: u32) -> u32 {
     ((m as f32 - root) * 0.5 + 0.0078125) as u32
 }
 
-/// Returns the number of point `p` of a closed ring that starts at point `start`. Point `length` is the first point again.
+/// Returns the number of point `p` of a closed ring that starts at point `start`. Point `length` is the first point
+/// again.
 pub(super) fn ring_point(start: u32, length: u32, p: u32) -> u32 {
     start + if p == length { 0 } else { p }
 }

@@ -11,8 +11,9 @@ use crate::mesh::{Alpha, EdgeKind, Material, Mesh, Topology};
 /// A closed mesh whose parts are all wound outward and whose materials are single-sided, without places where one sees the backs that
 /// are behind them.
 ///
-/// A line of sight that starts outside enters the mesh before it leaves it, so each back face is hidden by a front face. (If a
-/// mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind it, but never a hole.)
+/// A line of sight that starts outside enters the mesh before it leaves it, so each back face is hidden by a front
+/// face. (If a mesh intersects itself inside out, a back face may come first. Leaving it out then shows what is behind
+/// it, but never a hole.)
 #[derive(Clone, Debug, PartialEq)]
 pub struct Solid {
     /// The least and the greatest coordinates, in object units.

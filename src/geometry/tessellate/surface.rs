@@ -88,7 +88,8 @@ pub fn linear_uv(uvs: [Vec2; 3], u: u32, v: u32) -> Vec2 {
     uvs[0] * x + uvs[1] * y + uvs[2] * z
 }
 
-/// Returns the linearly interpolated texture coordinate at `t` (16.16 fixed point) on an edge whose ends have `a` and `b`.
+/// Returns the linearly interpolated texture coordinate at `t` (16.16 fixed point) on an edge whose ends have `a` and
+/// `b`.
 pub fn edge_uv(a: Vec2, b: Vec2, t: u32) -> Vec2 {
     a * ((FIXED_ONE - t) as f32 * UNIT) + b * (t as f32 * UNIT)
 }

@@ -26,7 +26,8 @@ impl Vertex {
         self.key[1] >> 2
     }
 
-    /// Returns the domain point: the weights of corners 0 and 1 in 16.16 fixed point, whatever the convention calls them.
+    /// Returns the domain point: the weights of corners 0 and 1 in 16.16 fixed point, whatever the convention calls
+    /// them.
     pub fn domain(&self) -> [u32; 2] {
         [self.key[0] & 0x1ffff, (self.key[0] >> 17) | ((self.key[1] & 3) << 15)]
     }

@@ -47,7 +47,8 @@ pub struct MeasurementResults {
 }
 
 impl Engine {
-    /// Measures what is emitted, and reads each of its chunks back once, however much is requested. The counts must be known.
+    /// Measures what is emitted, and reads each of its chunks back once, however much is requested. The counts must be
+    /// known.
     ///
     /// # Errors
     /// The device was lost.

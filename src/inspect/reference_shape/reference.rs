@@ -37,7 +37,8 @@ impl Reference {
         self.faces[index].map(|corner| self.corners[corner as usize])
     }
 
-    /// Returns the unit shading normal, or the face's normal if that has no direction, or a corner's if the face has none either.
+    /// Returns the unit shading normal, or the face's normal if that has no direction, or a corner's if the face has
+    /// none either.
     fn normal(&self, triangle: usize, weights: [f64; 3]) -> DVec3 {
         let corners = self.triangle(triangle);
         let normals = corners.map(|corner| corner.normal.as_dvec3());

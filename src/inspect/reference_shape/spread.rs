@@ -1,4 +1,5 @@
-//! Points spread evenly by area over charts that stretch areas unevenly. A chart maps the unit square to a part of a surface.
+//! Points spread evenly by area over charts that stretch areas unevenly. A chart maps the unit square to a part of a
+//! surface.
 
 /// The number of strips in a chart, and of cells in a strip. Within a cell the density counts as constant.
 const CELLS: usize = 64;
@@ -44,7 +45,8 @@ impl Spread {
     }
 }
 
-/// Returns the step of increasing sums in which a part (0 to 1) of the last sum lies, and how far into the step, from 0 to 1.
+/// Returns the step of increasing sums in which a part (0 to 1) of the last sum lies, and how far into the step, from 0
+/// to 1.
 pub(super) fn find(sums: &[f64], part: f64) -> (usize, f64) {
     let whole = sums.last().copied().unwrap_or(0.0);
     let at = part * whole;

@@ -181,7 +181,8 @@ pub(super) fn t_junction() -> Mesh {
     mesh(all)
 }
 
-/// A flat star. The normals at its tips lie nearly in its plane and are turned sideways, and those at its notches lean inwards.
+/// A flat star. The normals at its tips lie nearly in its plane and are turned sideways, and those at its notches lean
+/// inwards.
 pub(super) fn star() -> Mesh {
     let at = |k: usize| {
         let angle = std::f32::consts::TAU * k as f32 / 10.0;

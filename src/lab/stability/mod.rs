@@ -96,7 +96,8 @@ impl Method {
         Settings::from(Tessellation { surface: self.surface(), edges, partitioning, factor, ..Tessellation::default() })
     }
 
-    /// The same settings with displacement, if the mesh has a height image: without cracks, or as published with dominance alone.
+    /// The same settings with displacement, if the mesh has a height image: without cracks, or as published with dominance
+    /// alone.
     pub fn displacing(self, mesh: &Mesh, settings: Settings) -> Settings {
         let displacement = match self {
             Self::AsPublished if mesh.heights.is_some() => Displacement::AsPublished,

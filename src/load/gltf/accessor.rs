@@ -227,7 +227,8 @@ impl<'a> Accessors<'a> {
         Ok((made, stride))
     }
 
-    /// Reads elements of N numbers; normalised integers become -1 to 1 or 0 to 1. `role` says what they are for, in messages.
+    /// Reads elements of N numbers; normalised integers become -1 to 1 or 0 to 1. `role` says what they are for, in
+    /// messages.
     ///
     /// # Errors
     /// [`GltfError::Accessor`] if elements don't have N numbers, or if the data isn't in its buffer.
@@ -326,7 +327,8 @@ impl<'a> Accessors<'a> {
         })
     }
 
-    /// Checks that the accessor's elements lie within its buffer view. Types and sparse values are checked when they are read.
+    /// Checks that the accessor's elements lie within its buffer view. Types and sparse values are checked when they
+    /// are read.
     pub(crate) fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
         self.check_sound(accessor)?;
         let found = match accessor.view() {

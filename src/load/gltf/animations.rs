@@ -1,4 +1,5 @@
-//! Reads animations as clips whose channels move nodes of the document. An animation with an error is left out, with a warning.
+//! Reads animations as clips whose channels move nodes of the document. An animation with an error is left out, with a
+//! warning.
 //!
 //! They aren't read by the `gltf` crate, for which one wrong index invalidates the whole document.
 
@@ -44,7 +45,8 @@ struct Sampler {
     interpolation: Option<String>,
 }
 
-/// Reads the document's clips, whose channels have nodes of the document as targets. Adds a warning for each that is left out.
+/// Reads the document's clips, whose channels have nodes of the document as targets. Adds a warning for each that is
+/// left out.
 pub(super) fn read(
     animations: Vec<Value>,
     document: &Document,

@@ -128,7 +128,8 @@ impl JsonSize {
     }
 }
 
-/// Returns why a text isn't JSON. A file that was cut short is the most common case, and serde_json's message for it isn't clear.
+/// Returns why a text isn't JSON. A file that was cut short is the most common case, and serde_json's message for it
+/// isn't clear.
 fn reason(error: &serde_json::Error) -> String {
     match error.classify() {
         Category::Eof => format!("its JSON ends too early, at line {}, column {}", error.line(), error.column()),

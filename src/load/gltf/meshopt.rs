@@ -24,7 +24,8 @@ impl Decompressed {
 /// Decompresses the bytes of one view.
 ///
 /// # Errors
-/// A clause if its sizes don't fit its mode or filter, if it would take too much memory, or if it can't be decompressed.
+/// A clause if its sizes don't fit its mode or filter, if it would take too much memory, or if it can't be
+/// decompressed.
 #[allow(unsafe_code, reason = "the decoders are C++, and their crate hides those that check what they read")]
 pub(super) fn decompress(view: &MeshoptExtension, bytes: &[u8], budget: &Budget) -> Result<Decompressed, String> {
     check(view)?;

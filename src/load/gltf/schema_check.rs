@@ -1,4 +1,5 @@
-//! Compares a document with a [schema](super::schema) before anything else reads it, and removes what isn't in the schema.
+//! Compares a document with a [schema](super::schema) before anything else reads it, and removes what isn't in the
+//! schema.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, HashMap};

@@ -236,7 +236,8 @@ impl<'a> Vertices<'a> {
         Ok(())
     }
 
-    /// Returns a vertex's position and normal in the file; with the morph targets' displacements at rest if `is_morphed`.
+    /// Returns a vertex's position and normal in the file; with the morph targets' displacements at rest if
+    /// `is_morphed`.
     pub(super) fn undeformed(&self, i: usize, is_morphed: bool) -> (Vec3, Option<Vec3>) {
         let mut position = Vec3::from(self.positions.get(i));
         let mut normal = self.normals.as_ref().map(|normals| Vec3::from(normals.get(i)));
@@ -334,7 +335,8 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// Returns the matrix of a vertex: the weighted mean of its joints' matrices, or the node's transform if it isn't skinned.
+    /// Returns the matrix of a vertex: the weighted mean of its joints' matrices, or the node's transform if it isn't
+    /// skinned.
     fn matrix(&self, i: usize, Findings { repairs, joints: found }: &mut Findings) -> DMat4 {
         let Some(influences) = &self.influences else { return self.pose.global };
         let mut joints = found.take().unwrap_or_default();

@@ -10,8 +10,9 @@ use crate::mesh::{Edge, Mesh, Side, Topology};
 const LARGEST_PART: f64 = 1.0 / 3.0;
 /// The least width, in units in the last place (ULP) of the largest coordinate.
 const LEAST_ULP: f64 = 8.0;
-/// An edge that meets a crease at an acute angle is cut farther from its end, so that the band beside the crease keeps its width.
-/// The distance is divided by the angle's sine, but by no less than this: half, which is enough for 30 degrees.
+/// An edge that meets a crease at an acute angle is cut farther from its end, so that the band beside the crease keeps
+/// its width. The distance is divided by the angle's sine, but by no less than this: half, which is enough for 30
+/// degrees.
 const LEAST_SINE: f64 = 0.5;
 
 /// A point on an edge, and the normal that all its sides have there.

@@ -76,7 +76,8 @@ impl Keys {
         }
     }
 
-    /// Returns a rotation at a time; it isn't normalised. Linear interpolation takes the shorter way between key frames.
+    /// Returns a rotation at a time; it isn't normalised. Linear interpolation takes the shorter way between key
+    /// frames.
     pub fn rotation(&self, time: f64) -> DQuat {
         let interval = self.interval(time);
         if self.interpolation == Interpolation::Linear && interval.step > 0.0 {
@@ -124,7 +125,8 @@ impl Keys {
     }
 }
 
-/// Normalises a quaternion, since quaternions in f32 are only roughly of unit length. A zero quaternion becomes the identity.
+/// Normalises a quaternion, since quaternions in f32 are only roughly of unit length. A zero quaternion becomes the
+/// identity.
 pub(super) fn unit(rotation: DQuat) -> DQuat {
     if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
 }

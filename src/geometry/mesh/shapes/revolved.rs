@@ -18,7 +18,8 @@ pub const MAJOR: f32 = 0.7;
 /// The radius of the torus's tube.
 pub const MINOR: f32 = 0.3;
 
-/// Returns the direction of column i of n around the Y axis, from +Z towards +X. Column n equals column 0 to the last bit.
+/// Returns the direction of column i of n around the Y axis, from +Z towards +X. Column n equals column 0 to the last
+/// bit.
 fn around(i: usize, n: usize) -> Vec3 {
     let (sin, cos) = (TAU * (i % n) as f32 / n as f32).sin_cos();
     Vec3::new(sin, 0.0, cos)

@@ -2,7 +2,8 @@
 
 use super::Scheme;
 
-/// How many points, edges, faces and corners a cage or its refinement has. What doesn't fit into 64 bits is [`u64::MAX`].
+/// How many points, edges, faces and corners a cage or its refinement has. What doesn't fit into 64 bits is
+/// [`u64::MAX`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size {
     pub points: u64,

@@ -162,7 +162,8 @@ impl CoarseEdge {
         (onwards && self.is_opposite(&line, link.third, at(link.third))).then_some(t)
     }
 
-    /// Returns whether the triangle at a link of the chain lies on the other side of the edge than the edge's own triangle.
+    /// Returns whether the triangle at a link of the chain lies on the other side of the edge than the edge's own
+    /// triangle.
     fn is_opposite(&self, link: &LineSegment, third: u32, place: DVec3) -> bool {
         let depth = (self.line.ends[0] - place).dot(self.side);
         let height = -link.across(place).dot(self.side);

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use crate::mesh::{Edge, Topology};
 
-/// A straight segment with a length above 0, in object units. In f64, since squares of very small or large lengths leave f32.
+/// A straight segment with a length above 0, in object units. In f64, since squares of very small or large lengths
+/// leave f32.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LineSegment {
     pub ends: [DVec3; 2],
@@ -23,7 +24,8 @@ impl LineSegment {
         self.way().length()
     }
 
-    /// Returns where along the segment a position lies, 0 at its start and 1 at its end, and its distance from the line.
+    /// Returns where along the segment a position lies, 0 at its start and 1 at its end, and its distance from the
+    /// line.
     pub(super) fn project(&self, place: DVec3) -> (f64, f64) {
         let t = (place - self.ends[0]).dot(self.way()) / self.way().length_squared();
         (t, place.distance(self.ends[0] + t * self.way()))

@@ -102,7 +102,8 @@ impl Comparison<'_> {
         }))
     }
 
-    /// The interval of the distance to the surface that triangles stand for. `value` is the distance at the place that was found.
+    /// The interval of the distance to the surface that triangles stand for. `value` is the distance at the place that was
+    /// found.
     fn beyond(&self, distance: Interval, sag: f64, value: f64) -> Interval {
         if sag == 0.0 {
             return distance;

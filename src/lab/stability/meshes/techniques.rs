@@ -60,8 +60,9 @@ pub(crate) fn height_seams() -> Mesh {
     displaced(mesh(triangles))
 }
 
-/// A cylinder that bends about its middle and swells in a clip of two seconds. It has two joints, whose weights change along it,
-/// and a morph target, which applies before the joints. Normals are split between its caps and its side, and its side has a seam.
+/// A cylinder that bends about its middle and swells in a clip of two seconds. It has two joints, whose weights change along
+/// it, and a morph target, which applies before the joints. Normals are split between its caps and its side, and its side
+/// has a seam.
 pub(crate) fn moving() -> Mesh {
     let mut mesh = Shape::Cylinder.build();
     let bounds = mesh.bounds();
