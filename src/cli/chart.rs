@@ -118,12 +118,6 @@ impl Args {
         let accuracy = AccuracyOptions { samples: self.samples, ..usual.accuracy };
         Effort { accuracy, most_triangles: self.max_triangles, ..usual }
     }
-
-    /// The reference surface of a mesh, and its name: the one that was chosen, or else the exact surface of a shape.
-    fn reference_shape_of(&self, mesh: &Source) -> Result<Option<(String, ReferenceShape)>, CliError> {
-        let exact = || Some(("the exact surface".to_owned(), ReferenceShape::from_shape(mesh.shape()?)?));
-        Ok(self.reference.load(mesh, &self.weld.preparation(), Source::title)?.or_else(exact))
-    }
 }
 
 /// A mesh to be charted, and its reference surface with a name.
@@ -136,7 +130,10 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let load_one = |source: &Source| {
         let written = [args.output.as_deref(), args.csv.as_deref()];
         let loaded = load_apart(source, &args.weld.preparation(), &written)?;
-        Ok((loaded, args.reference_shape_of(source)?))
+        // The reference surface that was chosen, or else the exact surface of a shape.
+        let chosen = args.reference.load(source, &args.weld.preparation(), Source::title)?;
+        let exact = || Some(("the exact surface".to_owned(), ReferenceShape::from_shape(source.shape()?)?));
+        Ok((loaded, chosen.or_else(exact)))
     };
     let sources = args.meshes();
     let meshes: Vec<Loading> = sources.iter().map(load_one).collect::<Result<_, CliError>>()?;

@@ -115,15 +115,14 @@ fn colors_and_overlays() -> Vec<Command> {
     let mut all = vec![Command::new(Change::MaterialColors, own, material.text())];
     all.extend(Overlay::ALL.iter().map(|&overlay| {
         let mut overlays = Overlays::default();
-        let (name, needs): (_, &[Need]) = match overlays.control(overlay) {
-            Control::Colors(_, given) if given.source() == ColorSource::TextureCoordinates => {
-                (format!("{colors}: {}", given.label()), &[Need::TextureCoordinates])
-            }
-            Control::Colors(_, given) => (format!("{colors}: {}", given.label()), &[]),
-            Control::Switch(_) if overlay == Overlay::Bones => {
-                (format!("Overlay: {}", overlay.label()), &[Need::Bones])
-            }
-            Control::Switch(_) => (format!("Overlay: {}", overlay.label()), &[]),
+        let (name, source) = match overlays.control(overlay) {
+            Control::Colors(_, given) => (format!("{colors}: {}", given.label()), Some(given.source())),
+            Control::Switch(_) => (format!("Overlay: {}", overlay.label()), None),
+        };
+        let needs: &[Need] = match (overlay == Overlay::Bones, source == Some(ColorSource::TextureCoordinates)) {
+            (true, _) => &[Need::Bones],
+            (false, true) => &[Need::TextureCoordinates],
+            (false, false) => &[],
         };
         let keys = vec![overlay_key(overlay)];
         Command { keys, needs, ..Command::new(Change::Overlay(overlay), name, overlay.text()) }

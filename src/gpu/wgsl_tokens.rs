@@ -15,14 +15,11 @@ impl Token<'_> {
     }
 }
 
-/// Where a line comment ends (WGSL, section 3.2: line breaks).
-fn ends_line(c: char) -> bool {
-    matches!(c, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
-}
-
 /// Returns the length of the comment at the start of a text, in bytes; block comments nest. None if there is no comment there.
 fn comment(text: &str) -> Option<usize> {
     if text.starts_with("//") {
+        // Line breaks are those of WGSL, section 3.2.
+        let ends_line = |c| matches!(c, '\n'..='\r' | '\u{85}' | '\u{2028}' | '\u{2029}');
         return Some(text.find(ends_line).unwrap_or(text.len()));
     }
     if !text.starts_with("/*") {

@@ -32,6 +32,9 @@ const MAX_MATERIALS: usize = 1 << 16;
 /// The greatest number of corners of a face. A file with a larger face is refused.
 pub(super) const MAX_CORNERS: usize = 1 << 19;
 
+/// The faces of a file, and what it holds in words.
+pub(super) type Gathered<'a> = Result<(FaceBuilder<'a>, String), ReadError>;
+
 /// Builds a mesh from a file's bytes, whose faces `gather` reads. It also says what the file holds in case it has no triangles.
 ///
 /// # Errors
@@ -39,7 +42,7 @@ pub(super) const MAX_CORNERS: usize = 1 << 19;
 pub(super) fn read_faces(
     bytes: Vec<u8>,
     file: &ModelFile,
-    gather: impl for<'a> FnOnce(&[u8], &'a Files<'a>, FaceBuilder<'a>) -> Result<(FaceBuilder<'a>, String), ReadError>,
+    gather: impl for<'a> FnOnce(&[u8], &'a Files<'a>, FaceBuilder<'a>) -> Gathered<'a>,
 ) -> Result<LoadedMesh, ReadError> {
     let budget = Budget::new(bytes.len(), file.limits.memory);
     let files = Files::new(file.folder, &file.limits, &budget, file.progress);

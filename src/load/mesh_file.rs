@@ -269,9 +269,17 @@ pub fn read(
     let name = &path.file_stem().unwrap_or_default().to_string_lossy();
     let folder = path.parent().unwrap_or(Path::new(""));
     let file = &ModelFile { folder, name, selected, limits: *limits, progress };
-    let broken = |fault| of_fault(fault, path);
+    let broken = |fault| match fault {
+        ReadError::Cancelled(cancelled) => cancelled.into(),
+        ReadError::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
+        fault => LoadError::Broken { path: path.to_owned(), fault: Box::new(fault) },
+    };
     let mut loaded = match format {
-        Format::Gltf => gltf::read(bytes, file).map_err(|problem| of_problem(problem, path)),
+        Format::Gltf => gltf::read(bytes, file).map_err(|problem| match problem {
+            GltfError::Cancelled(cancelled) => cancelled.into(),
+            GltfError::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
+            problem => LoadError::Gltf { path: path.to_owned(), problem: Box::new(problem) },
+        }),
         Format::Fbx => fbx::read(bytes, file).map_err(broken),
         Format::Obj => obj::read(bytes, file).map_err(broken),
         Format::Stl => stl::read(bytes, file).map_err(broken),
@@ -281,22 +289,6 @@ pub fn read(
     }?;
     selected.import.place(&mut loaded.mesh);
     Ok(loaded)
-}
-
-fn of_problem(problem: GltfError, path: &Path) -> LoadError {
-    match problem {
-        GltfError::Cancelled(cancelled) => cancelled.into(),
-        GltfError::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
-        problem => LoadError::Gltf { path: path.to_owned(), problem: Box::new(problem) },
-    }
-}
-
-fn of_fault(fault: ReadError, path: &Path) -> LoadError {
-    match fault {
-        ReadError::Cancelled(cancelled) => cancelled.into(),
-        ReadError::Empty { holds } => LoadError::Empty { path: path.to_owned(), holds },
-        fault => LoadError::Broken { path: path.to_owned(), fault: Box::new(fault) },
-    }
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ use std::borrow::Cow;
 
 use glam::Vec4;
 
-use super::face_builder::{FaceBuilder, NumberedCorner, linear_color, read_faces};
+use super::face_builder::{FaceBuilder, Gathered, NumberedCorner, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::counted;
@@ -49,11 +49,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadE
 }
 
 /// Reads all faces.
-fn gather<'a>(
-    bytes: &[u8],
-    files: &'a Files<'a>,
-    faces: FaceBuilder<'a>,
-) -> Result<(FaceBuilder<'a>, String), ReadError> {
+fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, faces: FaceBuilder<'a>) -> Gathered<'a> {
     let (budget, progress) = (files.budget, files.progress);
     let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));

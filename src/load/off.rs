@@ -6,7 +6,7 @@
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, linear_color, read_faces};
+use super::face_builder::{FaceBuilder, Gathered, MAX_CORNERS, NumberedCorner, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
@@ -48,11 +48,7 @@ pub(super) fn begins(text: &[u8]) -> bool {
 }
 
 /// Reads all faces.
-fn gather<'a>(
-    bytes: &[u8],
-    files: &'a Files<'a>,
-    mut faces: FaceBuilder<'a>,
-) -> Result<(FaceBuilder<'a>, String), ReadError> {
+fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, mut faces: FaceBuilder<'a>) -> Gathered<'a> {
     let mut rows = Rows::new(bytes, Some(files.progress));
     let header = Header::read(&mut rows)?;
     let vertices = Vertices::read(&header, &mut rows, files.budget)?;

@@ -11,7 +11,7 @@ mod values;
 
 use glam::{Vec2, Vec3, Vec4};
 
-use super::face_builder::{FaceBuilder, MAX_CORNERS, NumberedCorner, linear_color, read_faces};
+use super::face_builder::{FaceBuilder, Gathered, MAX_CORNERS, NumberedCorner, linear_color, read_faces};
 use super::loaded_mesh::LoadedMesh;
 use super::model_file::ModelFile;
 use super::notes::counted;
@@ -53,11 +53,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadE
 }
 
 /// Reads all faces.
-fn gather<'a>(
-    bytes: &[u8],
-    files: &'a Files<'a>,
-    mut faces: FaceBuilder<'a>,
-) -> Result<(FaceBuilder<'a>, String), ReadError> {
+fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, mut faces: FaceBuilder<'a>) -> Gathered<'a> {
     let header = header::read(bytes)?;
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let mut reader = Reader {

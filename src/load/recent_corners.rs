@@ -1,7 +1,6 @@
 //! Remembers the corners of vertices that faces used lately: the next faces mostly use them again.
 
-use geometry::mesh::mesh_builder::InputCorner;
-use geometry::mesh::mesh_builder::StoredCorner;
+use geometry::mesh::mesh_builder::{InputCorner, StoredCorner};
 
 /// How many vertices are remembered. A power of two that keeps the table within a core's own cache.
 const SLOTS: usize = 1 << 13;

@@ -82,7 +82,10 @@ impl App {
                 let named = if what == Written::Gif { 0 } else { turn.frames };
                 let commands: Vec<String> = (0..named).map(command).collect::<Option<_>>()?;
                 let parts = self.shot_parts(theme, &choices)?;
-                without_warnings(move |path, progress| parts.save_turn(turn, &commands, path, progress))
+                without_warnings(move |path, progress| {
+                    let command = |frame: u32| commands.get(frame as usize).cloned().unwrap_or_default();
+                    parts.with_shot(|shot| turn.write(shot, command, path, progress, &mut |_| ()))
+                })
             }
             Written::Factors => {
                 let parts = plain()?;

@@ -17,7 +17,7 @@ use inspect::reference_shape::ReferenceShape;
 use inspect::render::Scene;
 use inspect::settings::{ARENA_BYTES, Choice, ColorSource, Overlays, Settings, SplitSide};
 use inspect::shot::files::{to_json, write_factors, write_text};
-use inspect::shot::{Shot, ShotError, ShotView, StatsWanted, Subject, Turn};
+use inspect::shot::{Shot, ShotError, ShotView, StatsWanted, Subject};
 
 /// How much of the progress is for reading the mesh back from the device; the rest is for writing the file.
 const READING: f32 = 0.8;
@@ -58,21 +58,6 @@ impl ShotParts {
             progress.check()?;
             shot.write(path, &picture, command)
         })
-    }
-
-    /// Draws a turntable, whose PNG files hold these commands. Writes nothing if it was cancelled.
-    ///
-    /// # Errors
-    /// The device fails, or a file can't be written; as a sentence.
-    pub(crate) fn save_turn(
-        self,
-        turn: Turn,
-        commands: &[String],
-        path: &Path,
-        progress: &Progress,
-    ) -> Result<(), String> {
-        let command = |frame| commands.get(frame as usize).cloned().unwrap_or_default();
-        self.with_shot(|shot| turn.write(shot, command, path, progress, &mut |_| ()))
     }
 
     /// Measures the picture, on a device of its own so that nothing else is timed, and writes its stats. Writes nothing if it

@@ -13,8 +13,7 @@ use inspect::gates::{EdgeSpot, Spot};
 use inspect::measure::{CrackedEdge, EdgeSide, Measured};
 use inspect::render::LineSegment;
 use inspect::render::layout::{CRACK_COLOR, OUTLINE_COLOR, SIDE_COLORS, T_JUNCTION_COLOR};
-use inspect::settings::Choice;
-use inspect::settings::SplitSide;
+use inspect::settings::{Choice, SplitSide};
 
 /// Half the widths of the selected edge's outline, of its first side, and of the others, in px.
 const ALONE: [f32; 3] = [2.5, 1.75, 0.75];

@@ -1,6 +1,7 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
+use geometry::defaults::with_defaults;
 use geometry::mesh::Moment;
 use geometry::mesh::rig::Clip;
 use inspect::render::LeftPose;
@@ -8,24 +9,20 @@ use inspect::render::LeftPose;
 /// How many clips the list shows.
 pub(in crate::app) const LISTED: usize = 1000;
 
-/// The clip and the time that the mesh is shown at.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Playback {
-    /// None at rest.
-    pub clip: Option<usize>,
-    /// Time in the clip, in s.
-    pub time: f64,
-    /// 1 is the clip's own speed.
-    pub speed: f64,
-    /// The pose left of a split.
-    pub left: LeftPose,
-    /// While playing: when `time` was last advanced, on the window's clock in s.
-    playing: Option<f64>,
-}
-
-impl Default for Playback {
-    fn default() -> Self {
-        Self { clip: None, time: 0.0, speed: 1.0, left: LeftPose::Same, playing: None }
+with_defaults! {
+    /// The clip and the time that the mesh is shown at.
+    #[derive(Clone, Copy, Debug)]
+    pub(crate) struct Playback {
+        /// None at rest.
+        pub clip: Option<usize> = None,
+        /// Time in the clip, in s.
+        pub time: f64 = 0.0,
+        /// 1 is the clip's own speed.
+        pub speed: f64 = 1.0,
+        /// The pose left of a split.
+        pub left: LeftPose = LeftPose::Same,
+        /// While playing: when `time` was last advanced, on the window's clock in s.
+        playing: Option<f64> = None,
     }
 }
 

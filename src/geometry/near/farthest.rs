@@ -17,6 +17,7 @@ use serde::Serialize;
 use super::polygon::Polygon;
 use super::triangle_tree::{Near, ROUNDING, TriangleTree};
 use crate::casts::to_u32;
+use crate::defaults::with_defaults;
 use crate::progress::{Cancelled, Progress};
 
 /// Triangles by their corners' positions.
@@ -399,17 +400,13 @@ impl Search<'_> {
     }
 }
 
-/// The largest distance from a piece to a triangle of the tree, and the corner that has it.
-#[derive(Clone, Copy)]
-struct Bound {
-    distance: f64,
-    face: u32,
-    corner: DVec3,
-}
-
-impl Default for Bound {
-    fn default() -> Self {
-        Self { distance: f64::INFINITY, face: 0, corner: DVec3::ZERO }
+with_defaults! {
+    /// The largest distance from a piece to a triangle of the tree, and the corner that has it.
+    #[derive(Clone, Copy)]
+    struct Bound {
+        distance: f64 = f64::INFINITY,
+        face: u32 = 0,
+        corner: DVec3 = DVec3::ZERO,
     }
 }
 

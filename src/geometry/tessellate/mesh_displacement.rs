@@ -2,7 +2,6 @@
 
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-use super::Inputs;
 use super::control_nets::ControlNets;
 use super::displace::{
     Displacement, Spot, direction_slopes, height_at, height_slopes, raised_normal, segment_level, spot, texel_length,
@@ -13,7 +12,7 @@ use super::normal::{Normals, edge_normal, facing_or, linear_normal, unit_or};
 use super::octahedral_normal::{pack_normal, unpack_normal};
 use super::surface::{UNIT, linear_uv, patch_tangents};
 use super::vertex::Vertex;
-use super::{Convention, FIXED_ONE, HullFactors, PatchFactors, Tessellation, factor_side};
+use super::{Convention, FIXED_ONE, HullFactors, Inputs, PatchFactors, Tessellation, factor_side};
 use crate::mesh::{
     Curves, Dominance, HeightAmount, HeightMap, Heights, Mesh, PatchRelief, Sharing, Topology, patch_reliefs,
 };

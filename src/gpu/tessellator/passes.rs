@@ -86,7 +86,7 @@ impl Tessellator {
             return Ok(());
         }
         self.record_chunks(recorder)?;
-        self.record_emission(recorder, 0, 0)
+        self.record_emission(recorder, (0, 0))
     }
 
     fn record_chunks(&mut self, recorder: &mut impl RecordPasses) -> Result<(), GpuError> {
@@ -292,15 +292,11 @@ impl Tessellator {
         if self.emitted == Some((slab_index, chunk_index)) {
             return Ok(());
         }
-        self.record_emission(recorder, slab_index, chunk_index)
+        self.record_emission(recorder, (slab_index, chunk_index))
     }
 
-    fn record_emission(
-        &mut self,
-        recorder: &mut impl RecordPasses,
-        slab_index: usize,
-        chunk_index: u32,
-    ) -> Result<(), GpuError> {
+    fn record_emission(&mut self, recorder: &mut impl RecordPasses, at: (usize, u32)) -> Result<(), GpuError> {
+        let (slab_index, chunk_index) = at;
         let (vertices, triangles, displace) = self.emission(slab_index, Choices::new(&self.params))?;
         let slab = &self.slabs[slab_index];
         let args = u64::from(chunk_index) * size_of::<EmitArgs>() as u64;
@@ -316,7 +312,7 @@ impl Tessellator {
         if let Some(displace) = displace {
             recorder.compute("displace", |pass| run(pass, &displace, std::mem::offset_of!(EmitArgs, displaced)));
         }
-        self.emitted = Some((slab_index, chunk_index));
+        self.emitted = Some(at);
         Ok(())
     }
 }

@@ -122,12 +122,7 @@ pub(super) struct Cut {
 
 impl Cut {
     /// How one of a mesh's materials is cut under these settings, in such pictures; none if it isn't, or if it is lit from all around.
-    pub(super) fn from_settings(
-        settings: &Settings,
-        mesh: &Mesh,
-        material: &Material,
-        kind: PictureKind,
-    ) -> Option<Self> {
+    pub(super) fn new(settings: &Settings, mesh: &Mesh, material: &Material, kind: PictureKind) -> Option<Self> {
         let is_seen = settings.overlays.colors.source() == ColorSource::Materials && !settings.shows_materials();
         let is_cut = is_seen && matches!(material.look.alpha, Alpha::Mask(_));
         is_cut.then_some(Self { details: mesh.details.is_some(), samples: kind.samples > 1 })

@@ -27,7 +27,7 @@ pub(super) fn surface_draw(
 
 /// What colours a material, and which of its faces are drawn: these, unless it has fronts only.
 fn shading(settings: &Settings, mesh: &Mesh, material: &Material, faces: Faces, kind: PictureKind) -> (Shading, Faces) {
-    if let Some(cut) = Cut::from_settings(settings, mesh, material, kind) {
+    if let Some(cut) = Cut::new(settings, mesh, material, kind) {
         return (Shading::Cut(cut), faces);
     }
     if settings.shows_materials() {

@@ -142,7 +142,9 @@ fn annotated(text: &str, all: &[Declaration], precise_names: &BTreeSet<String>) 
             lines.extend(current.iter().flat_map(|own| own.comment.clone()));
         }
         let is_blank_twice = line.is_empty() && lines.last().is_some_and(String::is_empty);
-        if is_blank_twice || is_padding(line) && current.is_none_or(|own| !UNIFORMS.contains(&own.name.as_str())) {
+        // A member that only fills a struct up.
+        let is_padding = ["int _pad", "int _end_pad"].iter().any(|start| line.trim_start().starts_with(start));
+        if is_blank_twice || is_padding && current.is_none_or(|own| !UNIFORMS.contains(&own.name.as_str())) {
             continue;
         }
         match current {
@@ -188,12 +190,6 @@ fn constant_array(line: &str) -> Option<String> {
 
 /// The structs that lie in a constant buffer, where HLSL needs naga's padding.
 const UNIFORMS: [&str; 3] = ["HeightConstants", "LodView", "StageConstants"];
-
-/// Whether a line of naga's HLSL is a member that only fills a struct up.
-fn is_padding(line: &str) -> bool {
-    let member = line.trim_start();
-    member.starts_with("int _pad") || member.starts_with("int _end_pad")
-}
 
 /// Returns a line of a constant with the name of its value, where ours has one: naga writes the number.
 fn named_value(own: &Declaration, line: &str) -> String {

@@ -14,7 +14,6 @@ use crate::settings::{Overlays, Settings, SplitSide};
 use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, Tessellated};
-use geometry::view::ScreenView;
 use gpu::{GpuError, Timing};
 
 /// A flight begins so many times as far from the camera's target as the camera is, and takes so many frames of one ratio of
@@ -63,6 +62,8 @@ impl Shot {
         let pop = has(GateKind::Pops).then(|| self.farthest_pop(progress)).transpose()?;
         let junctions = has(GateKind::TJunctions);
         let junctions = junctions.then(|| t_junctions(&self.subject.loaded.topology, progress)).transpose()?;
+        // The picture is mirrored after it was drawn.
+        let (view, is_mirrored) = (self.view(), self.view.camera.is_mirrored());
         let facts = Facts {
             topology: &self.posed.topology,
             warnings: Some(&self.subject.loaded.warnings),
@@ -71,7 +72,7 @@ impl Shot {
             mesh: Some((&self.subject.loaded.mesh, &self.subject.loaded.topology)),
             junctions: junctions.as_deref(),
             leaks: leaks.as_ref(),
-            view: Some(self.view_of_picture()),
+            view: Some(if is_mirrored { view.mirrored() } else { view }),
             above: above.as_ref(),
             crossed: crossed.as_ref().map(Option::as_deref),
             deviation,
@@ -183,12 +184,6 @@ impl Shot {
         let leaks = engine.find_leaks(scene, inputs, measured, target.size, &view.camera)?;
         let mirrored = view.camera.is_mirrored();
         Ok(Some(if mirrored { leaks.mirrored(target.viewport().x) } else { leaks }))
-    }
-
-    /// The view as the picture has it, which is mirrored after it was drawn if its camera mirrors.
-    fn view_of_picture(&self) -> ScreenView {
-        let view = self.view();
-        if self.view.camera.is_mirrored() { view.mirrored() } else { view }
     }
 
     /// How much the mesh has, and how much was emitted.

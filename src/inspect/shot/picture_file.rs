@@ -80,18 +80,15 @@ fn with_texts(picture: &RgbaImage, texts: &[(&str, &str)]) -> Result<Vec<u8>, pn
     encoder.set_compression(png::Compression::High);
     encoder.set_filter(png::Filter::Adaptive);
     for (keyword, text) in texts {
-        let add = if is_latin_1(text) { png::Encoder::add_text_chunk } else { png::Encoder::add_itxt_chunk };
+        // A tEXt chunk has printable characters of Latin-1, and line ends.
+        let is_latin_1 = text.chars().all(|c| matches!(c, '\n' | ' '..='~' | '\u{a1}'..='\u{ff}'));
+        let add = if is_latin_1 { png::Encoder::add_text_chunk } else { png::Encoder::add_itxt_chunk };
         add(&mut encoder, (*keyword).to_owned(), (*text).to_owned())?;
     }
     let mut writer = encoder.write_header()?;
     writer.write_image_data(picture.as_raw())?;
     writer.finish()?;
     Ok(bytes)
-}
-
-/// Whether a text can be in a tEXt chunk: printable characters of Latin-1, and line ends.
-fn is_latin_1(text: &str) -> bool {
-    text.chars().all(|c| matches!(c, '\n' | ' '..='~' | '\u{a1}'..='\u{ff}'))
 }
 
 /// Every setting that has an effect, one a line, in the options' names.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use image::codecs::gif::{GifEncoder, Repeat};
-use image::{Delay, Frame, RgbaImage};
+use image::{Delay, Frame};
 
 use super::files::file_error;
 use super::{Shot, ShotError};
@@ -54,7 +54,9 @@ impl Turn {
             let mut gif = GifEncoder::new_with_speed(part.file(), QUANTISING);
             gif.set_repeat(Repeat::Infinite).map_err(|error| file_error(path, "encoded", &error))?;
             for frame in 0..self.frames {
-                let picture = opaque_or_clear(draw(shot, frame)?);
+                let mut picture = draw(shot, frame)?;
+                // GIF files have nothing between opaque and clear px.
+                picture.pixels_mut().for_each(|pixel| pixel.0[3] = if pixel.0[3] < 128 { 0 } else { 255 });
                 let frame = Frame::from_parts(picture, 0, 0, Delay::from_numer_denom_ms(1000, self.fps));
                 gif.encode_frame(frame).map_err(|error| file_error(path, "encoded", &error))?;
             }
@@ -97,12 +99,6 @@ pub fn frame_name(frame: u32) -> String {
 
 /// How fast the 256 colours of a GIF are chosen, 1 to 30; faster ones fit less well.
 const QUANTISING: i32 = 10;
-
-/// A picture whose px are opaque or clear: GIF files have nothing between.
-fn opaque_or_clear(mut picture: RgbaImage) -> RgbaImage {
-    picture.pixels_mut().for_each(|pixel| pixel.0[3] = if pixel.0[3] < 128 { 0 } else { 255 });
-    picture
-}
 
 #[cfg(test)]
 mod tests {

@@ -46,7 +46,10 @@ impl<'a> Source<'a> {
         let tokens = tokens(text);
         let closed_by = brackets(text, &tokens)?;
         check_names(text, &tokens, purpose)?;
-        check_lengths(text, &tokens)?;
+        let mut statements = tokens.split(|token| matches!(token.text, ";" | "{" | "}"));
+        if let Some(statement) = statements.find(|statement| statement.len() > MOST_TOKENS) {
+            return Err(Fault { line: line_of(text, statement[0].at), kind: FaultKind::LongStatement });
+        }
         let mut source = Self { text, tokens, closed_by, functions: HashMap::new() };
         let found: Vec<_> = (0..source.tokens.len()).filter_map(|at| source.function(at)).collect();
         source.functions = found.into_iter().collect();
@@ -99,13 +102,6 @@ impl<'a> Source<'a> {
         work
     }
 
-    /// A result of zero of the function that a token is in; nothing if it has no result.
-    fn result_around(&self, at: usize) -> String {
-        let around = self.functions.values().find(|own| own.body.contains(&at));
-        let result = around.and_then(|own| own.result.as_ref());
-        result.map_or_else(String::new, |result| format!("{result}()"))
-    }
-
     /// The text with bounded loops. It must have been parsed, so that no function calls itself.
     ///
     /// # Errors
@@ -127,7 +123,11 @@ impl<'a> Source<'a> {
             let inside = self.tokens[block.start - 1].at + 1;
             // A function that nobody calls may be any work.
             let work = u32::try_from(self.work(at..block.end, &mut known)).unwrap_or(u32::MAX >> 1);
-            let (work, result) = (work.max(LEAST_WORK_OF_TURN), self.result_around(at));
+            let work = work.max(LEAST_WORK_OF_TURN);
+            // A result of zero of the function around it; nothing if that has no result.
+            let around = self.functions.values().find(|own| own.body.contains(&at));
+            let result = around.and_then(|own| own.result.as_ref()).map(|result| format!("{result}()"));
+            let result = result.unwrap_or_default();
             out += &self.text[copied..inside];
             // A loop may have no other end than a return, and then nothing follows it.
             out += &format!(" if {USER_PREFIX}spend({work}u) {{ return {result}; }} ");
@@ -172,14 +172,6 @@ fn check_names(text: &str, tokens: &[Token], purpose: &UserPurpose) -> Result<()
     let needed: HashSet<String> = purpose.needed_names();
     match declared(tokens).iter().map(|(_, name)| name).find(|name| needed.contains(name.text)) {
         Some(token) => fault(token, FaultKind::Taken),
-        None => Ok(()),
-    }
-}
-
-fn check_lengths(text: &str, tokens: &[Token]) -> Result<(), Fault> {
-    let mut statements = tokens.split(|token| matches!(token.text, ";" | "{" | "}"));
-    match statements.find(|statement| statement.len() > MOST_TOKENS) {
-        Some(statement) => Err(Fault { line: line_of(text, statement[0].at), kind: FaultKind::LongStatement }),
         None => Ok(()),
     }
 }

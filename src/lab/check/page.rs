@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::report::{Asset, GateResult, Report, Status, View, gate_title};
+use super::report::{Asset, Report, Status, View, gate_title};
 use geometry::numbers::{counted, grouped};
 use inspect::html::{END, begin, escaped};
 
@@ -103,7 +103,12 @@ fn of_view(asset: &Asset, view: &View) -> String {
         let _ = writeln!(text, "<tr><th>{label}</th><td class=\"number\">{}</td></tr>", grouped(number));
     }
     text += "</table>\n<ul>\n";
-    view.gates.iter().for_each(|gate| text += &of_gate(gate));
+    for gate in &view.gates {
+        // The words say what the colours say.
+        let (class, how) = if gate.passed { ("passed", "") } else { ("failed", " failed") };
+        let (gate, words) = (escaped(&gate.name), escaped(&gate.text));
+        let _ = writeln!(text, "<li><span class=\"{class}\">{gate}{how}</span>: {words}</li>");
+    }
     text += "</ul>\n</div>\n";
     for gate in &view.gates {
         let caption = gate_title(&view.name, &gate.name);
@@ -111,13 +116,6 @@ fn of_view(asset: &Asset, view: &View) -> String {
         text.extend(gate.evidence.as_ref().map(of));
     }
     text + "</div>\n"
-}
-
-fn of_gate(gate: &GateResult) -> String {
-    // The words say what the colours say.
-    let (class, how) = if gate.passed { ("passed", "") } else { ("failed", " failed") };
-    let (name, words) = (escaped(&gate.name), escaped(&gate.text));
-    format!("<li><span class=\"{class}\">{name}{how}</span>: {words}</li>\n")
 }
 
 /// A picture, whose PNG file in base64 names it.

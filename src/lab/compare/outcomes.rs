@@ -210,11 +210,7 @@ impl<'a> Outcomes<'a> {
 
     /// Explains where points differ, and returns the sides that are cut differently. `other` is the surface that their vertices lie on, if
     /// it isn't ours. `None` if no point differs but for that surface or for displacement.
-    pub(super) fn explain(
-        &self,
-        other: Option<&OurSurface>,
-        findings: &mut Vec<Finding>,
-    ) -> Option<Vec<SideDifference>> {
+    pub(super) fn explain(&self, other: Option<&OurSurface>, found: &mut Vec<Finding>) -> Option<Vec<SideDifference>> {
         let different = self.different();
         if different.is_empty() {
             return Some(Vec::new());
@@ -235,7 +231,7 @@ impl<'a> Outcomes<'a> {
         let (sides, inside, suits) = self.other_cuts(&different);
         let (patches, of) = (different.len() as u64, self.compared().count() as u64);
         let Tessellation { partitioning, convention, .. } = inputs.tessellation;
-        findings.push(match explanations.is_empty() {
+        found.push(match explanations.is_empty() {
             false => Finding::Factors { ours: partitioning, convention, explanations, patches, of },
             true => {
                 let is_of_view = given.is_none() && inputs.tessellation.used_lod().follows_view();
@@ -244,7 +240,7 @@ impl<'a> Outcomes<'a> {
                 Finding::UnknownFactors(UnknownFactors { patches, of, sides, inside, suits, ours, is_of_view })
             }
         });
-        findings.extend(self.cracks());
+        found.extend(self.cracks());
         Some(sides)
     }
 

@@ -76,15 +76,11 @@ impl Line {
     /// The quantities that have no column, with their numbers.
     fn rest(&self) -> String {
         let rest = self.worst.iter().filter(|(quantity, _)| COLUMNS.iter().all(|(column, _)| column != quantity));
-        rest.map(|(quantity, worst)| phrase(*quantity, *worst)).collect::<Vec<_>>().join(", ")
-    }
-}
-
-/// A quantity with its number, in words.
-fn phrase(quantity: Quantity, measured: f64) -> String {
-    match quantity {
-        Quantity::Segment if measured == 0.0 => "all that is in view is cut as finely as possible".to_owned(),
-        _ => format!("{} {}", number(measured), quantity.unit()),
+        let phrase = |(quantity, measured): &(Quantity, f64)| match quantity {
+            Quantity::Segment if *measured == 0.0 => "all that is in view is cut as finely as possible".to_owned(),
+            _ => format!("{} {}", number(*measured), quantity.unit()),
+        };
+        rest.map(phrase).collect::<Vec<_>>().join(", ")
     }
 }
 

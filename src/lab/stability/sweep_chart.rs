@@ -51,7 +51,12 @@ fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     for sweep in sweeps {
         let points = parts(sweep, diagonal, decades.start);
         let style = CurveStyle::new(sweep.partitioning);
-        style.draw(&mut chart, &points, decades.start, legend_text(sweep, diagonal))?;
+        let name = sweep.partitioning.name();
+        let text = match sweep.largest() {
+            Some(step) if step.jump > 0.0 => format!("{name}, up to {:.1e}", step.jump / diagonal),
+            _ => format!("{name}, no jump"),
+        };
+        style.draw(&mut chart, &points, decades.start, text)?;
     }
     chart
         .configure_series_labels()
@@ -106,13 +111,6 @@ fn axes(chart: &mut Chart, sweeps: &[Sweep]) -> Drawn {
 fn parts(sweep: &Sweep, diagonal: f64, bottom: f64) -> Vec<(f64, f64)> {
     let point = |step: &SweepStep| (f64::from(step.factor), (step.jump / diagonal).max(bottom));
     sweep.steps.iter().map(point).collect()
-}
-
-fn legend_text(sweep: &Sweep, diagonal: f64) -> String {
-    match sweep.largest() {
-        Some(step) if step.jump > 0.0 => format!("{}, up to {:.1e}", sweep.partitioning.name(), step.jump / diagonal),
-        _ => format!("{}, no jump", sweep.partitioning.name()),
-    }
 }
 
 /// The colour and shape that tell a partitioning from the others.

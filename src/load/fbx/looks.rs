@@ -59,7 +59,8 @@ impl<'a> LookSource<'a> {
     /// Reads a material as it lies on a mesh.
     pub(super) fn new(material: &'a ufbx::Material, mesh: &Mesh) -> Self {
         let (pbr, features) = (&material.pbr, &material.features);
-        let map = |map: &'a MaterialMap| map_source(map, mesh);
+        let map =
+            |map: &'a MaterialMap| Some(texture_source(map.texture.as_ref().filter(|_| map.texture_enabled)?, mesh));
         // ufbx doesn't know the name that Autodesk's SDK gives this property.
         let is_height = |own: &&ufbx::MaterialTexture| own.material_prop.as_ref() == "DisplacementColor";
         let sdk_height = || material.textures.iter().find(is_height).map(|own| texture_source(&own.texture, mesh));
@@ -191,11 +192,7 @@ fn undrawn(material: &ufbx::Material) -> Vec<&'static str> {
     found.into_iter().filter(|(is_found, _)| *is_found).map(|(_, what)| what).collect()
 }
 
-/// Returns where a map's texture lies on a mesh; none without one.
-fn map_source<'a>(map: &'a MaterialMap, mesh: &Mesh) -> Option<MapSource<'a>> {
-    Some(texture_source(map.texture.as_ref().filter(|_| map.texture_enabled)?, mesh))
-}
-
+/// Returns where a texture lies on a mesh.
 fn texture_source<'a>(texture: &'a Texture, mesh: &Mesh) -> MapSource<'a> {
     let is_named = |set: &ufbx::UvSet| set.name.as_ref() == texture.uv_set.as_ref();
     let set = mesh.uv_sets.iter().position(is_named).unwrap_or(0);

@@ -285,7 +285,9 @@ impl MeshReader<'_, '_, '_, '_> {
     fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
         let (vertex, mut posed, has_more) = self.posed(corner)?;
         self.all.found.many_joints += usize::from(has_more);
-        posed.corner.uv = self.own_uv(corner, material);
+        let uv = self.uv(material.own.set, corner);
+        let [a, b, c, d, e, f] = material.own.transform;
+        posed.corner.uv = Vec2::new(a * uv.x + b * uv.y + c, d * uv.x + e * uv.y + f);
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
             // Blend shapes are at rest, unless a clip weighs them.
@@ -300,12 +302,6 @@ impl MeshReader<'_, '_, '_, '_> {
         // Where it isn't refined, a vertex may have several corners.
         let vertex = self.all.faces.cage.is_some().then_some([vertex, 0, 0]);
         Ok((NumberedCorner { corner: posed.corner, number, vertex }, posed.linear.determinant() < 0.0))
-    }
-
-    fn own_uv(&mut self, corner: usize, material: &Resolved) -> Vec2 {
-        let uv = self.uv(material.own.set, corner);
-        let [a, b, c, d, e, f] = material.own.transform;
-        Vec2::new(a * uv.x + b * uv.y + c, d * uv.x + e * uv.y + f)
     }
 
     /// Returns the texture coordinates of a set, counted from the top.

@@ -180,7 +180,8 @@ impl Triangles<'_> {
                 self.largest(level, &|x, y| lost.at(x, y))?
             }
         };
-        let px = own.px_of_level_0();
+        // Width and height of a px, in px of level 0.
+        let px = own.ratio.recip();
         let loss = |((bend, twist), lost): ((&f32, &f32), f32)| {
             // Between the centres of level 0's px the level may bend once more.
             let between = if level == 0 { 0.0 } else { 0.25 * bend * (px.x + px.y) };
@@ -243,11 +244,6 @@ impl<'a> LevelPx<'a> {
         let [x, y] = [0, 1].map(|axis| size[axis] as f32 / map.size[axis] as f32);
         let repeats = map.wrap.map(|wrap| wrap == Wrap::Repeat);
         Self { size, repeats, ratio: Vec2::new(x, y), px: &map.heights[start..start + size[0] * size[1]] }
-    }
-
-    /// Width and height of a px, in px of level 0.
-    fn px_of_level_0(&self) -> Vec2 {
-        self.ratio.recip()
     }
 
     fn at(&self, x: usize, y: usize) -> f32 {

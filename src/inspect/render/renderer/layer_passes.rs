@@ -49,7 +49,10 @@ impl Renderer {
         };
         let (scene_group, layer_group) = (self.scene_group(drawn, frame), self.layer_group(picture, pass)?);
         let is_whole = all == [0, 0, target.size[0], target.size[1]];
-        let (cleared, part_clear) = if is_first { self.layer_clear(pass, is_whole)? } else { (None, None) };
+        // A clear of all of a picture is faster than a draw, but takes far longer than a draw of a small part.
+        let nothing = pass.nothing().filter(|_| is_first);
+        let cleared = nothing.filter(|_| is_whole);
+        let part_clear = nothing.filter(|_| !is_whole).map(|depth| self.get(clear(pass, depth))).transpose()?;
         let depth = depth_attachment(&target.layer_depths(&self.gpu)?[pass.found()], cleared);
         let has_colors = matches!(pass, LayerPass::Back { .. });
         let color = has_colors.then(|| target.color(wgpu::Color::TRANSPARENT, false, false));
@@ -68,23 +71,6 @@ impl Renderer {
             }
         });
         Ok(())
-    }
-
-    /// How a pass begins with the depths where nothing is found: the depth that all of a picture is cleared to, or the pipeline that sets
-    /// it in a part. A clear of all of a picture is faster than a draw, but takes far longer than a draw of a small part.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    fn layer_clear(
-        &self,
-        pass: LayerPass,
-        is_whole: bool,
-    ) -> Result<(Option<f32>, Option<wgpu::RenderPipeline>), GpuError> {
-        match pass.nothing() {
-            Some(depth) if is_whole => Ok((Some(depth), None)),
-            Some(depth) => Ok((None, Some(self.get(clear(pass, depth))?))),
-            None => Ok((None, None)),
-        }
     }
 
     /// What draws each of the mesh's materials in a pass: nothing for a material that hides what is behind it.

@@ -30,7 +30,9 @@ pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Savin
                     let is_own = |row: &Row| (row.setting.method.surface, row.setting.method.lod) == (surface, lod);
                     race.cheapest(error, cost, is_own)
                 };
-                let is_end = |row: &Row| part.is_plain(row) || is_coarsest(part, row);
+                let is_coarsest =
+                    |row: &Row| !part.subject.rows.iter().any(|other| row.setting.is_finer(&other.setting));
+                let is_end = |row: &Row| part.is_plain(row) || is_coarsest(row);
                 match (cheapest(LodKind::Error), cheapest(other)) {
                     (Some(own), Some(row)) if is_end(own) || is_end(row) => {}
                     (Some(own), Some(row)) if cost.of(&own.probe) > 0.0 => {
@@ -44,11 +46,6 @@ pub(super) fn saving(parts: &[Part], other: LodKind, cost: Cost) -> Option<Savin
         }
     }
     Some(Saving { times: Range::from_ratios(&ratios)?, count: ratios.len(), alone })
-}
-
-/// Whether a row is the coarsest of its method.
-fn is_coarsest(part: &Part, row: &Row) -> bool {
-    !part.subject.rows.iter().any(|other| row.setting.is_finer(&other.setting))
 }
 
 /// Each surface with each error at which it is compared.
