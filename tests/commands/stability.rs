@@ -109,7 +109,7 @@ fn stability_prints_a_table_with_verdicts() {
     }
     assert_eq!(table[10].last(), Some(&"holds; 0 T-junctions missed"), "{text}");
     let legend = text.lines().last().expect("lines");
-    assert!(legend.starts_with("points: ") && legend.contains("factors: "), "{text}");
+    assert!(legend.starts_with("Points: ") && legend.contains("factors: "), "{text}");
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Polygons that are taken as the cage of a subdivision surface.
 
+use std::collections::BTreeSet;
+
 use super::{Folder, both, failure, number, output, run, stats};
 
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
@@ -192,7 +194,7 @@ fn colours_and_texture_coordinates_are_refined_with_their_faces() {
         (16..48).map(|x| picture.get_pixel(x, 32).0[0]).collect()
     };
     // One value for each small face would be a staircase of eight steps.
-    let distinct = reds.iter().collect::<std::collections::BTreeSet<_>>().len();
+    let distinct = reds.iter().collect::<BTreeSet<_>>().len();
     assert!(distinct > 16 && reds.is_sorted(), "{reds:?}");
 }
 
@@ -202,7 +204,10 @@ fn a_butterfly_surface_goes_through_the_corners_of_its_cage_and_is_a_reference()
     let file = cube(&folder);
     let options = ["--subdivide", "butterfly", "--levels", "3"];
     let points = positions(&folder, &file, &options);
-    assert_eq!(points.iter().filter(|point| point.iter().all(|x| x.abs() == 1.0)).count(), 8);
+    // Corners with normals of their own are written each.
+    let kept: BTreeSet<String> =
+        points.iter().filter(|point| point.iter().all(|x| x.abs() == 1.0)).map(|point| format!("{point:?}")).collect();
+    assert_eq!(kept.len(), 8);
     let said = stats(&[&[&*file][..], &options].concat());
     assert_eq!(said["triangles_in"].as_u64(), Some(12 * 64), "squares are cut first");
     assert_eq!((said["edges"]["boundary"].as_u64(), said["cracks"]["edges"].as_u64()), (Some(0), Some(0)));
