@@ -30,6 +30,8 @@ pub(super) struct Undoable {
     /// Whether the mesh is compared with what it was before its file changed.
     pub is_with_before: bool,
     pub left_pose: LeftPose,
+    /// Whether the poses of both halves were exchanged an odd number of times. The right one's is in no step.
+    pub is_swapped: bool,
 }
 
 /// The states before and after the present one.
@@ -120,6 +122,7 @@ impl App {
             own_limit: self.has_own_limit(),
             is_with_before: self.shows_before(),
             left_pose: self.viewport.playback.left,
+            is_swapped: self.viewport.playback.is_swapped,
         }
     }
 
@@ -141,7 +144,7 @@ impl App {
                 step.companions[companion as usize] = None;
             }
             step.is_with_before = false;
-            step.left_pose = LeftPose::Same;
+            (step.left_pose, step.is_swapped) = (LeftPose::Same, false);
         });
     }
 
@@ -168,7 +171,10 @@ impl App {
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
         let Some(step) = step else { return };
-        let Undoable { settings, preparation, companions: files, own_limit, is_with_before, left_pose } = step;
+        let Undoable { settings, preparation, companions, own_limit, is_with_before, left_pose, is_swapped } = step;
+        if self.viewport.playback.is_swapped != is_swapped {
+            self.swap_poses();
+        }
         self.viewport.playback.left = left_pose;
         use CompanionFile::{Environment, Factors, LeftMesh, Matcap, ReferenceShape};
         // A limit that was being read anew is stale.
@@ -185,7 +191,7 @@ impl App {
         if self.has_own_limit() != own_limit {
             self.close_companion(ReferenceShape);
         }
-        for (companion, source) in CompanionFile::ALL.into_iter().zip(files) {
+        for (companion, source) in CompanionFile::ALL.into_iter().zip(companions) {
             if self.companion(companion) != source {
                 self.close_companion(companion);
                 source.into_iter().for_each(|source| self.open_companion(context, companion, source));

@@ -7,12 +7,13 @@ use geometry::mesh::Shape;
 use geometry::tessellate::{Partitioning, Surface};
 use glam::Vec3;
 use inspect::render::layout::CRACK_COLOR;
-use inspect::settings::{Colors, Settings, SplitSide, SurfaceUnit};
+use inspect::settings::{Colors, Lighting, Settings, SplitSide, SurfaceUnit};
 use load::Source;
 use pnaen::app::App;
 use pnaen::commands::{Action, FileAction, all};
 
 use crate::editing::{assert_draws, copied};
+use crate::environment::panorama;
 use crate::{choose, click, open_list, press, settle, uniform, uniform_of, vase, window};
 
 #[test]
@@ -343,6 +344,33 @@ fn either_half_of_a_split_looks_as_its_own_settings_say() {
     click(&mut harness, "Edit right (B)");
     choose(&mut harness, "Colours", "Clay");
     assert_eq!(colors(&harness), [Colors::Zebra, Colors::Clay]);
+    // Keys, the toolbar and files follow the half that is edited.
+    click(&mut harness, "Edit left (A)");
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::C);
+    settle(&mut harness);
+    assert_eq!(colors(&harness), [Colors::Clay, Colors::Clay]);
+    let wireframes = |harness: &Harness<App>| {
+        SplitSide::BOTH.map(|half| harness.state().settings().half(half).expect("it is split").overlays.wireframe)
+    };
+    let [left, right] = wireframes(&harness);
+    press(&mut harness, egui::Key::W);
+    assert_eq!(wireframes(&harness), [!left, right]);
+    let toggled = harness.get_by_role_and_label(Role::CheckBox, "Wireframe").accesskit_node().toggled();
+    assert_eq!(toggled == Some(egui::accesskit::Toggled::True), !left, "the toolbar shows the left half's");
+    click(&mut harness, "Wireframe");
+    assert_eq!(wireframes(&harness), [left, right]);
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    harness.key_press_modifiers(egui::Modifiers::SHIFT, egui::Key::C);
+    settle(&mut harness);
+    assert_eq!(colors(&harness), [Colors::Material, Colors::Clay]);
+    let studio = harness.state().read_picture().expect("a device").expect("a picture");
+    harness.state_mut().open_environment(&context, panorama(&folder, "sky.hdr"));
+    settle(&mut harness);
+    let lighting = |half| harness.state().settings().half(half).expect("it is split").lighting;
+    assert_eq!(lighting(SplitSide::Left), Lighting::Environment);
+    assert_ne!(lighting(SplitSide::Right), Lighting::Environment);
+    let lit = harness.state().read_picture().expect("a device").expect("a picture");
+    assert_ne!(lit, studio, "the light of the file is seen on the left");
 }
 
 #[test]

@@ -128,7 +128,10 @@ impl App {
             Action::HidePanels => Some(self.panels.are_hidden),
             Action::SplitView => Some(self.settings.split.is_some()),
             Action::FreezeLodCamera => Some(self.viewport.frozen.is_some()),
-            Action::Setting(Change::Overlay(overlay)) => Some(self.settings.overlays.on().any(|on| on == *overlay)),
+            Action::Setting(Change::Overlay(overlay)) => {
+                let edited = self.settings.half(self.panels.edited).unwrap_or(self.settings);
+                Some(edited.overlays.on().any(|on| on == *overlay))
+            }
             Action::Ruler => Some(self.viewport.ruler.is_some()),
             Action::Previews => Some(self.viewport.preview.is_on),
             Action::Theme(theme) => Some(context.options(|options| options.theme_preference) == *theme),

@@ -166,7 +166,7 @@ impl Document {
 
     /// The corners of a patch of the mesh in a half, in the pose that is shown.
     pub(crate) fn patch_positions(&self, half: SplitSide, patch: u32) -> [glam::Vec3; 3] {
-        match self.scene.half(half).filter(|_| !self.scene.shares_mesh(half)) {
+        match self.scene.half(half).filter(|_| !self.scene.shares_pose(half)) {
             Some(other) => other.tessellator.posed().deformed().1.patch_positions(patch),
             None => self.shown().1.patch_positions(patch),
         }

@@ -159,7 +159,7 @@ impl App {
         let (own, preparation) = (self.source().cloned().unwrap_or_default(), self.preparation());
         let subdivide = if from.is_some() { Subdivide::File } else { self.own_scheme() };
         let what = from.as_ref().unwrap_or(&own).title();
-        let wanted = from.clone();
+        let (wanted, half) = (from.clone(), self.panels.edited);
         self.jobs.reference = (from.clone(), is_chosen);
         let load = move |progress: &Progress| {
             let found = engine::load_reference(wanted.as_ref(), (&own, &preparation), subdivide, progress);
@@ -169,7 +169,7 @@ impl App {
         let take = move |app: &mut Self, reference_shape| {
             app.reference_shape = Some(Opened::new(from, reference_shape));
             if is_chosen {
-                app.settings.overlays.colors = Colors::Deviation;
+                app.settings.change_half_looks(half, |own| own.overlays.colors = Colors::Deviation);
             }
         };
         self.read_companion(context, CompanionFile::ReferenceShape, title, what, load, take);
@@ -270,11 +270,11 @@ impl App {
     /// Starts to read a picture of a lit sphere, which the surface then shows. Until it is read, all stays as it is.
     pub fn open_matcap(&mut self, context: &egui::Context, path: PathBuf) {
         let path = absolute_path(path);
-        let (wanted, limits, what) = (path.clone(), self.jobs.limits, shown_path(&path));
+        let (wanted, limits, what, half) = (path.clone(), self.jobs.limits, shown_path(&path), self.panels.edited);
         let read = move |_: &_| load_matcap(&wanted, &limits).map_err(|error| error.to_string());
-        self.read_companion(context, CompanionFile::Matcap, String::new(), what, read, |app, picture| {
+        self.read_companion(context, CompanionFile::Matcap, String::new(), what, read, move |app, picture| {
             app.matcap = Some(OpenFile::new(path, Arc::new(picture)));
-            app.settings.overlays.colors = Colors::Matcap;
+            app.settings.change_half_looks(half, |own| own.overlays.colors = Colors::Matcap);
         });
     }
 
@@ -291,10 +291,10 @@ impl App {
         self.read_environment(context, path, true);
     }
 
-    /// The same; `is_chosen` says whether the file's light shines once it is read.
+    /// The same; `is_chosen` says whether the file's light shines once it is read, in the half that is edited now.
     pub(in crate::app) fn read_environment(&mut self, context: &egui::Context, path: PathBuf, is_chosen: bool) {
         let path = absolute_path(path);
-        let (wanted, limits, gpu) = (path.clone(), self.jobs.limits, self.engine.gpu.clone());
+        let (wanted, limits, gpu, half) = (path.clone(), self.jobs.limits, self.engine.gpu.clone(), self.panels.edited);
         let read = move |progress: &Progress| {
             let part = progress.part(0.0, 0.8);
             let EnvironmentFile { panorama, warnings } =
@@ -308,7 +308,7 @@ impl App {
         self.read_companion(context, CompanionFile::Environment, title, shown_path(&path), read, move |app, light| {
             app.environment = Some(OpenFile::new(path, light));
             if is_chosen {
-                app.settings.lighting = Lighting::Environment;
+                app.settings.change_half_looks(half, |own| own.lighting = Lighting::Environment);
             }
         });
     }

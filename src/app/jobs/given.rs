@@ -26,7 +26,7 @@ impl App {
         let lod = self.lod_shader.as_ref().filter(|_| self.uses_lod_shader()).and_then(OpenShader::shader);
         let factors = self.given.as_ref().map_or(0, |given| given.generation);
         let surface = self.surface_shader.as_ref().and_then(OpenShader::shader);
-        let light = self.environment.as_ref().filter(|_| self.settings.lighting == Lighting::Environment);
+        let uses_light = self.settings.halves().any(|own| own.lighting == Lighting::Environment);
         // A file's factors are for the triangles of this mesh.
         let takes_left = self.settings.has_left_tessellation() && (self.left_mesh.is_none() || lod.is_some());
         let factors = lod.map_or(factors, |(_, generation)| generation);
@@ -35,7 +35,7 @@ impl App {
             left_factors: if takes_left { factors } else { 0 },
             surface: surface.map_or(0, |(_, generation)| generation),
             matcap: self.matcap.as_ref().map_or(0, |chosen| chosen.generation),
-            light: light.map_or(0, |open| open.generation),
+            light: self.environment.as_ref().filter(|_| uses_light).map_or(0, |open| open.generation),
         }
     }
 

@@ -12,7 +12,6 @@ use crate::app::widgets::chooser;
 use crate::commands::{Action, with_key};
 use geometry::mesh::rig::Clip;
 use inspect::render::LeftPose;
-use inspect::settings::SplitSide;
 
 /// The range of speeds at which a clip plays; 1 is its own speed.
 const SPEED_RANGE: RangeInclusive<f64> = 0.1..=4.0;
@@ -86,9 +85,11 @@ impl App {
 
     /// The pose of a split view's left half: that of the right one, or one that stays.
     fn left_pose_list(&mut self, ui: &mut Ui) {
-        let Some(document) = self.document.as_ref().filter(|_| self.settings.split.is_some()) else { return };
+        let Some(_) = self.settings.split else { return };
         let own = self.viewport.playback.left;
-        let title = document.scene.pose_title(SplitSide::Left).unwrap_or_default();
+        let (clips, moment) = (self.clip_names(), if let LeftPose::Own(moment) = own { moment } else { None });
+        let posed = moment.and_then(|own| Some(format!("{} at {} s", clips.get(own.clip)?, own.time as f32)));
+        let title = posed.unwrap_or_else(|| "at rest".to_owned());
         let same = (LeftPose::Same, "The same", "The left half has the pose of the right one.");
         let now = (LeftPose::Own(self.moment()), "This moment", "The left half stays in the pose that is shown now.");
         let mut choices = vec![same, now];

@@ -31,11 +31,11 @@ impl App {
                 let action = Action::Setting(Change::Overlay(overlay));
                 commands.iter().find(|command| command.action == action)?.why_not(&now)
             };
+            for overlay in ON_TOOLBAR {
+                let action = Action::Setting(Change::Overlay(overlay));
+                self.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
+            }
             self.of_half(|app| {
-                for overlay in ON_TOOLBAR {
-                    let action = Action::Setting(Change::Overlay(overlay));
-                    app.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
-                }
                 app.overlays_list(ui, why_not);
                 app.colors_list(ui, why_not);
             });

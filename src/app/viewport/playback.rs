@@ -21,6 +21,8 @@ with_defaults! {
         pub speed: f64 = 1.0,
         /// The pose left of a split.
         pub left: LeftPose = LeftPose::Same,
+        /// Whether the poses were exchanged an odd number of times.
+        pub is_swapped: bool = false,
         /// While playing: when `time` was last advanced, on the window's clock in s.
         playing: Option<f64> = None,
     }
@@ -73,9 +75,8 @@ impl App {
     pub fn choose_clip(&mut self, clip: Option<usize>) {
         let clip = clip.filter(|&clip| clip < self.clips().len());
         let was_framed = self.is_framed();
-        let Playback { speed, left, playing, .. } = self.viewport.playback;
-        let playing = playing.filter(|_| clip.is_some());
-        self.viewport.playback = Playback { clip, speed, left, playing, ..Playback::default() };
+        let playing = self.viewport.playback.playing.filter(|_| clip.is_some());
+        self.viewport.playback = Playback { clip, time: 0.0, playing, ..self.viewport.playback };
         self.frame_clip();
         // A camera that frames the whole mesh frames the whole clip now; one that shows a detail stays.
         if was_framed {
@@ -86,11 +87,17 @@ impl App {
     /// Exchanges what is left and right of the split, with their poses.
     pub(in crate::app) fn swap_halves(&mut self) {
         self.settings.swap_halves();
+        self.swap_poses();
+    }
+
+    /// Exchanges the poses of both halves, if the left one has its own.
+    pub(in crate::app) fn swap_poses(&mut self) {
         if let LeftPose::Own(own) = self.viewport.playback.left {
             let left = LeftPose::Own(self.moment());
             self.choose_clip(own.map(|moment| moment.clip));
-            self.viewport.playback.time = own.map_or(0.0, |moment| moment.time);
-            self.viewport.playback.left = left;
+            let playback = &mut self.viewport.playback;
+            (playback.time, playback.left) = (own.map_or(0.0, |moment| moment.time), left);
+            playback.is_swapped = !playback.is_swapped;
         }
     }
 

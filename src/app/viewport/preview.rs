@@ -227,7 +227,7 @@ fn shape_of(
         && !document.loaded.mesh.has_styles()
         && document.moment.is_none()
         && (wanted.settings.split.is_none()
-            || document.scene.shares_pose(SplitSide::Left)
+            || (document.scene.half(SplitSide::Left).is_none() || document.scene.shares_pose(SplitSide::Left))
                 && wanted.settings.split_view == SplitView::Divider
                 && wanted.settings.left_looks.is_none())
         && document.stand_in.is_made(jobs, context, engine, &document.loaded, most as usize)

@@ -15,7 +15,6 @@ use crate::app::viewport::warm_up::WarmUp;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use inspect::engine::Engine;
 use inspect::render::WindowPipelines;
-use inspect::settings::Lighting;
 
 /// A device that is lost sooner than this after the last one isn't replaced automatically.
 const LASTS: Duration = Duration::from_secs(60);
@@ -125,9 +124,8 @@ impl App {
         self.load_anew(context);
         // What the lost device had of it is gone too.
         if let Some(path) = self.environment_file().map(Path::to_owned) {
-            let is_chosen = self.settings.lighting == Lighting::Environment;
             self.environment = None;
-            self.read_environment(context, path, is_chosen);
+            self.read_environment(context, path, false);
         }
         self.watch_shader::<LodShader>(context);
         self.watch_shader::<SurfaceShader>(context);

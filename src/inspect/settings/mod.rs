@@ -304,6 +304,16 @@ impl Settings {
         }
     }
 
+    /// Changes settings; what it changes of how the picture looks is of this half, if the halves look otherwise.
+    pub fn change_half_looks(&mut self, half: SplitSide, change: impl FnOnce(&mut Self)) {
+        if half == SplitSide::Right || self.split.is_none() {
+            return change(self);
+        }
+        self.swap_looks();
+        change(self);
+        self.swap_looks();
+    }
+
     /// Whether the picture is the difference between both halves.
     pub fn shows_difference(&self) -> bool {
         self.split.is_some() && self.split_view == SplitView::Difference
