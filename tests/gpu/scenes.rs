@@ -1,5 +1,5 @@
 //! Documents about one part of materials each, read from files as a user's are, and drawn in studio light. With PNAEN_SCENES the
-//! test leaves them in that folder, for other viewers: see `docs/results/other-programs/README.md`.
+//! test leaves them in that folder.
 
 use std::path::{Path, PathBuf};
 
