@@ -42,7 +42,7 @@ pub(super) struct OfFace {
 pub(super) struct CageFaces {
     pub subdivision: Subdivision,
     /// Whether vertices at one position are points of their own, as in modelling programs.
-    by_vertex: bool,
+    pub by_vertex: bool,
     /// Whether clips may move it.
     moves: bool,
     numbers: HashMap<([u32; 3], u32), u32>,
