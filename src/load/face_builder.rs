@@ -66,7 +66,8 @@ pub(super) struct FaceBuilder<'a> {
     colors: Option<DetailTable>,
     are_colored: bool,
     materials: usize,
-    triangles: usize,
+    /// How many triangles are stored so far.
+    pub triangles: usize,
     work: polygon::WorkBudget,
     found: Counts,
     /// Faces with a position that isn't finite or is too far away, and the place of the first one.

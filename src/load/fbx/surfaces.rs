@@ -104,12 +104,13 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         })
     }
 
-    /// Adds the polygons of a node's mesh.
-    pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<(), ReadError> {
+    /// Adds the polygons of a node's mesh. Returns whether any are shown.
+    pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<bool, ReadError> {
         let (meshes, placed) = (self.meshes, self.placed);
         let nodes = &meshes.scene.nodes;
         let node = &nodes[index];
-        let Some(mesh) = meshes.of(node) else { return Ok(()) };
+        let Some(mesh) = meshes.of(node) else { return Ok(false) };
+        let before = self.faces.triangles;
         let _scope = Borrowed::from(self.budget);
         let global = &placed.global;
         let skin = Skin::new(node, mesh, global);
@@ -148,7 +149,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         self.faces.is_hole = false;
         self.faces.end_cage(self.details.as_mut(), rig.as_mut(), progress)?;
         self.binder = rig;
-        Ok(())
+        Ok(self.faces.triangles > before)
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.
