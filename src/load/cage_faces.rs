@@ -56,7 +56,8 @@ pub(super) struct CageFaces {
     holes: Vec<u32>,
     /// How many creases and sharp points are where no face is.
     lone_creases: usize,
-    held: u64,
+    /// The memory that is given back once it is refined, in bytes.
+    pub held: u64,
 }
 
 impl CageFaces {

@@ -58,7 +58,8 @@ impl<'a> Vertices<'a> {
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let made = if mesh.vertex_normal.exists { None } else { smoothing::normals(mesh, budget)? };
+        let is_smoothed = !mesh.vertex_normal.exists && !selected.makes_all_normals();
+        let made = if is_smoothed { smoothing::normals(mesh, budget)? } else { None };
         Ok(Self {
             mesh,
             surface: None,
