@@ -52,7 +52,8 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// Reads the images of all materials of these meshes, and heights of those that polygons have; `reserved` is the memory that the rest of the load takes, in bytes.
+    /// Reads the images of all materials of these meshes, and the heights of those that polygons have; `reserved` is the memory
+    /// that the rest of the load takes, in bytes.
     ///
     /// # Errors
     /// [`ReadError::Cancelled`].
@@ -73,9 +74,7 @@ impl<'a> Materials<'a> {
         let mut images = Vec::new();
         for (is_used, source) in sources {
             // Textures can be scaled down to the room that heights leave.
-            if is_used {
-                self.height(&source)?;
-            }
+            is_used.then(|| self.height(&source)).transpose()?;
             images.extend(source.images());
         }
         Ok(self.textures.read(images.into_iter(), reserved)?)

@@ -124,7 +124,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         vertices.surface = meshes.surface(node);
         let own = self.faces.parts.style(self.faces.parts.current(), PartStyle::default());
         let is_told = self.faces.import.makes_normals_of(own) || own.crease_angle.is_some();
-        let misses_normals = vertices.is_without_normals() && !is_told;
+        let misses_normals = !mesh.vertex_normal.exists && vertices.made.is_none() && !is_told;
         let mut rig = self.binder.take();
         let binder = rig.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
