@@ -148,7 +148,6 @@ impl ShotOptions {
         let surface_shader = self.user_surface.read(&self.surface.weld.parts)?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface)?;
-        let reference_surface = self.reference_surface(&loaded)?;
         let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
         let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
         let has_bones = left.iter().chain([&loaded]).any(|own| !own.mesh.bones.is_empty());
@@ -159,6 +158,8 @@ impl ShotOptions {
         let environment = self.environment.as_deref().map(|path| self.environment(path)).transpose()?;
         let (given, factors_file) = given.unzip();
         let left_pose = self.left_pose(left.as_ref().unwrap_or(&loaded))?;
+        let moves = self.surface.animation.is_some() || matches!(left_pose, LeftPose::Own(Some(_)));
+        let reference_surface = self.reference_surface(&loaded, moves)?;
         let mut settings = self.surface.settings_of(&self.picture.0);
         // A pose may turn a part inside out.
         settings.left.cull_back_faces &= left_pose == LeftPose::Same;
@@ -190,25 +191,24 @@ impl ShotOptions {
 
     /// The surface to compare with, and its name: the one that was chosen, or if the overlay is shown the exact surface; none for
     /// the limit surface.
-    fn reference_surface(&self, loaded: &Loaded) -> Result<Option<(String, Arc<ReferenceShape>)>, CliError> {
+    fn reference_surface(&self, mesh: &Loaded, moves: bool) -> Result<Option<(String, Arc<ReferenceShape>)>, CliError> {
         let Self { surface, reference, .. } = self;
-        let moves = surface.animation.is_some() || self.split_animation.is_some();
-        let chosen = reference.load(&loaded.source, &loaded.preparation, Source::to_string)?;
+        let chosen = reference.load(&mesh.source, &mesh.preparation, Source::to_string)?;
         refuse(
             moves && chosen.is_some(),
-            "--reference-surface and --reference-subdivide can't be combined with --animation: that surface doesn't move",
+            "--reference-surface and --reference-subdivide don't move, so leave out --animation and --split-animation",
         )?;
         if chosen.is_some() || !self.shows(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface) {
             return Ok(chosen.map(|(name, chosen)| (name, Arc::new(chosen))));
         }
         let is_plain = !moves && !surface.tessellation().displacement.is_on();
-        let exact = loaded.source.shape().filter(|_| is_plain).and_then(ReferenceShape::from_shape);
+        let exact = mesh.source.shape().filter(|_| is_plain).and_then(ReferenceShape::from_shape);
         refuse(
             exact.is_none() && self.user_surface.surface_shader.is_some(),
             "--overlay deviation compares with the surface on the CPU, where that of --surface-shader isn't known: name another \
              one with --reference-surface",
         )?;
-        Ok(exact.map(|exact| (loaded.source.to_string(), Arc::new(exact))))
+        Ok(exact.map(|exact| (mesh.source.to_string(), Arc::new(exact))))
     }
 
     /// Reads the light of a file. Standard error tells what was repaired.

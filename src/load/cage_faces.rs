@@ -42,7 +42,7 @@ pub(super) struct OfFace {
 pub(super) struct CageFaces {
     pub subdivision: Subdivision,
     /// Whether vertices at one position are points of their own, as in modelling programs.
-    by_vertex: bool,
+    pub by_vertex: bool,
     /// Whether clips may move it.
     moves: bool,
     numbers: HashMap<([u32; 3], u32), u32>,
@@ -56,7 +56,8 @@ pub(super) struct CageFaces {
     holes: Vec<u32>,
     /// How many creases and sharp points are where no face is.
     lone_creases: usize,
-    held: u64,
+    /// The memory that is given back once it is refined, in bytes.
+    pub held: u64,
 }
 
 impl CageFaces {

@@ -66,7 +66,8 @@ pub(super) struct FaceBuilder<'a> {
     colors: Option<DetailTable>,
     are_colored: bool,
     materials: usize,
-    triangles: usize,
+    /// How many triangles are stored so far.
+    pub triangles: usize,
     work: polygon::WorkBudget,
     found: Counts,
     /// Faces with a position that isn't finite or is too far away, and the place of the first one.
@@ -259,9 +260,11 @@ impl<'a> FaceBuilder<'a> {
         }
         if corners.len() > 3 {
             let given = corners.len();
-            corners.dedup_by_key(|at| at.corner.position);
-            let first = corners.first().map(|at| at.corner.position);
-            if corners.len() > 1 && first == corners.last().map(|at| at.corner.position) {
+            // Vertices at one place may be points of their own.
+            let by_vertex = self.cage.as_ref().is_some_and(|cage| cage.by_vertex);
+            let point = |at: &NumberedCorner| (at.corner.position, at.vertex.filter(|_| by_vertex));
+            corners.dedup_by_key(|at| point(at));
+            if corners.len() > 1 && corners.first().map(point) == corners.last().map(point) {
                 corners.pop();
             }
             self.found.repeated += given - corners.len();

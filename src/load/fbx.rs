@@ -72,13 +72,14 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     notes.extend(warnings);
     let files = Files::new(file.folder, &file.limits, &budget, progress);
     let mut surfaces = Surfaces::new(&meshes, &placed, file, &files, binder)?;
+    let mut drawn = Vec::new();
     for (i, &node) in placed.shown.iter().enumerate() {
         progress.set(0.4 + 0.4 * i as f32 / placed.shown.len() as f32);
-        surfaces.add(node, &file.selected, progress)?;
+        drawn.extend(surfaces.add(node, &file.selected, progress)?.then_some(node));
     }
     let holds = left_out::holds(&scene, &placed);
     let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
-    let (joints, own) = (nodes::joints(&scene, &placed.shown), &placed.scene);
+    let (joints, own) = (nodes::joints(&scene, &drawn), &placed.scene);
     let bones = bones(joints, &own.order, &own.parents, &placed.global, binder.as_ref());
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64 + meshes.memory);

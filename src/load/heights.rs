@@ -4,7 +4,7 @@ mod reading;
 mod texts;
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::hash::Hash;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,6 +12,7 @@ use std::sync::Arc;
 use image::ColorType;
 
 use super::memory_budget::Budget;
+use super::notes::Notes;
 use super::uri::Files;
 use super::warnings::untextured_warning;
 use geometry::mesh::build_limits::{MemoryRefused, borrowing};
@@ -94,10 +95,9 @@ impl HeightSource {
         };
         let are_of_colors = own.iter().all(Option::is_none);
         let mut own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
-        let count = own.iter().flatten().count();
-        let too_much = |refused| too_much(mesh, count, refused);
-        warnings.extend(fit(mesh, &mut own, budget).map_err(too_much)?);
-        budget.hold(bytes_beside_maps(mesh)).map_err(too_much)?;
+        warnings.extend(fit(mesh, &mut own, budget, progress)?.into_warnings());
+        let held = budget.hold(bytes_beside_maps(mesh));
+        held.map_err(|refused| too_much(mesh, own.iter().flatten().count(), refused))?;
         let heights = Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))?;
         let heights = heights.ok_or_else(|| HeightError::TooMany { name: mesh.name.clone() })?;
         progress.set(1.0);
@@ -248,22 +248,30 @@ fn too_much(mesh: &Mesh, count: usize, refused: MemoryRefused) -> HeightError {
     HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason: refused.to_string() }
 }
 
-/// Halves the largest images until all fit one texture. Returns a sentence about each, and about each material that has it.
-fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], budget: &Budget) -> Result<Vec<String>, MemoryRefused> {
-    let mut said = Vec::new();
+/// Halves the largest images until all fit one texture. Returns a sentence about the materials of each size that they then have.
+fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], budget: &Budget, progress: &Progress) -> Result<Notes, HeightError> {
+    let distinct: HashSet<_> = own.iter().flatten().map(|map| Arc::as_ptr(&map.heights)).collect();
+    if distinct.len() > MAX_MAPS {
+        return Err(HeightError::TooMany { name: mesh.name.clone() });
+    }
+    let mut said = vec![None; own.len()];
     while bytes_of_maps(own.iter().flatten()) > MOST_BYTES {
+        progress.check()?;
         let largest = own.iter().flatten().max_by_key(|map| map.heights.len());
         let Some((heights, half)) = largest.and_then(|map| Some((map.heights.clone(), map.halved()?))) else { break };
-        budget.hold(bytes_of_maps(std::iter::once(&half)))?;
-        for (material, map) in mesh.materials.iter().zip(&mut *own) {
+        let held = budget.hold(bytes_of_maps(std::iter::once(&half)));
+        held.map_err(|refused| too_much(mesh, distinct.len(), refused))?;
+        for ((material, map), said) in mesh.materials.iter().zip(&mut *own).zip(&mut said) {
             let Some(map) = map.as_mut().filter(|map| Arc::ptr_eq(&map.heights, &heights)) else { continue };
             *map = half.with_amount(map.amount).with_wrap(map.wrap);
             let ([width, height], name) = (half.size, shown(&material.name));
             let scaled = format!("is scaled down to {width} x {height} px: all together don't fit one texture");
-            said.push(format!("the height image of material \"{name}\" {scaled}."));
+            *said = Some(format!("the height image of material \"{name}\" {scaled}."));
         }
     }
-    Ok(said)
+    let mut notes = Notes::default();
+    notes.extend(said.into_iter().flatten());
+    Ok(notes)
 }
 
 /// The brightness of every material's base colour image. Materials that share an image share its pixels.
@@ -364,17 +372,26 @@ mod tests {
         let e = a.with_amount(amount);
         let mut own = [a, b, c, d, e].map(Some);
         // Three fit.
-        let said = fit(&mesh, &mut own[..3], &Budget::unlimited()).expect("memory");
-        assert_eq!(said, [""; 0]);
-        let said = fit(&mesh, &mut own, &Budget::unlimited()).expect("memory");
+        let fit = |own: &mut [Option<HeightMap>], progress: &Progress| {
+            fit(&mesh, own, &Budget::unlimited(), progress).map(Notes::into_warnings)
+        };
+        assert_eq!(fit(&mut own[..3], &Progress::new()).expect("memory"), [""; 0]);
+        let cancelled = Progress::new();
+        cancelled.cancel();
+        assert!(matches!(fit(&mut own, &cancelled), Err(HeightError::Cancelled(_))));
+        let said = fit(&mut own, &Progress::new()).expect("memory");
         let [a, b, c, d, e] = own.map(|map| map.expect("an image"));
         let halved = [&a, &b, &c, &d, &e].map(|map| map.size == [2048; 2] && map.levels == 12);
         assert_eq!(halved, [true, false, false, true, true], "the first image, which two materials have, and another");
         assert!(Arc::ptr_eq(&a.heights, &e.heights) && e.amount == amount);
-        let start = |name: &str| format!("the height image of material \"{name}\" is scaled down to 2048 x 2048 px: ");
-        let are_named = said.iter().zip(["a", "e", "d"]).all(|(said, name)| said.starts_with(&start(name)));
-        assert!(said.len() == 3 && are_named, "{said:?}");
+        let scaled = "is scaled down to 2048 x 2048 px: all together don't fit one texture (and 2 more like it).";
+        assert_eq!(said, [format!("the height image of material \"a\" {scaled}")]);
         assert!(bytes_of_maps([a, b, c, d].iter()) <= MOST_BYTES);
+        // Of twenty each is halved, and some of them twice: the last size is said.
+        mesh.materials = vec![mesh.materials[0].clone(); 20];
+        let mut own: Vec<_> = (0..20).map(|_| Some(image())).collect();
+        let said = super::fit(&mesh, &mut own, &Budget::unlimited(), &Progress::new()).expect("memory").into_warnings();
+        assert!(bytes_of_maps(own.iter().flatten()) <= MOST_BYTES && said.len() <= 2, "{said:?}");
     }
 
     #[test]

@@ -45,11 +45,12 @@ use vertices::{VertexPiece, Vertices};
 /// # Errors
 /// [`ReadError`]. A missing material or texture isn't an error but a warning.
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
-    read_faces(in_utf8(bytes), file, gather)
+    let smooths = !file.selected.makes_all_normals();
+    read_faces(in_utf8(bytes), file, |bytes, files, faces| gather(bytes, files, faces, smooths))
 }
 
-/// Reads all faces.
-fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, faces: FaceBuilder<'a>) -> Gathered<'a> {
+/// Reads all faces; with the normals of smoothing groups, if it `smooths`.
+fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, faces: FaceBuilder<'a>, smooths: bool) -> Gathered<'a> {
     let (budget, progress) = (files.budget, files.progress);
     let pieces = Piece::all(bytes);
     let (mut vertices, mut above) = (Vertices::default(), Vec::with_capacity(pieces.len()));
@@ -59,7 +60,7 @@ fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, faces: FaceBuilder<'a>) -> Gat
         above.push(vertices.counts());
         vertices.add(&more, budget)?;
         more.libraries.iter().for_each(|names| materials.add_library(names, files));
-        more.tags.iter().try_for_each(|tag| tags.take(tag, budget))?;
+        more.tags.iter().filter(|_| faces.cage.is_some()).try_for_each(|tag| tags.take(tag, budget))?;
         more.error.map_or(Ok(()), Err)
     };
     in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, budget, &progress.part(0.0, 0.25))?;
@@ -68,7 +69,8 @@ fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, faces: FaceBuilder<'a>) -> Gat
     let parse = |i: usize, piece: &Piece| FacePiece::parse(piece, above[i], counts);
     let held = budget.held();
     let mut smoothing = Smoothing::new(&vertices, budget);
-    if vertices.is_smoothed {
+    let is_smoothed = vertices.is_smoothed && smooths;
+    if is_smoothed {
         in_pieces(&pieces, parse, |made| smoothing.take(&made), budget, &progress.part(0.25, 0.3))?;
     }
     let of_smoothing = budget.held() - held;
@@ -78,7 +80,7 @@ fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, faces: FaceBuilder<'a>) -> Gat
         faces,
         materials,
         part: Default::default(),
-        smoothing: vertices.is_smoothed.then_some(smoothing),
+        smoothing: is_smoothed.then_some(smoothing),
         corners: Vec::new(),
         found: Counts::default(),
     };

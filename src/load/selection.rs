@@ -24,6 +24,12 @@ pub struct Selection<'a> {
 }
 
 impl Selection<'_> {
+    /// Whether normals are made of everything: no part and no material has those of the file.
+    pub(super) fn makes_all_normals(&self) -> bool {
+        let mut styles = self.parts.iter().flat_map(|parts| &parts.styles).map(|(_, style)| *style);
+        self.import.makes_normals_of(PartStyle::default()) && styles.all(|style| self.import.makes_normals_of(style))
+    }
+
     /// The weight that was chosen for the morph targets of a name.
     pub(super) fn morph(&self, name: &str) -> Option<f32> {
         self.parts?.morphs.get(name).copied()

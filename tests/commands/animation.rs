@@ -59,6 +59,11 @@ fn the_left_half_of_a_split_may_have_a_pose_of_its_own() {
     assert_eq!(other["left"]["animation"], json!({ "name": "Bend", "time": 0.5 }));
     assert_eq!(stats(&[])["left"]["animation"], json!({ "name": "All", "time": 0.6 }), "without options the same");
     assert!(stats(&["--split-animation", "rest"])["left"]["animation"].is_null());
+    // A surface to compare with doesn't move.
+    let own = [&*file, "--split", "0.5", "--reference-surface", "shape:torus", "--split-animation"];
+    let said = failure(&[&["render", "-o", &*out], &own[..], &["Bend"]].concat(), 2);
+    assert!(said.contains("--split-animation"), "{said}");
+    assert!(crate::stats(&[&own[..], &["rest"]].concat())["left"]["animation"].is_null());
     let command = |mesh: &'static str, own: &[&'static str]| [&["render", mesh, "-o", "a.png"], own].concat();
     let own = ["--split", "0.5", "--split-animation", "Bend"];
     sentence(&command("shape:torus", &own), &["has no animation \"Bend\"", "it has none"]);

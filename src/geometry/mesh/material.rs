@@ -147,7 +147,13 @@ impl Look {
 
     /// Whether what is behind it is seen elsewhere or blurred: by a body that refracts light, or a rough surface.
     pub fn distorts(&self) -> bool {
-        self.transmits() && (self.thickness > 0.0 || self.roughness > 0.0)
+        self.distorts_with(self.maps[Slot::MetallicRoughness as usize].is_some())
+    }
+
+    /// The same, if it is to have a metallic-roughness map or not. No light goes through what is metallic everywhere.
+    pub fn distorts_with(&self, has_metallic_map: bool) -> bool {
+        let lets_through = self.transmits() && (self.metallic < 1.0 || has_metallic_map);
+        lets_through && (self.thickness > 0.0 || self.roughness > 0.0)
     }
 
     /// The part of light that the body absorbs in an object unit, for short ways, as linear RGB (Beer and Lambert's coefficient).

@@ -62,6 +62,27 @@ fn corners_on_one_place_are_left_out_of_polygons_and_kept_in_triangles() {
 }
 
 #[test]
+fn vertices_at_one_place_are_points_of_a_cage_that_has_vertices() {
+    let (budget, progress) = (Budget::unlimited(), Progress::new());
+    let [a, b, c, d, e] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 0.0], [2.0, 1.0]];
+    for (by_vertex, quads) in [(true, 8), (false, 7)] {
+        let mut faces = FaceBuilder::new(&ModelFile::from_test("faces", &progress), &budget);
+        let material = faces.material(Material::plain("default", [1.0; 4])).unwrap();
+        let cage = CageFaces::new(crate::import::Subdivision { levels: 1, ..Default::default() });
+        faces.cage = Some(if by_vertex { cage.of_vertices(false) } else { cage });
+        // The first face has the vertices 1 and 5 at one place, and shares the edge from 5 to 2 with the second one.
+        for (places, vertices) in [([a, b, b, c], [0, 1, 5, 2]), ([b, d, e, c], [5, 3, 4, 2])] {
+            let mut own = corners(&places);
+            own.iter_mut().zip(vertices).for_each(|(at, vertex)| at.vertex = Some([vertex, 0, 0]));
+            faces.add(material, &mut own, FilePosition::Everywhere).unwrap();
+        }
+        assert_eq!(faces.found.repeated, usize::from(!by_vertex));
+        let mesh = faces.finish("faces", String::new(), &progress).unwrap();
+        assert_eq!((mesh.triangles.len(), mesh.is_refined), (2 * quads, true), "{:?}", mesh.warnings);
+    }
+}
+
+#[test]
 fn faces_with_fewer_than_three_corners_are_left_out() {
     let [a, b, c] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]];
     let mesh = added(&[&[], &[a], &[a, b], &[a, b, b, a], &[a, b, c]]).unwrap();

@@ -52,7 +52,8 @@ impl<'a> Materials<'a> {
         }
     }
 
-    /// Reads the images of all materials of these meshes; `reserved` is the memory that the rest of the load takes, in bytes.
+    /// Reads the images of all materials of these meshes, and the heights of those that polygons have; `reserved` is the memory
+    /// that the rest of the load takes, in bytes.
     ///
     /// # Errors
     /// [`ReadError::Cancelled`].
@@ -65,13 +66,15 @@ impl<'a> Materials<'a> {
         let mut seen = HashSet::new();
         let sources = meshes.flat_map(|(node, mesh)| {
             let is_new = seen.insert(std::ptr::from_ref(mesh));
-            let own = mesh.materials.iter().filter(move |_| is_new);
-            node.materials.iter().chain(own).map(move |material| LookSource::new(material, mesh))
+            let own = mesh.materials.iter().enumerate().filter(move |_| is_new);
+            let is_used = |slot: usize| mesh.material_parts.get(slot).is_none_or(|part| part.num_faces > 0);
+            let materials = node.materials.iter().enumerate().chain(own);
+            materials.map(move |(slot, material)| (is_used(slot), LookSource::new(material, mesh)))
         });
         let mut images = Vec::new();
-        for source in sources {
+        for (is_used, source) in sources {
             // Textures can be scaled down to the room that heights leave.
-            self.height(&source)?;
+            is_used.then(|| self.height(&source)).transpose()?;
             images.extend(source.images());
         }
         Ok(self.textures.read(images.into_iter(), reserved)?)

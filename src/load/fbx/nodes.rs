@@ -141,7 +141,7 @@ fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Opt
     SceneNodes::carrying(shown.iter().copied().chain(joints(scene, shown)), order, parents)
 }
 
-/// Returns the joints of the skins of meshes that are shown.
+/// Returns the joints of the skins of these nodes' meshes.
 pub(super) fn joints(scene: &Scene, shown: &[usize]) -> impl Iterator<Item = usize> {
     let skins = shown.iter().filter_map(|&node| scene.nodes[node].mesh.as_ref()).flat_map(|mesh| &mesh.skin_deformers);
     let joints = skins.flat_map(|skin| &skin.clusters).filter_map(|cluster| cluster.bone_node.as_ref());

@@ -104,12 +104,13 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         })
     }
 
-    /// Adds the polygons of a node's mesh.
-    pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<(), ReadError> {
+    /// Adds the polygons of a node's mesh. Returns whether any are shown.
+    pub(super) fn add(&mut self, index: usize, selected: &Selection, progress: &Progress) -> Result<bool, ReadError> {
         let (meshes, placed) = (self.meshes, self.placed);
         let nodes = &meshes.scene.nodes;
         let node = &nodes[index];
-        let Some(mesh) = meshes.of(node) else { return Ok(()) };
+        let Some(mesh) = meshes.of(node) else { return Ok(false) };
+        let before = self.faces.triangles;
         let _scope = Borrowed::from(self.budget);
         let global = &placed.global;
         let skin = Skin::new(node, mesh, global);
@@ -123,7 +124,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         vertices.surface = meshes.surface(node);
         let own = self.faces.parts.style(self.faces.parts.current(), PartStyle::default());
         let is_told = self.faces.import.makes_normals_of(own) || own.crease_angle.is_some();
-        let misses_normals = vertices.is_without_normals() && !is_told;
+        let misses_normals = !mesh.vertex_normal.exists && vertices.made.is_none() && !is_told;
         let mut rig = self.binder.take();
         let binder = rig.as_mut().map(|binder| {
             let binder = binder.node(index, skin.as_ref().map(|skin| &skin.joints));
@@ -148,7 +149,7 @@ impl<'s, 'a> Surfaces<'s, 'a> {
         self.faces.is_hole = false;
         self.faces.end_cage(self.details.as_mut(), rig.as_mut(), progress)?;
         self.binder = rig;
-        Ok(())
+        Ok(self.faces.triangles > before)
     }
 
     /// Returns what was collected; `notes` gets what was repaired or left out.

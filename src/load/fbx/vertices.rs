@@ -29,7 +29,7 @@ pub(super) struct Vertices<'a> {
     /// The transform from the mesh's space to the node's.
     pub to_node: DMat4,
     /// The normals of corners that the file doesn't have, but says how smooth they are.
-    made: Option<Vec<Vec3>>,
+    pub made: Option<Vec<Vec3>>,
     /// Whether normals are made of the corners that are read next, whatever the file has.
     pub makes_normals: bool,
 }
@@ -58,7 +58,8 @@ impl<'a> Vertices<'a> {
         budget: &Budget,
     ) -> Result<Self, ReadError> {
         let to_node = matrix(&node.geometry_to_node);
-        let made = if mesh.vertex_normal.exists { None } else { smoothing::normals(mesh, budget)? };
+        let is_smoothed = !mesh.vertex_normal.exists && !selected.makes_all_normals();
+        let made = if is_smoothed { smoothing::normals(mesh, budget)? } else { None };
         Ok(Self {
             mesh,
             surface: None,
@@ -70,11 +71,6 @@ impl<'a> Vertices<'a> {
             made,
             makes_normals: false,
         })
-    }
-
-    /// Returns whether neither the file has its normals, nor says how smooth it is.
-    pub(super) fn is_without_normals(&self) -> bool {
-        !self.mesh.vertex_normal.exists && self.made.is_none()
     }
 
     /// Returns the vertex of a corner.

@@ -181,7 +181,8 @@ impl MaterialSource {
                 self.undrawn.push(crate::uri::shown(name));
             }
         }
-        let most_maps = Look::MOST_IMAGES - usize::from(self.look.distorts());
+        let distorts = self.look.distorts_with(self.maps[Slot::MetallicRoughness as usize].is_some());
+        let most_maps = Look::MOST_IMAGES - usize::from(distorts);
         if self.maps.iter().flatten().count() > most_maps {
             self.undrawn.push(format!("a map beyond the first {most_maps}"));
         }

@@ -30,6 +30,8 @@ pub(super) struct Tags {
     boundary: Option<Boundary>,
     face_varying: Option<FaceVarying>,
     flaws: TagFlaws,
+    /// The memory that they and the cage take for them, in bytes.
+    held: u64,
 }
 
 counts! {
@@ -46,7 +48,9 @@ impl Tags {
     /// # Errors
     /// [`MemoryRefused`].
     pub(super) fn take(&mut self, text: &[u8], budget: &Budget) -> Result<(), MemoryRefused> {
-        budget.hold(PER_BYTE * text.len() as u64)?;
+        let memory = PER_BYTE * text.len() as u64;
+        budget.hold(memory)?;
+        self.held += memory;
         self.flaws.unknown += usize::from(self.read(text).is_none());
         Ok(())
     }
@@ -89,6 +93,7 @@ impl Tags {
     /// Says all but the holes to the cage of so many faces, if there is one, and what was left out to its notes.
     pub(super) fn apply(&self, builder: &mut FaceBuilder, positions: &ChunkedVec<Vec3>, faces: usize) {
         let Some(cage) = &mut builder.cage else { return };
+        cage.held += self.held;
         let mut flaws = self.flaws;
         let end = |vertex: u32| positions.get(vertex as usize).map(|position| (*position, vertex));
         for &([a, b], sharpness) in &self.sharp {

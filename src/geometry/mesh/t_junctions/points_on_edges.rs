@@ -19,7 +19,7 @@ const NEAR: f64 = 1e-5;
 /// All boundary points, and the lengths that tell points that nearly meet from T-junctions, in object units.
 pub(super) struct PointsOnEdges<'a> {
     topology: &'a Topology,
-    /// The boundary points that are tried, and a tree of them; none if there are none.
+    /// The boundary points that are tried, those in one place one after the other, and a tree of them; none if there are none.
     tried: Vec<u32>,
     tree: Option<TriangleTree>,
     /// [`NEAR`] as a length.
@@ -35,7 +35,8 @@ impl<'a> PointsOnEdges<'a> {
         let bounds = Bounds::new(topology.points.iter().copied());
         let tolerance = bounds.part(NEAR);
         let shortest = shortest(topology);
-        let tried = boundary_points(topology, &shortest, tolerance);
+        let mut tried = boundary_points(topology, &shortest, tolerance);
+        tried.sort_by_key(|point| (topology.points[*point as usize] + 0.0).to_array().map(f32::to_bits));
         let tree = TriangleTree::new(tried.iter().map(|point| [topology.points[*point as usize]; 3]));
         Self { topology, tried, tree, tolerance, welds: TOLERANCES.map(|weld| bounds.part(weld.into())), shortest }
     }
@@ -45,10 +46,11 @@ impl<'a> PointsOnEdges<'a> {
         let line = LineSegment::from_edge(self.topology, edge);
         let Some(tree) = &self.tree else { return };
         tree.near_segment(line.ends, self.tolerance, |tried| {
-            let point = self.tried[tried as usize];
-            if self.is_inside(edge, &line, point, self.topology.points[point as usize].as_dvec3()) {
-                points.push(point);
-            }
+            // The tree has the first of several points in one place, which the others follow.
+            let tried = &self.tried[tried as usize..];
+            let at = |point: &u32| self.topology.points[*point as usize];
+            let here = tried.iter().take_while(|point| at(point) == at(&tried[0]));
+            points.extend(here.filter(|point| self.is_inside(edge, &line, **point, at(point).as_dvec3())));
         });
     }
 

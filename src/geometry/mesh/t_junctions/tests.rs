@@ -37,6 +37,26 @@ fn strip(parts: u32, scale: f32) -> Topology {
 }
 
 #[test]
+fn all_points_in_one_place_are_tried() {
+    let [x, y] = [Vec3::X, Vec3::Y];
+    let middle = [x + 0.5 * y, 2.0 * x + 0.5 * y];
+    // The quads on the right have a side in the middle each, of points of their own.
+    let moved = middle.map(|place| place + 5.0 * Vec3::Z);
+    let places = [Vec3::ZERO, y, x, x + y, middle[0], 2.0 * x, middle[1], moved[0], moved[1], 2.0 * x + y];
+    let triangles = [[0, 2, 3], [0, 3, 1], [2, 5, 6], [2, 6, 4], [7, 8, 9], [7, 9, 3]];
+    let mut topology = topology(&places, &triangles);
+    for (corner, place) in [7, 8].into_iter().zip(middle) {
+        let point = topology.corner_points[corner] as usize;
+        topology.points[point] = place;
+    }
+    let found = found(&topology);
+    let points: Vec<_> = found.iter().map(|junction| (junction.point, junction.t)).collect();
+    let mut expected = [4, 7].map(|corner| (topology.corner_points[corner], 0.5));
+    expected.sort_unstable_by_key(|(point, _)| *point);
+    assert_eq!(points, expected, "{found:?}");
+}
+
+#[test]
 fn a_refined_side_has_a_t_junction_at_every_point_between() {
     for scale in [1e-7, 1.0, 1e7] {
         let topology = strip(5, scale);

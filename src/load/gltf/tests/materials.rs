@@ -188,12 +188,15 @@ fn a_body_has_a_thickness_in_its_mesh_and_absorbs_in_the_scene() {
     let thin = material(json!({ "extensions": { "KHR_materials_volume": { "attenuationDistance": 2 } } })).look;
     assert_eq!((thin.refracts(), thin.absorption()), (false, [0.0; 3]));
     // What is behind a rough surface is blurred, also where it is thin.
-    let pane = |roughness: f32| {
+    let pane = |metallic: f32, roughness: f32| {
         let extensions = json!({ "KHR_materials_transmission": { "transmissionFactor": 1 } });
-        let rough = json!({ "metallicFactor": 0, "roughnessFactor": roughness });
+        let rough = json!({ "metallicFactor": metallic, "roughnessFactor": roughness });
         material(json!({ "pbrMetallicRoughness": rough, "extensions": extensions })).look
     };
-    assert!(look.distorts() && pane(0.5).distorts() && !pane(0.0).distorts() && !thin.distorts());
+    assert!(look.distorts() && pane(0.0, 0.5).distorts() && !pane(0.0, 0.0).distorts() && !thin.distorts());
+    // No light goes through metal, unless a map says where it is.
+    let metal = pane(1.0, 0.5);
+    assert!(pane(0.5, 0.5).distorts() && !metal.distorts() && metal.distorts_with(true));
     // Of a scale along one axis the mean counts, and that of the first node.
     let mut draft = square(body(2.0));
     draft.root["nodes"] = json!([{ "mesh": 0, "scale": [8, 1, 1] }, { "mesh": 0, "scale": [-2, 2, 2] }]);
