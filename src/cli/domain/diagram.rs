@@ -10,12 +10,7 @@ const AROUND: [f64; 2] = [150.0, 60.0];
 const COLOR: &str = "#7b7b7b";
 
 /// Draws the outlines of what joins points, the points as dots, and the factors beside what they cut.
-pub(super) fn svg<const N: usize>(
-    kind: DomainKind,
-    factors: &[f32],
-    points: &[[u32; 2]],
-    joined: &[[u32; N]],
-) -> String {
+pub(super) fn svg(kind: DomainKind, factors: &[f32], points: &[[u32; 2]], joined: &[impl AsRef<[u32]>]) -> String {
     let height = match kind {
         DomainKind::Tri => 0.75_f64.sqrt() * SIDE,
         DomainKind::Quad | DomainKind::Isoline => SIDE,
@@ -23,7 +18,7 @@ pub(super) fn svg<const N: usize>(
     let place = |[x, y]: [f64; 2]| [AROUND[0] + SIDE * x, AROUND[1] + height * y];
     let places: Vec<_> = points.iter().map(|&point| place(kind.place(point))).collect();
     let outlines = joined.iter().map(|own| {
-        let corners = own.iter().filter_map(|&point| places.get(point as usize));
+        let corners = own.as_ref().iter().filter_map(|&point| places.get(point as usize));
         let corners: String = corners.map(|[x, y]| format!("{x:.2},{y:.2} ")).collect();
         format!("<polygon points=\"{}\"/>\n", corners.trim_end())
     });
