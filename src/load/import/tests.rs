@@ -160,7 +160,8 @@ fn corners_of_a_part_follow_its_own_rule_and_count_the_faces_of_all_parts() {
     let without = bent("", "");
     let given = bent("//1", "");
     let [usual, smooth] = [60.0, 180.0].map(|crease_angle| Import { crease_angle, ..Import::default() });
-    let cases: [(&str, Import, &[(&str, &str)], [Vec3; 2]); 12] = [
+    type Case<'a> = (&'a str, Import, &'a [(&'a str, &'a str)], [Vec3; 2]);
+    let cases: [Case; 12] = [
         (&without, usual, &[], [Vec3::Y, Vec3::Z]),
         (&without, usual, &[("wall", "crease=180")], [Vec3::Y, between]),
         (&without, usual, &[("wall", "crease=90")], [Vec3::Y, between]),
