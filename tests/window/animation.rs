@@ -10,7 +10,7 @@ use pnaen::app::App;
 use tempfile::TempDir;
 
 use crate::editing::{assert_draws, copied, press_with};
-use crate::{choose, click, open_list, press, settle, switch, uniform, window};
+use crate::{choose, click, open_list, press, scroll_to, settle, switch, uniform, window};
 use documents::moving::{CLIPS, moving};
 
 /// A window with an animated mesh, and the folder of its file, which must be kept for as long as the window.
@@ -84,36 +84,38 @@ fn the_left_half_keeps_a_pose_that_is_copied_exchanged_and_undone() {
     };
     assert_eq!(harness.query_all_by_role_and_label(Role::ComboBox, "Left pose").count(), 0, "nothing is left");
     press(&mut harness, Key::S);
-    choose(&mut harness, "Clip", CLIPS[0]);
+    choose(&mut harness, "Clip", CLIPS[3]);
     show(&mut harness, 0.5);
     choose(&mut harness, "Left pose", "This moment");
-    harness.get_by_label_contains("Left: Bend at 0.5 s, untessellated");
+    harness.get_by_label_contains("Left: All at 0.5 s, untessellated");
     let kept = harness.state().read_picture().expect("a device").expect("a picture");
     show(&mut harness, 0.25);
-    harness.get_by_label_contains("Left: Bend at 0.5 s, untessellated");
-    harness.get_by_label_contains("Right: Bend at 0.25 s, PN-AEN");
+    harness.get_by_label_contains("Left: All at 0.5 s, untessellated");
+    harness.get_by_label_contains("Right: All at 0.25 s, PN-AEN");
     let shown = harness.state().read_picture().expect("a device").expect("a picture");
     let left = |picture: &image::RgbaImage| {
         image::imageops::crop_imm(picture, 0, 0, picture.width() / 2 - 2, picture.height()).to_image()
     };
     assert!(shown != kept && left(&shown) == left(&kept), "only the right half moves");
     let command = copied(&mut harness);
-    assert!(command.contains(" --split-animation Bend --split-time 0.5"), "{command}");
+    assert!(command.contains(" --split-animation All --split-time 0.5"), "{command}");
     assert_draws(&harness, &command, "moving-view");
+    scroll_to(&mut harness, "Swap");
     click(&mut harness, "Swap");
-    harness.get_by_label_contains("Left: Bend at 0.25 s, PN-AEN");
-    harness.get_by_label_contains("Right: Bend at 0.5 s, Flat");
+    harness.get_by_label_contains("Left: All at 0.25 s, PN-AEN");
+    harness.get_by_label_contains("Right: All at 0.5 s, Flat");
     assert_eq!(time(&harness), 0.5);
     let context = harness.ctx.clone();
     harness.state_mut().undo(&context);
     settle(&mut harness);
-    harness.get_by_label_contains("Left: Bend at 0.5 s, untessellated");
-    harness.get_by_label_contains("Right: Bend at 0.25 s, PN-AEN");
+    harness.get_by_label_contains("Left: All at 0.5 s, untessellated");
+    harness.get_by_label_contains("Right: All at 0.25 s, PN-AEN");
     assert_eq!(time(&harness), 0.25);
     harness.state_mut().redo(&context);
     settle(&mut harness);
-    harness.get_by_label_contains("Left: Bend at 0.25 s, PN-AEN");
-    harness.get_by_label_contains("Right: Bend at 0.5 s, Flat");
+    harness.get_by_label_contains("Left: All at 0.25 s, PN-AEN");
+    harness.get_by_label_contains("Right: All at 0.5 s, Flat");
+    scroll_to(&mut harness, "Swap");
     click(&mut harness, "Swap");
     assert_eq!(time(&harness), 0.25);
     choose(&mut harness, "Clip", "Rest pose");
@@ -121,10 +123,10 @@ fn the_left_half_keeps_a_pose_that_is_copied_exchanged_and_undone() {
     harness.get_by_label_contains("Left: at rest, untessellated");
     harness.state_mut().undo(&context);
     settle(&mut harness);
-    harness.get_by_label_contains("Left: Bend at 0.5 s, untessellated");
+    harness.get_by_label_contains("Left: All at 0.5 s, untessellated");
     harness.state_mut().open(&context, Source::Shape(Shape::Torus));
     settle(&mut harness);
-    assert_eq!(harness.query_all_by_label_contains("Bend at").count(), 0, "another mesh has no such pose");
+    assert_eq!(harness.query_all_by_label_contains("All at").count(), 0, "another mesh has no such pose");
 }
 
 #[test]
