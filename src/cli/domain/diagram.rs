@@ -20,7 +20,7 @@ pub(super) fn svg(kind: DomainKind, factors: &[f32], points: &[[u32; 2]], joined
     let outlines = joined.iter().map(|own| {
         let corners = own.as_ref().iter().filter_map(|&point| places.get(point as usize));
         let corners: String = corners.map(|[x, y]| format!("{x:.2},{y:.2} ")).collect();
-        format!("<polygon points=\"{}\"/>\n", corners.trim_end())
+        format!("<path d=\"M{}z\"/>\n", corners.trim_end())
     });
     let dots = places.iter().map(|[x, y]| format!("<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"2.5\"/>\n"));
     let texts = labels(kind).iter().zip(factors).map(|(&(name, at, anchor), factor)| {
