@@ -249,16 +249,19 @@ fn halves_side_by_side_show_the_middle_of_their_view_and_a_difference_what_diffe
     assert!((9600..19_000).contains(&dark), "{dark} of 19200 px are alike");
 }
 
+/// The difference between a cube as it is and a tessellation of it.
+fn difference(tessellation: &[&str], more: &[&str]) -> image::RgbaImage {
+    let folder = Folder::new();
+    let path = folder.path("picture.png");
+    let cube = ["render", "shape:cube-split", "--lod", "uniform"];
+    let split = ["--split", "0.5", "--split-view", "difference", "--size", "160x120", "-o", &*path];
+    output(&[&cube[..], tessellation, &split, more].concat());
+    image::open(&path).expect("a picture").to_rgba8()
+}
+
 #[test]
 fn lines_are_drawn_over_a_difference_and_change_nothing_beside_them() {
-    let folder = Folder::new();
-    let draw = |overlay: &[&str]| {
-        let path = folder.path("picture.png");
-        let pn = ["render", "shape:cube-split", "--surface", "pn", "--lod", "uniform", "--factor", "4"];
-        let split = ["--split", "0.5", "--split-view", "difference", "--size", "160x120", "-o", &*path];
-        output(&[&pn[..], &split, overlay].concat());
-        image::open(&path).expect("a picture").to_rgba8()
-    };
+    let draw = |overlay: &[&str]| difference(&["--surface", "pn", "--factor", "4"], overlay);
     let [without, with] = [draw(&[]), draw(&["--overlay", "cracks"])];
     let is_grey = |[red, green, blue, alpha]: [u8; 4]| red == green && green == blue && alpha == 255;
     assert!(without.pixels().all(|pixel| is_grey(pixel.0)));
@@ -272,14 +275,7 @@ fn lines_are_drawn_over_a_difference_and_change_nothing_beside_them() {
 
 #[test]
 fn the_wireframes_of_both_halves_are_over_their_difference_in_a_colour_each() {
-    let folder = Folder::new();
-    let draw = |more: &[&str]| {
-        let path = folder.path("picture.png");
-        let flat = ["render", "shape:cube-split", "--surface", "flat", "--lod", "uniform", "--factor", "2"];
-        let split = ["--split", "0.5", "--split-view", "difference", "--size", "160x120", "-o", &*path];
-        output(&[&flat[..], &split, more].concat());
-        image::open(&path).expect("a picture").to_rgba8()
-    };
+    let draw = |more: &[&str]| difference(&["--surface", "flat", "--factor", "2"], more);
     let (without, with) = (draw(&[]), draw(&["--overlay", "wireframe"]));
     assert_eq!(draw(&["--overlay", "wireframe", "--transparent"]), with, "nothing of it is transparent");
     let (mut right, mut both) = (0, 0);

@@ -11,13 +11,13 @@ use inspect::for_tests::reflectance::{
     AmbientLight, LookAt, coat_albedo, direct_reflection, dominant_direction, mean_roughness, reflect_ambient,
     sheen_direction, transmitted,
 };
-use inspect::for_tests::sunlit::{irradiances, normals_about, sunlit};
+use inspect::for_tests::sunlit::{SunCase, sun_cases};
 use inspect::for_tests::tone::tone_mapped;
 use inspect::render::blur_levels::{ENVIRONMENT_LEVELS, roughness_of_level};
 use inspect::render::cube_map::CubeMap;
 use inspect::render::environment::{ENVIRONMENT, Environment, LightView};
 use inspect::render::irradiance::light_parts;
-use inspect::render::layout::{linear, srgb};
+use inspect::render::layout::srgb;
 use inspect::render::studio::studio_light;
 use inspect::settings::ToneCurve;
 use load::panorama::Panorama;
@@ -341,11 +341,7 @@ fn matte(environment: &Environment, exposure: f32, normals: &[Vec3]) -> Vec<Foun
 /// sum over all pixels of the panorama.
 #[test]
 fn a_sun_lights_a_matte_surface_as_the_sum_over_all_pixels_says() {
-    for toward in [vec3(0.6, 0.1, -0.8), vec3(-0.3, 0.9, 0.4), vec3(0.05, 1.0, 0.02)] {
-        let panorama = sunlit([1100, 550], toward);
-        let normals = normals_about(toward);
-        let exact = irradiances(&panorama, &normals);
-        let exposure = linear([200; 3])[1] / exact[0].y as f32;
+    for SunCase { toward, panorama, normals, exact, exposure } in sun_cases() {
         let environment = Environment::from_panorama(&engine().gpu, panorama).expect("a small environment");
         for (found, exact) in matte(&environment, exposure, &normals).iter().zip(exact) {
             let found = found.shown.truncate().to_array().map(srgb);

@@ -252,7 +252,10 @@ fn creased(faces: &[Face], corners: &[u32], angles: &CreaseAngles, normals: &mut
     let own = |corner: &u32| mesh.style_of(corner / 3).crease_angle.unwrap_or(angles.all);
     let own: Vec<f32> = corners.iter().map(own).collect();
     let mut made = Vec::new();
-    for angle in (0..own.len()).filter(|first| !own[..*first].contains(&own[*first])).map(|first| own[first]) {
+    let mut distinct = own.clone();
+    distinct.sort_unstable_by(f32::total_cmp);
+    distinct.dedup();
+    for angle in distinct {
         fan_normals(faces, angle, &mut made);
         let of_faces = normals.iter_mut().zip(&made).zip(&own).filter(|(_, other)| **other == angle);
         of_faces.for_each(|((normal, made), _)| *normal = *made);

@@ -5,11 +5,34 @@ use std::f64::consts::{PI, TAU};
 use glam::{DVec3, Vec3, dvec3, vec3};
 use load::panorama::Panorama;
 
+use crate::render::layout::linear;
+
 /// The radius of the sun as it is seen from the Earth, in degrees.
 const SUN_RADIUS: f32 = 0.27;
 
+/// A panorama with a small sun, and what matte surfaces get of it.
+pub struct SunCase {
+    pub toward: Vec3,
+    pub panorama: Panorama,
+    pub normals: Vec<Vec3>,
+    /// Irradiance at each normal, divided by pi.
+    pub exact: Vec<DVec3>,
+    /// With this factor, the side that faces the sun has the byte 200.
+    pub exposure: f32,
+}
+
+/// Suns that are low, high and at the zenith.
+pub fn sun_cases() -> impl Iterator<Item = SunCase> {
+    [vec3(0.6, 0.1, -0.8), vec3(-0.3, 0.9, 0.4), vec3(0.05, 1.0, 0.02)].into_iter().map(|toward| {
+        let (panorama, normals) = (sunlit([1100, 550], toward), normals_about(toward));
+        let exact = irradiances(&panorama, &normals);
+        let exposure = linear([200; 3])[1] / exact[0].y as f32;
+        SunCase { toward, panorama, normals, exact, exposure }
+    })
+}
+
 /// A panorama in which a sun in that direction gives half of all light. A pixel must not be larger than the sun.
-pub fn sunlit(size: [u32; 2], toward: Vec3) -> Panorama {
+fn sunlit(size: [u32; 2], toward: Vec3) -> Panorama {
     let is_sun = |direction: Vec3| direction.dot(toward.normalize()) > SUN_RADIUS.to_radians().cos();
     let sky = |direction: Vec3| {
         let ground = vec3(0.3, 0.27, 0.25);
@@ -24,7 +47,7 @@ pub fn sunlit(size: [u32; 2], toward: Vec3) -> Panorama {
 }
 
 /// Irradiance of surfaces with these normals, divided by pi: the sum over all pixels of a panorama.
-pub fn irradiances(panorama: &Panorama, normals: &[Vec3]) -> Vec<DVec3> {
+fn irradiances(panorama: &Panorama, normals: &[Vec3]) -> Vec<DVec3> {
     let pixels = pixels(panorama);
     let irradiance = |normal: DVec3| pixels.iter().map(|&(toward, light)| toward.dot(normal).max(0.0) * light).sum();
     normals.iter().map(|normal| irradiance(normal.as_dvec3())).collect()
@@ -45,7 +68,7 @@ fn pixels(panorama: &Panorama) -> Vec<(DVec3, DVec3)> {
 }
 
 /// Normals at all angles from a direction, and many that are nearly across it.
-pub fn normals_about(toward: Vec3) -> Vec<Vec3> {
+fn normals_about(toward: Vec3) -> Vec<Vec3> {
     let toward = toward.normalize();
     let (right, up) = toward.any_orthonormal_pair();
     let all = (0..=16).map(|step| 180.0 * step as f32 / 16.0);

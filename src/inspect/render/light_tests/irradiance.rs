@@ -1,13 +1,13 @@
 //! What matte surfaces get, held against sums over all of the light.
 
-use glam::{Vec3, vec3};
+use glam::Vec3;
 
 use crate::for_tests::prefiltered::{gathered, irradiance_map};
-use crate::for_tests::sunlit::{irradiances, normals_about, sunlit};
+use crate::for_tests::sunlit::{SunCase, sun_cases};
 use crate::render::cube_map::CubeMap;
 use crate::render::environment::ENVIRONMENT_SIZE;
 use crate::render::irradiance::light_parts;
-use crate::render::layout::{linear, srgb};
+use crate::render::layout::srgb;
 use crate::render::studio::studio_light;
 use load::panorama::Panorama;
 
@@ -52,12 +52,7 @@ fn smooth_lights_and_the_studio_give_their_integral() {
 /// of the sum over all of its pixels.
 #[test]
 fn a_sun_lights_a_matte_surface_as_the_sum_over_all_pixels_says() {
-    for toward in [vec3(0.6, 0.1, -0.8), vec3(-0.3, 0.9, 0.4), vec3(0.05, 1.0, 0.02)] {
-        let panorama = sunlit([1100, 550], toward);
-        let normals = normals_about(toward);
-        let exact = irradiances(&panorama, &normals);
-        // The side that faces the sun has the byte 200.
-        let exposure = linear([200; 3])[1] / exact[0].y as f32;
+    for SunCase { toward, panorama, normals, exact, exposure } in sun_cases() {
         let read = irradiance_map(&light_parts(panorama.reduced(512).lights()), ENVIRONMENT_SIZE);
         for (&normal, exact) in normals.iter().zip(&exact) {
             let shown = |light: Vec3| light.to_array().map(|channel| srgb(channel * exposure));
