@@ -53,7 +53,7 @@ impl Tile {
     }
 }
 
-/// All exhibits, in the order of the steps in which a patch is made: surface, its limit, creases, normals, pattern, heights.
+/// All exhibits, in the order of the steps in which a patch is made: surface (also of cages), creases, normals, pattern, heights.
 pub(super) fn exhibits() -> [Exhibit; 6] {
     [surfaces(), limits(), creases(), normals(), patterns(), heights()]
 }
@@ -80,10 +80,9 @@ fn surfaces() -> Exhibit {
 }
 
 fn limits() -> Exhibit {
-    let of = |levels: f32, surface| {
-        let own_mesh = OwnMesh { levels: Some(levels), ..OwnMesh::default() };
-        let tile = Tile { own_mesh, ..of_surface(surface) };
-        Tile { name: format!("{} --levels {levels}", tile.name), ..tile }
+    let of = |levels: f32, surface: Surface| {
+        let name = format!("{} --levels {levels}", surface.name());
+        Tile { name, own_mesh: OwnMesh { levels: Some(levels), crease_band: 0.0 }, ..of_surface(surface) }
     };
     let about = "The cage refined so often that this is its limit, as nearly as can be seen.".to_owned();
     let limit = Tile { name: "limit".to_owned(), about, factor: Some(1.0), ..of(4.0, Surface::Flat) };
@@ -91,8 +90,8 @@ fn limits() -> Exhibit {
     Exhibit {
         name: "limits",
         title: "Cages and their limit",
-        about: "What each technique makes of the cage of a subdivision surface, whose corners were moved to the limit and have \
-                its normals; then of the cage refined once; and the limit. The error is that from each technique's own \
+        about: "What techniques make of the cage of a subdivision surface, whose corners were moved to the limit and have its \
+                normals; what PN-AEN makes of the cage refined once; and the limit. The error is that from each technique's own \
                 surface: `--reference-subdivide` measures how far that is from the limit.",
         shape: None,
         overlays: Overlays::default(),

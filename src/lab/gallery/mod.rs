@@ -112,12 +112,13 @@ impl<'a> Gallery<'a> {
         Ok((contact_sheet(&parts, columns, TEXT)?, all))
     }
 
-    /// The warnings about the mesh that the user named, as all tiles have it: see [`load::LoadedMesh::warnings`].
+    /// The warnings about the mesh that the user named, at all levels of tiles; not about crease bands, which nobody asked for.
     pub fn warnings(&mut self) -> Result<Vec<String>, ShotError> {
         let Some(source) = self.options.source.clone() else { return Ok(Vec::new()) };
         let mut all = Vec::new();
         for tile in self.exhibits().into_iter().flat_map(|exhibit| exhibit.tiles) {
-            all.extend(self.load(source.clone(), tile.own_mesh)?.warnings.iter().cloned());
+            let without_band = OwnMesh { crease_band: 0.0, ..tile.own_mesh };
+            all.extend(self.load(source.clone(), without_band)?.warnings.iter().cloned());
         }
         Ok(distinct(all))
     }
