@@ -6,7 +6,7 @@ use super::{AdapterOption, CliError, ProgressPrinter, WeldOption, make_folder, o
 use inspect::engine::{Engine, Preparation};
 use inspect::settings::options::{FACTOR, HEIGHT_SCALE, MIDLEVEL};
 use inspect::shot::write_picture;
-use lab::gallery::{Exhibit, Gallery, GalleryOptions, PAGE, exhibits, page};
+use lab::gallery::{Exhibit, Gallery, GalleryOptions, PAGE, page};
 use load::{HeightSource, Source};
 
 #[derive(Debug, clap::Args)]
@@ -57,7 +57,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let mut gallery = Gallery::new(options, &engine);
     warn(&gallery.warnings()?);
     let (mut all, mut progress_printer) = (Vec::new(), ProgressPrinter::new());
-    for exhibit in exhibits() {
+    for exhibit in gallery.exhibits() {
         let Exhibit { name, tiles, .. } = &exhibit;
         let said = |tile: usize| format!("{name}, {} of {}: {}", tile + 1, tiles.len(), tiles[tile].name);
         let (picture, shown) = gallery.draw(&exhibit, |tile| progress_printer.print(|| said(tile)))?;

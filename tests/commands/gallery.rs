@@ -1,5 +1,8 @@
 //! `pnaen gallery`: its page, its pictures and its errors.
 
+use image::GenericImageView;
+
+use crate::subdivision::{CUBE, QUADS};
 use crate::{Folder, failure, output, sentence};
 
 #[test]
@@ -12,6 +15,7 @@ fn the_gallery_has_a_page_and_a_picture_of_every_exhibit() {
         assert!(page.contains(&format!("]({name}.png)")), "{name}");
         image::open(folder.path(&format!("made/here/{name}.png"))).expect("a picture");
     }
+    assert!(!page.contains("limits.png"), "a shape made in code is no cage");
     // The table has gaps for the techniques that tear, and zeros for the others.
     let row =
         |name: &str| page.lines().find(|line| line.starts_with(&format!("| `{name}` |"))).expect("a row").to_owned();
@@ -27,6 +31,37 @@ fn the_gallery_has_a_page_and_a_picture_of_every_exhibit() {
     }
     assert_eq!(cells("on")[4], "-", "displacement has no error, since it has no surface to compare with");
     assert_ne!(cells("surface")[8], "0", "surface normals differ across edges");
+}
+
+#[test]
+fn a_cage_is_shown_beside_its_limit() {
+    let folder = Folder::new();
+    let cage = folder.write("cage.obj", [CUBE, QUADS].concat());
+    let named = [&*cage, "--subdivide", "catmull-clark", "--levels", "0"];
+    for mesh in [&[] as &[&str], &named] {
+        let into = folder.path("out");
+        output(&[&["gallery", "-o", &into, "--factor", "3"][..], mesh].concat());
+        let page = std::fs::read_to_string(folder.path("out/gallery.md")).expect("a page");
+        let triangles = |name: &str| {
+            let row = page.lines().find(|line| line.starts_with(&format!("| `{name}` |"))).expect("a row");
+            row.split('|').nth(3).expect("a cell").trim().to_owned()
+        };
+        // 6 squares are 12 patches of 13 triangles. Each refinement makes 4 of each.
+        let all = ["flat --levels 0", "pn-aen --levels 0", "pn-aen --levels 1", "limit"].map(triangles);
+        assert_eq!(all, ["156", "156", "624", "3,072"], "{mesh:?}");
+        let picture = image::open(folder.path("out/limits.png")).expect("a picture").to_rgb8();
+        // Tiles of 300 by 240 px in two rows of three, under captions of 32 px, with 4 px between them.
+        let drawn = |column: u32, row: u32| {
+            let tile = picture.view(4 + 304 * column, 36 + 276 * row, 300, 240);
+            let background = tile.get_pixel(0, 0);
+            tile.pixels().filter(|(.., px)| *px != background).count()
+        };
+        let [flat, refined, limit] = [drawn(0, 0), drawn(1, 1), drawn(2, 1)];
+        // The limit is round, and all of a cube with corners on it is inside.
+        assert!(flat > 5000 && 11 * flat < 10 * limit, "{mesh:?}: {flat} px of {limit}");
+        assert!(refined.abs_diff(limit) < limit / 20, "{mesh:?}: {refined} px of {limit}");
+        std::fs::remove_dir_all(&into).expect("a folder");
+    }
 }
 
 #[test]

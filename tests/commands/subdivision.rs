@@ -4,8 +4,8 @@ use std::collections::BTreeSet;
 
 use super::{Folder, both, failure, number, output, run, stats};
 
-const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
-const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
+pub(super) const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
+pub(super) const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
 
 /// The positions of the mesh that a file becomes.
 fn positions(folder: &Folder, file: &str, options: &[&str]) -> Vec<[f64; 3]> {

@@ -2,6 +2,7 @@
 
 use std::rc::Rc;
 
+use documents::assert_part_of_page;
 use geometry::mesh::adjacency::Layout;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
@@ -37,20 +38,6 @@ fn assert_agrees(own: &Agreement, what: &str) {
     assert!(own.position_ulps <= 4.0, "{what}: {own:?}");
     // Ours have 32 bits.
     assert!(own.normals <= 2e-4, "{what}: {own:?}");
-}
-
-/// Holds a part of a page, between two comments, to what it should be; `PNAEN_UPDATE_PAGES=1` writes it.
-pub(super) fn assert_part_of_page(page: &str, name: &str, part: &str) {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(page);
-    let text = std::fs::read_to_string(&path).expect("the page");
-    let (begin, end) = (format!("<!-- {name} -->\n"), format!("<!-- end of {name} -->\n"));
-    let (before, rest) = text.split_once(&begin).expect("where the part begins");
-    let (there, after) = rest.split_once(&end).expect("where the part ends");
-    if std::env::var_os("PNAEN_UPDATE_PAGES").is_some() {
-        std::fs::write(&path, format!("{before}{begin}{part}{end}{after}")).expect("the page can be written");
-        return;
-    }
-    assert_eq!(there, part, "{page} is out of date; PNAEN_UPDATE_PAGES=1 writes it");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Exported shaders that displace: those of tessellation stages on the driver's own, and compute passes on the engine's device.
 
+use documents::assert_part_of_page;
 use geometry::mesh::adjacency::Layout;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
@@ -12,7 +13,7 @@ use inspect::shader_files::{Language, shader_files};
 use wgpu::util::DeviceExt;
 
 use crate::engine;
-use crate::exported::{assert_part_of_page, exported_corners, vulkan};
+use crate::exported::{exported_corners, vulkan};
 use crate::vulkan::agreement::Agreement;
 use crate::vulkan::exported::{DISPLACEMENTS, LANGUAGES, Subject, constants, displaced_rows, displaced_table, wavy};
 

@@ -1,5 +1,6 @@
 //! Exported shaders that displace under LOD by the view: a shader of its own, or the first pass, finds the mip level at each point.
 
+use documents::assert_part_of_page;
 use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{
@@ -11,7 +12,7 @@ use inspect::render::Camera;
 use inspect::shader_files::{Language, ShaderFile, shader_files};
 
 use crate::engine;
-use crate::exported::{assert_part_of_page, vulkan};
+use crate::exported::vulkan;
 use crate::exported_displaced::{Passes, assert_all_agree, assert_displaced_agrees, assert_near, shifted};
 use crate::vulkan::agreement::{Agreement, shared_points};
 use crate::vulkan::exported::{

@@ -7,17 +7,19 @@ mod tile;
 
 use std::sync::Arc;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use image::RgbImage;
 
+pub use exhibits::Exhibit;
 pub(crate) use exhibits::Tile;
-pub use exhibits::{Exhibit, exhibits};
+use exhibits::{OwnMesh, exhibits};
 pub use page::{PAGE, page};
 pub(crate) use tile::TileResults;
 
-use geometry::mesh::Heights;
+use crate::chart::distinct;
+use geometry::mesh::{Heights, Topology};
 use geometry::progress::Progress;
-use geometry::tessellate::{Surface, Tessellation, displacement_reach};
+use geometry::tessellate::{Inputs, Tessellation, displacement_reach};
 use gpu::{GpuError, Timing};
 use inspect::engine::{Engine, Loaded, Preparation, load};
 use inspect::measure::EmittedChunk;
@@ -25,7 +27,10 @@ use inspect::plot::contact_sheet;
 use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{ARENA_BYTES, Settings};
 use inspect::shot::ShotError;
-use load::{LoadError, Source};
+use load::import::Subdivide;
+use load::mesh_file::read;
+use load::selection::Selection;
+use load::{Format, Import, Limits, LoadError, Source};
 use tile::draw_tile;
 
 /// Width and height of one tile, in px.
@@ -41,10 +46,14 @@ const FRAMING_FACTOR: f32 = 4.0;
 /// that fly away leave the picture, so that the rest stays large.
 const FARTHEST: f32 = 1.1;
 
+/// The cage that is shown if no mesh is named: a cube, in OBJ.
+const CAGE: &[u8] = b"v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
+                      f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
+
 /// What the gallery shows, and how.
 #[derive(Clone, Debug)]
 pub struct GalleryOptions {
-    /// The mesh; `None` for the shape that suits each exhibit.
+    /// The mesh; `None` for the shape or the cage that suits each exhibit.
     pub source: Option<Source>,
     pub preparation: Preparation,
     /// Tessellation factor.
@@ -65,9 +74,18 @@ pub struct Gallery<'a> {
     loaded: Vec<Loaded>,
 }
 
+/// The mesh of a tile, also on the device.
+type OnDevice = (OwnMesh, Loaded, Scene);
+
 impl<'a> Gallery<'a> {
     pub fn new(options: GalleryOptions, engine: &'a Engine) -> Self {
         Self { options, engine, loaded: Vec::new() }
+    }
+
+    /// The exhibits that can be shown. A mesh that the user names is a cage if its polygons are refined.
+    pub fn exhibits(&self) -> Vec<Exhibit> {
+        let has_cage = self.options.source.is_none() || self.options.preparation.import.refines_all();
+        exhibits().into_iter().filter(|exhibit| exhibit.shape.is_some() || has_cage).collect()
     }
 
     /// Draws an exhibit's tiles in rows. Returns the picture, and the results of each tile in order. `starting` is called with
@@ -79,17 +97,12 @@ impl<'a> Gallery<'a> {
     ) -> Result<(RgbImage, Vec<TileResults>), ShotError> {
         let engine = self.engine;
         let target = Target::new(&engine.gpu, TILE)?;
-        let camera = self.camera(exhibit, &target)?;
-        let (mut parts, mut all) = (Vec::new(), Vec::new());
-        let mut current: Option<(f32, Loaded, Scene)> = None;
+        let camera = self.camera(exhibit, target.viewport())?;
+        let (mut parts, mut all, mut current) = (Vec::new(), Vec::new(), None);
         for (index, tile) in exhibit.tiles.iter().enumerate() {
             starting(index);
-            if current.as_ref().is_none_or(|(crease_band, ..)| *crease_band != tile.crease_band) {
-                let loaded = self.prepared(exhibit, tile.crease_band)?;
-                let scene = engine.scene(&loaded, ARENA_BYTES)?;
-                current = Some((tile.crease_band, loaded, scene));
-            }
-            let Some((_, loaded, scene)) = &mut current else { continue };
+            let entered = self.entered(current.take(), exhibit, tile)?;
+            let (_, loaded, scene) = current.insert(entered);
             let drawn_as = (self.settings(tile), exhibit.overlays);
             let (picture, results) = draw_tile(engine, &target, &camera, drawn_as, loaded, scene)?;
             parts.push((tile.name.clone(), picture));
@@ -99,48 +112,56 @@ impl<'a> Gallery<'a> {
         Ok((contact_sheet(&parts, columns, TEXT)?, all))
     }
 
-    /// The warnings about the mesh that the user named: see [`load::LoadedMesh::warnings`].
+    /// The warnings about the mesh that the user named, at all levels of tiles; not about crease bands, which nobody asked for.
     pub fn warnings(&mut self) -> Result<Vec<String>, ShotError> {
-        match self.options.source.clone() {
-            Some(source) => Ok(self.load(source, 0.0)?.warnings.clone()),
-            None => Ok(Vec::new()),
+        let Some(source) = self.options.source.clone() else { return Ok(Vec::new()) };
+        let mut all = Vec::new();
+        for tile in self.exhibits().into_iter().flat_map(|exhibit| exhibit.tiles) {
+            let without_band = OwnMesh { crease_band: 0.0, ..tile.own_mesh };
+            all.extend(self.load(source.clone(), without_band)?.warnings.iter().cloned());
         }
+        Ok(distinct(all))
     }
 
-    /// The camera for all tiles of an exhibit, so that they can be compared. The mesh with all surfaces of the exhibit fits
-    /// into its picture, with room for displacement.
-    fn camera(&mut self, exhibit: &Exhibit, target: &Target) -> Result<Camera, ShotError> {
-        let loaded = self.prepared(exhibit, 0.0)?;
-        let mut scene = self.engine.scene(&loaded, ARENA_BYTES)?;
-        let framing = Camera::framing(&scene.bounds, target.viewport());
-        let mut camera = Camera { azimuth: self.options.azimuth, elevation: self.options.elevation, ..framing };
-        let view = camera.lod_view(target.viewport(), &scene.bounds);
-        let mut places: Vec<Vec3> = loaded.mesh.corners.iter().map(|corner| corner.position).collect();
-        let (mut seen, mut farthest): (Vec<Surface>, f32) = (Vec::new(), 0.0);
+    /// The mesh of a tile, which may be the current one.
+    fn entered(&mut self, current: Option<OnDevice>, exhibit: &Exhibit, tile: &Tile) -> Result<OnDevice, ShotError> {
+        if let Some(current) = current.filter(|(own_mesh, ..)| *own_mesh == tile.own_mesh) {
+            return Ok(current);
+        }
+        let loaded = self.prepared(exhibit, tile.own_mesh)?;
+        let scene = self.engine.scene(&loaded, ARENA_BYTES)?;
+        Ok((tile.own_mesh, loaded, scene))
+    }
+
+    /// The camera for all tiles of an exhibit, so that they can be compared. All meshes of the exhibit with all surfaces fit into
+    /// its picture, with room for displacement.
+    fn camera(&mut self, exhibit: &Exhibit, viewport: Vec2) -> Result<Camera, ShotError> {
+        let GalleryOptions { azimuth, elevation, .. } = self.options;
+        let mut camera = Camera { azimuth, elevation, ..Camera::default() };
+        let (mut places, mut seen, mut farthest, mut current) = (Vec::<Vec3>::new(), Vec::new(), 0.0_f32, None);
         for tile in &exhibit.tiles {
+            let entered = self.entered(current.take(), exhibit, tile)?;
+            let (_, loaded, scene) = current.insert(entered);
+            camera.frame(&scene.bounds, viewport);
+            let view = camera.lod_view(viewport, &scene.bounds);
             let settings = self.settings(tile);
             farthest = farthest.max(displacement_reach(&loaded.mesh, &settings.inputs(view)));
-            if seen.contains(&settings.tessellation.surface) {
+            let drawn = (settings.tessellation.surface, tile.own_mesh);
+            if seen.contains(&drawn) {
                 continue;
             }
-            seen.push(settings.tessellation.surface);
+            seen.push(drawn);
+            places.extend(loaded.mesh.corners.iter().map(|corner| corner.position));
             let plain = settings.with(Tessellation { factor: FRAMING_FACTOR, ..settings.tessellation.undisplaced() });
-            places.extend(self.places(&mut scene, plain, &camera, target)?);
+            places.extend(self.places(scene, &plain.inputs(view))?);
         }
-        camera.fit(places.into_iter(), farthest, target.viewport());
+        camera.fit(places.into_iter(), farthest, viewport);
         Ok(camera)
     }
 
     /// The positions of a surface's vertices; none if it reaches beyond [`FARTHEST`].
-    fn places(
-        &self,
-        scene: &mut Scene,
-        settings: Settings,
-        camera: &Camera,
-        target: &Target,
-    ) -> Result<Vec<Vec3>, GpuError> {
-        let inputs = settings.inputs(camera.lod_view(target.viewport(), &scene.bounds));
-        self.engine.count(scene, &tile::affordable(&inputs, scene), &mut Timing::Off)?;
+    fn places(&self, scene: &mut Scene, inputs: &Inputs) -> Result<Vec<Vec3>, GpuError> {
+        self.engine.count(scene, &tile::affordable(inputs, scene), &mut Timing::Off)?;
         let mut places: Vec<Vec3> = Vec::new();
         let mut take = |chunk: &EmittedChunk| {
             places.extend(chunk.vertices.iter().map(|vertex| Vec3::from(vertex.position)));
@@ -164,28 +185,37 @@ impl<'a> Gallery<'a> {
     }
 
     /// The exhibit's mesh. If the exhibit displaces it and the user named no height image, it has the waves made in code.
-    fn prepared(&mut self, exhibit: &Exhibit, crease_band: f32) -> Result<Loaded, LoadError> {
-        let source = self.options.source.clone().unwrap_or(Source::Shape(exhibit.shape));
-        let mut loaded = self.load(source, crease_band)?.clone();
+    fn prepared(&mut self, exhibit: &Exhibit, own_mesh: OwnMesh) -> Result<Loaded, LoadError> {
+        let mut loaded = match self.options.source.clone().or(exhibit.shape.map(Source::Shape)) {
+            Some(source) => self.load(source, own_mesh)?.clone(),
+            None => refined_cage(own_mesh.levels)?,
+        };
         let displaced = exhibit.tiles.iter().any(|tile| tile.settings.tessellation.displacement.is_on());
         if displaced && loaded.mesh.heights.is_none() {
-            let mut mesh = (*loaded.mesh).clone();
-            mesh.heights = Some(Arc::new(Heights::waves(&mesh, 128, [3.0, 2.0])));
-            loaded.mesh = Arc::new(mesh);
+            let mesh = Arc::make_mut(&mut loaded.mesh);
+            mesh.heights = Some(Arc::new(Heights::waves(mesh, 128, [3.0, 2.0])));
         }
         Ok(loaded)
     }
 
-    fn load(&mut self, source: Source, crease_band: f32) -> Result<&Loaded, LoadError> {
-        let preparation = Preparation { crease_band, ..self.options.preparation.clone() };
+    fn load(&mut self, source: Source, OwnMesh { crease_band, levels }: OwnMesh) -> Result<&Loaded, LoadError> {
+        let usual = &self.options.preparation;
+        let import = Import { levels: levels.or(usual.import.levels), ..usual.import };
+        let preparation = Preparation { crease_band, import, ..usual.clone() };
         let known = |loaded: &Loaded| loaded.source == source && loaded.preparation == preparation;
-        let index = match self.loaded.iter().position(known) {
-            Some(index) => index,
-            None => {
-                self.loaded.push(load(&source, &preparation, &Progress::new())?);
-                self.loaded.len() - 1
-            }
-        };
+        let index = self.loaded.iter().position(known).unwrap_or(self.loaded.len());
+        if index == self.loaded.len() {
+            self.loaded.push(load(&source, &preparation, &Progress::new())?);
+        }
         Ok(&self.loaded[index])
     }
+}
+
+/// The cage, refined so often.
+fn refined_cage(levels: Option<f32>) -> Result<Loaded, LoadError> {
+    let import = Import { subdivide: Subdivide::CatmullClark, levels, ..Import::default() };
+    let (selected, progress) = (Selection { import, ..Selection::default() }, Progress::new());
+    let read = read(Format::Obj, CAGE.to_vec(), "cube.obj".as_ref(), selected, &Limits::default(), &progress)?;
+    let topology = Topology::build(&read.mesh, &progress)?;
+    Ok(Loaded::from_mesh(read.mesh.into(), topology.into()))
 }

@@ -95,8 +95,7 @@ pub(super) fn draw_tile(
 
 /// The lines of cracked edges, in two classes. Visible cracks are drawn over narrower ones.
 fn crack_lines(measured: &Measured, loaded: &Loaded, gap_px: impl Fn(&CrackedEdge) -> f64) -> Vec<LineSegment> {
-    let is_narrow = |crack: &CrackedEdge| gap_px(crack) < VISIBLE_PX;
-    let color = |crack: &CrackedEdge| if is_narrow(crack) { NARROW_COLOR } else { CRACK_COLOR };
+    let color = |crack: &CrackedEdge| if gap_px(crack) < VISIBLE_PX { NARROW_COLOR } else { CRACK_COLOR };
     let mut lines = crack_lines_in(measured, &loaded.topology, color);
     let narrow = linear(NARROW_COLOR);
     lines.sort_by_key(|line| line.color != narrow);

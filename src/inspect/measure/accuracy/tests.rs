@@ -6,6 +6,8 @@ use geometry::mesh::{Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{Partitioning, Surface, Tessellated, Tessellation, pack_key, pack_normal, tessellate};
 
+mod limits;
+
 static PROGRESS: std::sync::LazyLock<Progress> = std::sync::LazyLock::new(Progress::new);
 
 fn options(samples: usize) -> AccuracyOptions {
