@@ -1,4 +1,4 @@
-//! The legend, which explains what the surface's colours mean: under the measurements, or without these in a lower corner of the picture.
+//! The legend of the surface's colours: under the measurements, or without these in a lower corner of the picture.
 
 use egui::{Align2, Rect, Role, Sense, TextureHandle, Vec2, WidgetInfo};
 

@@ -180,7 +180,7 @@ impl Pen<'_, '_> {
         self.area.estimate_text_size(text, &self.font()).map_or(0.0, |(px, _)| f64::from(px) / self.point)
     }
 
-    fn font(&self) -> TextStyle<'static> {
+    fn font(&self) -> TextStyle<'_> {
         plot::font((TEXT * self.point).round() as i32).color(&self.ink)
     }
 }
