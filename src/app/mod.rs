@@ -261,11 +261,11 @@ impl eframe::App for App {
         let frame = panel_frame(ui);
         egui::Panel::top("menu").frame(frame).show(ui, |ui| self.menu_bar(ui));
         egui::Panel::bottom("status").frame(frame).show(ui, |ui| self.status_line(ui));
-        self.side_panels(ui);
+        let has_measurements = self.side_panels(ui);
         self.chart_panel(ui);
         egui::Panel::top("toolbar").frame(frame).show(ui, |ui| self.toolbar(ui));
         self.timeline(ui);
-        egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui));
+        egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui, has_measurements));
         self.windows(ui.ctx());
         // Measuring the chart waits while the window draws or measures.
         self.panels.chart.charting.hold(self.is_busy());

@@ -106,12 +106,13 @@ fn title_row(ui: &mut egui::Ui, title: &str, is_open: bool) -> egui::Response {
 }
 
 /// Shows the contents of a panel, which scroll. They have the width that a scroll bar leaves, also where there is none, and never
-/// take more: whatever is wider is cut off. So neither a section that opens nor a number that grows can move anything sideways.
-pub(in crate::app) fn scrolling_column(ui: &mut egui::Ui, show: impl FnOnce(&mut egui::Ui)) {
+/// take more: whatever is wider is cut off. So neither a section that opens nor a number that grows can move anything sideways. In a
+/// panel that is too narrow for their least width, in points, they scroll sideways too.
+pub(in crate::app) fn scrolling_column(ui: &mut egui::Ui, least: f32, show: impl FnOnce(&mut egui::Ui)) {
     let width = ui.available_width() - ui.spacing().scroll.allocated_width();
-    egui::ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+    egui::ScrollArea::new([width < least, true]).auto_shrink(false).show(ui, |ui| {
         let room = ui.available_rect_before_wrap();
-        let room = room.with_max_x(room.left() + width);
+        let room = room.with_max_x(room.left() + width.max(least));
         let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(room));
         let clip = ui.clip_rect();
         inside.set_clip_rect(clip.intersect(Rect::from_x_y_ranges(room.x_range().expand(2.0), clip.y_range())));

@@ -17,7 +17,7 @@ use inspect::settings::{
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
-        scrolling_column(ui, |ui| {
+        scrolling_column(ui, 0.0, |ui| {
             // Lists, and sliders with their numbers, end where the lines under the titles do.
             let (gap, room) = (ui.spacing().item_spacing.x, ui.available_width());
             let controls = room - LABEL_WIDTH - gap;

@@ -47,26 +47,27 @@ fn arrangement(width: f32) -> Arrangement {
 }
 
 impl App {
-    pub(in crate::app) fn side_panels(&mut self, ui: &mut egui::Ui) {
+    /// Shows the panels that there is room for. Returns whether measurements are among them, and with these the legend.
+    pub(in crate::app) fn side_panels(&mut self, ui: &mut egui::Ui) -> bool {
         let frame = panel_frame(ui);
         let panel = |panel: egui::Panel, width| panel.resizable(false).exact_size(width).frame(frame);
         match arrangement(ui.available_width()) {
-            _ if self.panels.are_hidden => {}
-            Arrangement::Hidden => {}
+            _ if self.panels.are_hidden => false,
+            Arrangement::Hidden => false,
             Arrangement::Shared(width) => {
-                let room = (width < FACTS_WIDTH).then_some(FACTS_WIDTH - frame.inner_margin.sum().x);
-                panel(egui::Panel::left("shared"), width).show(ui, |ui| self.shared_panel(ui, room));
+                panel(egui::Panel::left("shared"), width).show(ui, |ui| self.shared_panel(ui));
+                self.panels.side == Side::Measurements
             }
             Arrangement::Beside => {
                 panel(egui::Panel::left("settings"), SETTINGS_WIDTH).show(ui, |ui| self.settings_panel(ui));
                 panel(egui::Panel::right("facts"), FACTS_WIDTH).show(ui, |ui| self.facts_panel(ui));
+                true
             }
         }
     }
 
-    /// The tabs, and the panel that is chosen. Where there is too little room for measurements, they scroll sideways, and have `room` in
-    /// width, in points.
-    fn shared_panel(&mut self, ui: &mut egui::Ui, room: Option<f32>) {
+    /// The tabs, and the panel that is chosen.
+    fn shared_panel(&mut self, ui: &mut egui::Ui) {
         let worst = self.worst(ui);
         ui.horizontal(|ui| {
             let gap = ui.spacing().item_spacing.x;
@@ -83,15 +84,9 @@ impl App {
                 }
             }
         });
-        match (self.panels.side, room) {
-            (Side::Settings, _) => drop(ui.push_id("settings", |ui| self.settings_panel(ui))),
-            (Side::Measurements, None) => self.facts_panel(ui),
-            (Side::Measurements, Some(room)) => {
-                egui::ScrollArea::horizontal().auto_shrink(false).show(ui, |ui| {
-                    ui.set_width(ui.available_width().max(room));
-                    self.facts_panel(ui);
-                });
-            }
+        match self.panels.side {
+            Side::Settings => drop(ui.push_id("settings", |ui| self.settings_panel(ui))),
+            Side::Measurements => self.facts_panel(ui),
         }
     }
 }

@@ -10,9 +10,13 @@ use inspect::measure::{Cracks, Culled, SeamTurns};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
 use inspect::settings::Choice;
 
+/// The least width of the rows, in points: less than a panel of the usual width has.
+const LEAST_WIDTH: f32 = 276.0;
+
 impl App {
     pub(in crate::app) fn facts_panel(&mut self, ui: &mut egui::Ui) {
-        scrolling_column(ui, |ui| {
+        self.legend_panel(ui);
+        scrolling_column(ui, LEAST_WIDTH, |ui| {
             // Each in a scope of its own, so that rows that come and go don't take the focus from those below.
             ui.push_id("verdict", |ui| self.verdict(ui));
             let top = ui.cursor().top();

@@ -58,7 +58,7 @@ pub(super) struct Viewport {
     pub greets: bool,
     pub picture: Picture,
     pub legend: Option<PaintedLegend>,
-    /// The half of the picture whose lower corner has it.
+    /// The half of the picture whose lower corner has it, if it isn't beside the picture.
     pub legend_side: SplitSide,
     pub pace: Pace,
     pub preview: Preview,

@@ -6,7 +6,6 @@ use egui::{PointerButton, Sense};
 use glam::vec2;
 
 use super::axis_gizmo::axes_place;
-use super::legend::PaintedLegend;
 use super::picture::PictureRequest;
 use crate::app::jobs::job_list::Work;
 use crate::app::jobs::measure_job::{MeasureError, Seen};
@@ -18,7 +17,7 @@ use crate::commands::{Action, CameraAction, key_name, with_key};
 use geometry::view::ScreenView;
 use gpu::GpuError;
 use inspect::engine::SilhouetteView;
-use inspect::render::{Ground, Scene, framed_size, half_at};
+use inspect::render::{Ground, framed_size, half_at};
 use inspect::settings::{Settings, SplitSide};
 use load::Source;
 
@@ -43,17 +42,17 @@ const GREETING: &str =
     "Drag to turn, scroll to zoom, click a triangle to read its factors. Drop a mesh here to open it.";
 
 impl App {
-    pub(in crate::app) fn viewport_panel(&mut self, ui: &mut egui::Ui) {
+    /// Shows the picture with what lies over it; the legend only if it isn't beside it.
+    pub(in crate::app) fn viewport_panel(&mut self, ui: &mut egui::Ui, legend_is_beside: bool) {
         let rect = ui.available_rect_before_wrap();
         self.viewport.rect = Some(rect);
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Viewport"));
-        let points = vec2(rect.width(), rect.height());
         self.move_camera(ui, &response, rect);
         let scale = ui.ctx().pixels_per_point();
         self.click(&response, scale);
         response.context_menu(|ui| self.part_menu(ui));
-        let size = [(points.x * scale).round().max(1.0) as u32, (points.y * scale).round().max(1.0) as u32];
+        let size = [rect.width(), rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
         // A camera that frames the whole mesh goes on doing so in a window of another size, and side by side.
         let framed_size = framed_size(size.map(|side| side as f32).into(), &self.settings);
         let resized = std::mem::replace(&mut self.viewport.framed_size, framed_size) != framed_size;
@@ -70,26 +69,23 @@ impl App {
         // A picture that the device refused may be half drawn.
         let is_whole =
             self.viewport.picture.cancelled.is_none() || (self.viewport.picture.drawn.is_some() && !is_another);
-        let previewed = self.viewport.preview.shown(&self.viewport.picture).map(|(_, shape)| shape);
-        let picture = match previewed {
-            Some(_) => self.viewport.preview.picture(),
-            None => self.viewport.picture.shown().filter(|_| is_whole),
-        };
+        let is_preview = self.shows_preview();
+        let whole = self.viewport.picture.shown().filter(|_| is_whole);
+        let picture = if is_preview { self.viewport.preview.picture() } else { whole };
         match picture {
             Some(picture) => {
                 ui.painter().add(picture.over(rect));
-                if is_another && previewed.is_none() {
+                if is_another && !is_preview {
                     // The mesh before stays as a shade until the first picture of this one.
                     let [r, g, b] = self.settings_in(ui.ctx().theme()).background_color();
                     let veil = egui::Color32::from_rgba_unmultiplied(r, g, b, VEIL);
                     ui.painter().rect_filled(rect, 0.0, veil);
                 }
-                let has_outlines = previewed.is_none() && !self.settings.moves_halves();
+                let has_outlines = !is_preview && !self.settings.moves_halves();
                 if let Some(outlines) = self.found_outlines().filter(|_| has_outlines) {
-                    let whole = egui::Rect::from_min_max(egui::pos2(0.0, 0.0), egui::pos2(1.0, 1.0));
-                    ui.painter().image(outlines.texture.id(), rect, whole, egui::Color32::WHITE);
+                    egui::Image::new(&outlines.texture).paint_at(ui, rect);
                 }
-                self.over_picture(ui, rect);
+                self.over_picture(ui, rect, legend_is_beside);
             }
             None => {
                 let background = self.settings_in(ui.ctx().theme()).background_color();
@@ -100,13 +96,13 @@ impl App {
     }
 
     /// What lies over a picture, and explains it.
-    fn over_picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect) {
+    fn over_picture(&mut self, ui: &mut egui::Ui, rect: egui::Rect, legend_is_beside: bool) {
         self.divider(ui, rect);
         self.section_arrow(ui, rect);
         self.patch_labels(ui, rect);
         self.greeting(ui, rect);
-        self.legend(ui, rect);
-        self.corner_notes(ui, rect);
+        let legend = if legend_is_beside { None } else { self.legend_in_corner(ui, rect) };
+        self.corner_notes(ui, rect, legend);
         self.axis_gizmo(ui, rect);
     }
 
@@ -317,13 +313,11 @@ impl App {
 
     /// The number of triangles of the wanted picture, as text.
     pub(in crate::app) fn triangles(&self) -> String {
-        let of = |scene: &Scene| scene.tessellator.totals().1;
-        let triangles = self.document.as_ref().map_or(0, |document| {
-            let halves =
-                SplitSide::BOTH.into_iter().filter_map(|half| self.settings.half(half).and(document.scene.half(half)));
-            halves.map(of).sum()
-        });
-        counted(triangles, "triangle")
+        let of_half = |half| {
+            self.settings.half(half)?;
+            Some(self.document.as_ref()?.scene.half(half)?.tessellator.totals().1)
+        };
+        counted(SplitSide::BOTH.into_iter().filter_map(of_half).sum(), "triangle")
     }
 
     /// Whether nothing was done yet: no camera moved, no setting changed, nothing selected and no other mesh opened.
@@ -335,7 +329,7 @@ impl App {
     }
 
     /// What is on in the picture, in its lower left corner, above a legend there.
-    fn corner_notes(&self, ui: &egui::Ui, rect: egui::Rect) {
+    fn corner_notes(&self, ui: &egui::Ui, rect: egui::Rect, legend: Option<egui::Rect>) {
         let preview = &self.viewport.preview;
         let previewed = preview.shown(&self.viewport.picture).map(|(_, shape)| preview.mark(shape));
         let frozen = self.viewport.frozen.map(|_| "LOD camera frozen".to_owned());
@@ -355,14 +349,13 @@ impl App {
             [previewed, frozen, self.left_out_note(), difference, grid, distance, bookmark].into_iter().flatten();
         let notes: Vec<_> = texts.map(|text| (note_text(ui, &text, egui::Color32::from_gray(235)), text)).collect();
         let widest = notes.iter().map(|(galley, _)| galley.size().x).fold(0.0, f32::max);
-        // In a narrow picture they are above the progress.
-        let progress = progress_place(rect);
         let shows_progress =
             self.under_way().is_some() || self.viewport.picture.cancelled.is_some() || self.shows_nothing();
-        let is_companion = !shows_progress || rect.left() + 10.0 + widest + 12.0 < progress.left();
-        let bottom = if is_companion { rect.bottom() } else { progress.top() };
-        let legend = self.viewport.legend.as_ref().filter(|_| self.viewport.legend_side == SplitSide::Left);
-        let bottom = bottom.min(rect.bottom() - legend.map_or(0.0, PaintedLegend::height));
+        let progress = shows_progress.then(|| progress_place(rect));
+        // In a narrow picture they are above the progress, and above a legend on the right.
+        let is_below = |place: &egui::Rect| place.left() <= rect.left() + 10.0 + widest + 12.0;
+        let below = [progress, legend].into_iter().flatten().filter(is_below);
+        let bottom = below.map(|place| place.top()).fold(rect.bottom(), f32::min);
         let mut position = egui::pos2(rect.left() + 10.0, bottom - 10.0);
         for (galley, text) in notes {
             let place = egui::Align2::LEFT_BOTTOM.anchor_size(position, galley.size());
@@ -379,10 +372,9 @@ impl App {
         if !self.viewport.greets || self.jobs.load().is_some() {
             return;
         }
-        let position = rect.center_bottom() + egui::vec2(0.0, -14.0);
         let (font, gray) = (egui::TextStyle::Body.resolve(ui.style()), egui::Color32::from_gray(235));
         let text = ui.painter().layout(GREETING.to_owned(), font, gray, rect.width() - 28.0);
-        let place = egui::Align2::CENTER_BOTTOM.anchor_size(position, text.size());
+        let place = egui::Align2::CENTER_BOTTOM.align_size_within_rect(text.size(), rect.shrink(14.0));
         let response = ui.interact(place, ui.scope_id().with("greeting"), Sense::empty());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, GREETING));
         paint_note(ui, place, text);
@@ -395,8 +387,8 @@ impl App {
         let is_cancelled = self.viewport.picture.cancelled.is_some();
         if self.document.is_some() && !is_cancelled && (is_old || self.left_takes_long()) {
             let text = note_text(ui, "Tessellating…", egui::Color32::from_gray(235));
-            let position = rect.center_top() + egui::vec2(0.0, 40.0);
-            paint_note(ui, egui::Align2::CENTER_TOP.anchor_size(position, text.size()), text);
+            let place = egui::Align2::CENTER_TOP.align_size_within_rect(text.size(), rect.shrink(40.0));
+            paint_note(ui, place, text);
         }
         if let Some(under_way) = self.under_way() {
             let stop = format!("Stop ({})", key_name(&Action::Cancel));

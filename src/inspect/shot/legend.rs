@@ -1,4 +1,4 @@
-//! Draws the legend of the surface's colours: into a picture, or for the window to show over the viewport.
+//! Draws the legend of the surface's colours: into a picture, or for the window to show.
 
 use image::{RgbaImage, imageops};
 use plotters::backend::BitMapBackend;
@@ -16,16 +16,15 @@ const BAR: [f64; 2] = [196.0, 12.0];
 const BLOCK_WIDTH: f64 = 42.0;
 const MARGIN: f64 = 10.0;
 const TEXT: f64 = 12.5;
-/// Of a row of named colours, and of a legend that is one line of text.
+/// Of a row of named colours.
 const ROW: f64 = 17.0;
 /// The width of a letter, about.
 const LETTER: f64 = 6.6;
-const TITLE: [f64; 2] = [214.0, 14.0];
 /// A point is this part of a picture's shorter side, so that legends are as legible in large pictures as in small ones.
 const POINTS_A_SIDE: f64 = 600.0;
-/// The colours of the plate and of what is written on it.
-const PLATE: RGBColor = RGBColor(24, 24, 24);
-const INK: RGBColor = RGBColor(235, 235, 235);
+/// The sRGB colours of a plate and of what is written on it.
+pub type Inks = [[u8; 3]; 2];
+const ON_PICTURES: Inks = [[24; 3], [235; 3]];
 
 const LEFT_TOP: Pos = Pos { h_pos: HPos::Left, v_pos: VPos::Top };
 const MIDDLE_TOP: Pos = Pos { h_pos: HPos::Center, v_pos: VPos::Top };
@@ -45,27 +44,22 @@ pub(crate) fn draw_legend(
 ) -> Result<(), ChartError> {
     let legend = settings.halves().rev().find_map(|own| legend_of(&own, &scene.usual(), distances));
     let Some(legend) = legend else { return Ok(()) };
-    let point = point_in(picture.dimensions(), inner_size(&legend), None);
-    let plate = plate(inner_size(&legend), point, |pen| paint(pen, &legend))?;
-    let taken = [plate.width(), plate.height()].map(|side| side + (2.0 * MARGIN * point) as u32);
-    let side = legend_side(scene, camera, settings, [picture.dimensions().into(), taken]);
-    lay_in_corner(picture, &plate, side, point);
-    Ok(())
+    let size = picture.dimensions().into();
+    lay(picture, &legend, |taken| legend_side(scene, camera, settings, [size, taken]))
 }
 
-/// The legend as a picture, for one of this size in px whose texts are drawn with so many px a point.
+/// The legend as a picture in these colours, with so many px a point.
 ///
 /// # Errors
 /// The font can't be used.
-pub fn legend_picture(legend: &Legend, room: [u32; 2], point: f64) -> Result<RgbaImage, ChartError> {
-    let point = point_in(room.into(), inner_size(legend), Some(point));
-    plate(inner_size(legend), point, |pen| paint(pen, legend))
+pub fn legend_picture(legend: &Legend, point: f64, colors: Inks) -> Result<RgbaImage, ChartError> {
+    plate(inner_size(legend), point, colors, |pen| paint(pen, legend))
 }
 
 /// Width and height inside the plate's margins, in points.
 fn inner_size(legend: &Legend) -> [f64; 2] {
     match &legend.shown {
-        Shown::Title => TITLE,
+        Shown::Title => [214.0, 14.0],
         Shown::Waste => [112.0, 14.0],
         Shown::Scale { waste, .. } => [before_scale(*waste) + BAR[0], 52.0],
         Shown::Colors { colors, columns } => [BAR[0], 18.0 + ROW * colors.len().div_ceil(*columns) as f64],
@@ -84,9 +78,7 @@ fn paint(pen: &Pen, legend: &Legend) -> Drawn {
         Shown::Title => pen.text(title, [0.0, 7.0], LEFT),
         Shown::Waste => named(pen, [0.0, 7.0], WASTE_COLOR, title),
         Shown::Scale { scale: shown, ticks, waste } => scale(pen, title, shown, ticks, before_scale(*waste)),
-        Shown::Colors { colors, columns } => {
-            named_colors(pen, title, colors.iter().map(|(color, text)| (*color, text.as_str())), *columns)
-        }
+        Shown::Colors { colors, columns } => named_colors(pen, title, colors, *columns),
         Shown::Barycentric => barycentric(pen, title),
     }
 }
@@ -102,11 +94,10 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
     if rows.is_empty() {
         return Ok(());
     }
-    let inner = [BAR[0], 18.0 + ROW * rows.len() as f64];
-    let point = point_in(picture.dimensions(), inner, None);
-    let plate = plate(inner, point, |pen| named_colors(pen, title, rows.iter().copied(), 1))?;
-    lay_in_corner(picture, &plate, SplitSide::Left, point);
-    Ok(())
+    let colors = rows.iter().map(|(color, name)| (*color, (*name).to_owned())).collect();
+    let shown = Shown::Colors { colors, columns: 1 };
+    let key = Legend { title: title.to_owned(), meaning: String::new(), shown };
+    lay(picture, &key, |_| SplitSide::Left)
 }
 
 /// A plate with lines of text for half of a picture of this size in px, and the margin around it in px.
@@ -116,8 +107,8 @@ pub fn draw_key(picture: &mut RgbaImage, title: &str, rows: &[Named]) -> Result<
 pub(super) fn plate_of_lines((width, height): (u32, u32), lines: &[&str]) -> Result<(RgbaImage, u32), ChartError> {
     let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
     let inner = [LETTER * longest as f64, ROW * lines.len() as f64];
-    let point = point_in((width / 2, height), inner, None);
-    let plate = plate(inner, point, |pen| {
+    let point = point_in((width / 2, height), inner);
+    let plate = plate(inner, point, ON_PICTURES, |pen| {
         let middles = (0..).map(|row| ROW * (f64::from(row) + 0.5));
         lines.iter().zip(middles).try_for_each(|(line, middle)| pen.text(line, [0.0, middle], LEFT))
     })?;
@@ -129,31 +120,34 @@ fn plate_size(inner: [f64; 2]) -> [f64; 2] {
     [inner[0] + 2.0 * MARGIN, inner[1] + 12.0]
 }
 
-/// How many px a point has in a picture: as many as is usual for its size, unless that is given. In a small picture all of a plate
-/// with this much room inside becomes smaller.
-fn point_in((width, height): (u32, u32), inner: [f64; 2], usual: Option<f64>) -> f64 {
+/// How many px a point has in a picture. In a small one all of a plate with this much room inside becomes smaller.
+fn point_in((width, height): (u32, u32), inner: [f64; 2]) -> f64 {
     let (room, size) = ([width, height].map(f64::from), plate_size(inner));
-    let usual = usual.unwrap_or((room[0].min(room[1]) / POINTS_A_SIDE).max(1.0));
+    let usual = (room[0].min(room[1]) / POINTS_A_SIDE).max(1.0);
     usual.min(room[0] / (size[0] + 2.0 * MARGIN)).min(room[1] / (size[1] + 2.0 * MARGIN))
 }
 
 /// A plate with this much room inside, in points, and what `paint` puts there.
-fn plate(inner: [f64; 2], point: f64, paint: impl FnOnce(&Pen) -> Drawn) -> Result<RgbaImage, ChartError> {
+fn plate(inner: [f64; 2], point: f64, inks: Inks, paint: impl FnOnce(&Pen) -> Drawn) -> Result<RgbaImage, ChartError> {
+    let [back, ink] = inks.map(|[r, g, b]| RGBColor(r, g, b));
     let px = plate_size(inner).map(|side| ((side * point).round() as u32).max(1));
     let plate = plot::bitmap(px, |area| {
-        area.fill(&PLATE)?;
-        paint(&Pen { area, point: point * f64::from(DENSITY), origin: [MARGIN, 6.0] })
+        area.fill(&back)?;
+        paint(&Pen { area, ink, point: point * f64::from(DENSITY), origin: [MARGIN, 6.0] })
     })?;
     Ok(image::DynamicImage::from(plate).to_rgba8())
 }
 
-fn lay_in_corner(picture: &mut RgbaImage, plate: &RgbaImage, side: SplitSide, point: f64) {
-    let margin = (MARGIN * point).round() as u32;
-    let at =
-        [picture.width() - plate.width().min(picture.width()), picture.height() - plate.height().min(picture.height())];
-    let at = at.map(|side| i64::from(side.saturating_sub(margin)));
-    let left = if side == SplitSide::Left { i64::from(margin) } else { at[0] };
-    imageops::replace(picture, plate, left, at[1]);
+/// Lays a legend into a lower corner: that of the half which `side` returns for the width and height in px that it takes.
+fn lay(picture: &mut RgbaImage, legend: &Legend, side: impl FnOnce([u32; 2]) -> SplitSide) -> Result<(), ChartError> {
+    let point = point_in(picture.dimensions(), inner_size(legend));
+    let (plate, margin) = (legend_picture(legend, point, ON_PICTURES)?, (MARGIN * point).round() as u32);
+    let side = side([plate.width(), plate.height()].map(|side| side + (2.0 * MARGIN * point) as u32));
+    let right = picture.width().saturating_sub(plate.width() + margin);
+    let top = picture.height().saturating_sub(plate.height() + margin);
+    let left = if side == SplitSide::Left { margin } else { right };
+    imageops::replace(picture, &plate, left.into(), top.into());
+    Ok(())
 }
 
 type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingBackend>::ErrorType>>;
@@ -161,6 +155,7 @@ type Drawn = Result<(), DrawingAreaErrorKind<<BitMapBackend<'static> as DrawingB
 /// Draws on a plate, in points from the corner of the room inside it.
 struct Pen<'a, 'b> {
     area: &'a DrawingArea<BitMapBackend<'b>, Shift>,
+    ink: RGBColor,
     /// Drawn px.
     point: f64,
     origin: [f64; 2],
@@ -185,8 +180,8 @@ impl Pen<'_, '_> {
         self.area.estimate_text_size(text, &self.font()).map_or(0.0, |(px, _)| f64::from(px) / self.point)
     }
 
-    fn font(&self) -> TextStyle<'static> {
-        plot::font((TEXT * self.point).round() as i32).color(&INK)
+    fn font(&self) -> TextStyle<'_> {
+        plot::font((TEXT * self.point).round() as i32).color(&self.ink)
     }
 }
 
@@ -198,38 +193,33 @@ fn named(pen: &Pen, [left, middle]: [f64; 2], color: [u8; 3], name: &str) -> Dra
 }
 
 /// Colours with their names or what they stand for, under a title, so many in a row.
-fn named_colors<'a>(pen: &Pen, title: &str, colors: impl Iterator<Item = ([u8; 3], &'a str)>, columns: usize) -> Drawn {
+fn named_colors(pen: &Pen, title: &str, colors: &[([u8; 3], String)], columns: usize) -> Drawn {
     pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-    for (index, (color, name)) in colors.enumerate() {
+    for (index, (color, name)) in colors.iter().enumerate() {
         let [column, row] = [index % columns, index / columns].map(|place| place as f64);
-        named(pen, [column * BAR[0] / columns as f64, 18.0 + ROW * (row + 0.5)], color, name)?;
+        named(pen, [column * BAR[0] / columns as f64, 18.0 + ROW * (row + 0.5)], *color, name)?;
     }
     Ok(())
 }
 
-/// A scale with its title and numbers. Before it is the block of what is below it, if there is room.
-fn scale(pen: &Pen, title: &str, scale: &Scale, ticks: &[f32], before: f64) -> Drawn {
+/// A scale with its title and numbers, from `left` on. Before it is the block of what is below it, if there is room.
+fn scale(pen: &Pen, title: &str, scale: &Scale, ticks: &[f32], left: f64) -> Drawn {
     pen.text(title, [0.0, 0.0], LEFT_TOP)?;
-    let top = 20.0;
-    bar(pen, [before, top], scale, ticks)?;
-    if before > 0.0 {
-        pen.rect([0.0, top], [BLOCK_WIDTH, top + BAR[1]], WASTE_COLOR)?;
-        pen.text(&format!("below {}", scale.least), [BLOCK_WIDTH / 2.0, top + BAR[1] + 4.0], MIDDLE_TOP)?;
+    let (top, bottom) = (20.0, 20.0 + BAR[1]);
+    if left > 0.0 {
+        pen.rect([0.0, top], [BLOCK_WIDTH, bottom], WASTE_COLOR)?;
+        pen.text(&format!("below {}", scale.least), [BLOCK_WIDTH / 2.0, bottom + 4.0], MIDDLE_TOP)?;
     }
-    Ok(())
-}
-
-fn bar(pen: &Pen, [left, top]: [f64; 2], scale: &Scale, ticks: &[f32]) -> Drawn {
-    let bottom = top + BAR[1];
     let pieces = (BAR[0] * pen.point).ceil().max(1.0) as u32;
     for piece in 0..pieces {
         let [from, to] = [piece, piece + 1].map(|end| f64::from(end) / f64::from(pieces));
         let color = scale.color((0.5 * (from + to)) as f32);
         pen.rect([left + from * BAR[0], top], [left + to * BAR[0], bottom], color)?;
     }
+    let RGBColor(r, g, b) = pen.ink;
     for &tick in ticks {
         let x = left + f64::from(scale.place(tick)) * BAR[0];
-        pen.rect([x - 0.5, bottom], [x + 0.5, bottom + 3.0], [235; 3])?;
+        pen.rect([x - 0.5, bottom], [x + 0.5, bottom + 3.0], [r, g, b])?;
         // Long numbers at the ends are moved inwards, so that they stay on the plate.
         let (text, half) = (tick_text(tick), 0.5 * pen.width(&tick_text(tick)));
         let (first, last) = (left - 6.0 + half, left + BAR[0] + 6.0 - half);
