@@ -50,8 +50,9 @@ pub struct SurfaceOptions {
     pub max_triangles: Option<u64>,
     /// Height map that displaces the surface: a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image over all materials, its stored
     /// brightness from 0 (black) to 1 (white); `material`, the brightness of each material's base colour image; or `file`, the images
-    /// that the file gives its materials, of which MATERIAL=IMAGE,scale=S,midlevel=H replaces one (S in object units)
-    #[arg(long, value_name = "IMAGE|material|file|MATERIAL=IMAGE", value_parser = heights())]
+    /// that the file gives its materials. NAME=IMAGE,scale=S,midlevel=H (S in object units) replaces that of a material, or gives
+    /// a part or group one of its own; may be given several times. A part's image counts before its material's
+    #[arg(long, value_name = "IMAGE|material|file|NAME=IMAGE", value_parser = heights())]
     pub height: Vec<HeightSource>,
     /// Memory for output on the device, in MiB, 1 to 65536; output that doesn't fit is made in chunks
     #[arg(long, value_name = "MIB", default_value_t = ARENA_BYTES >> 20, value_parser = whole(1..=65_536_u64))]
@@ -109,10 +110,10 @@ impl SurfaceOptions {
             "--animation can't be combined with --crease-band: its triangles belong to no joint or node that moves",
         )?;
         let usual = Tessellation::default();
-        let is_of_material = |own: &HeightSource| matches!(own, HeightSource::Each(_));
+        let is_of_part = |own: &HeightSource| matches!(own, HeightSource::Each(_));
         refuse(
-            self.height.len() > 1 && !self.height.iter().all(is_of_material),
-            "--height can be given several times only as MATERIAL=IMAGE",
+            self.height.len() > 1 && !self.height.iter().all(is_of_part),
+            "--height can be given several times only as NAME=IMAGE",
         )?;
         let takes_heights = !self.height.is_empty() || own.displacement.is_on();
         let is_lost = !takes_heights && (own.height_scale != usual.height_scale || own.midlevel != usual.midlevel);

@@ -136,7 +136,8 @@ fn points(gpu: &Gpu, mesh: &Mesh, topology: &Topology) -> Result<wgpu::Buffer, G
     let heights = mesh.heights.as_deref();
     let traits = |patch| {
         let material = topology.material_of(patch);
-        let map = heights.and_then(|heights| heights.map_of(material)).map_or(0, |map| map + 1);
+        let triangle = topology.patches[patch as usize].triangle;
+        let map = heights.and_then(|heights| heights.map_of(triangle)).map_or(0, |map| map + 1);
         let is_textured = mesh.materials.get(material).is_some_and(|material| material.texture.is_some());
         map + if is_textured { TEXTURED } else { 0 } + DETAIL_STEP * detail_count(topology.detail_of(mesh, patch))
     };

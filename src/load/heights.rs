@@ -1,4 +1,5 @@
-//! Height maps for displacement: those that a model's file gives its materials, image files, or the base colour images.
+//! Height maps for displacement: those that a model's file gives its materials, image files for all or for parts of it, or the
+//! base colour images.
 
 mod reading;
 mod texts;
@@ -9,10 +10,10 @@ use std::hash::Hash;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use image::ColorType;
-
 use super::memory_budget::Budget;
 use super::notes::Notes;
+use super::parts::{Part, closeness};
+use super::selection::{MATERIAL, choice, is_material, is_part_of};
 use super::uri::Files;
 use super::warnings::untextured_warning;
 use geometry::mesh::build_limits::{MemoryRefused, borrowing};
@@ -44,16 +45,17 @@ pub enum HeightError {
     /// The materials' images would take too much memory together.
     #[error("the heights of {name}'s {count} images {reason}; scale them down, or name one height image")]
     TooMuchOfMaterials { name: String, count: usize, reason: String },
-    /// An image is named for a material that isn't there.
-    #[error("{name} has no material \"{material}\" to displace; it has {known}")]
-    NoMaterial { name: String, material: String, known: String },
+    /// An image is named for a material or a part that isn't there.
+    #[error("{name} has no material \"{part}\" to displace, and no such part; {known}")]
+    NoPart { name: String, part: String, known: String },
 }
 
-/// An image for the materials of one name, in place of what the model's file gives them.
+/// An image for the materials or the parts of one name, in place of what the model's file gives them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedImage {
-    /// The name of the materials.
-    pub material: String,
+    /// The name of materials; if none has it, that of parts and groups as [`is_part_of`] takes it, or of materials after
+    /// [`MATERIAL`].
+    pub part: String,
     /// The image file.
     pub path: PathBuf,
     /// How far it moves the surface; none if the settings say so.
@@ -69,33 +71,37 @@ pub enum HeightSource {
     Materials,
     /// One image for all materials.
     File(PathBuf),
-    /// An image for each of these materials. Others have what the model's file gives them.
+    /// An image for each of these materials and parts. Others have what the model's file gives them.
     Each(Vec<NamedImage>),
 }
 
 impl HeightSource {
-    /// Loads heights for a mesh, within the memory that a load may take. Sets `progress` from 0 to 1. `warnings` are those of
-    /// loading the mesh: if it has no image because a texture was left out, the error says why. What is scaled down is added.
+    /// Loads heights for a mesh, whose file has these parts, within the memory that a load may take. Sets `progress` from 0 to 1.
+    /// `warnings` are those of loading the mesh: if it has no image because a texture was left out, the error says why. What is
+    /// scaled down is added.
     ///
     /// # Errors
     /// [`HeightError`].
     pub fn load(
         &self,
         mesh: &Mesh,
+        parts: &[Part],
         warnings: &mut Vec<String>,
         budget: &Budget,
         progress: &Progress,
     ) -> Result<Heights, HeightError> {
         progress.set(0.0);
         let images = progress.part(0.0, 0.7);
+        // Those of materials come last.
+        let parts = &parts[..parts.partition_point(|part| !is_material(&part.name))];
         let own = match self {
             Self::Materials => Vec::new(),
             Self::File(path) => vec![Some(read_map(path, budget, &images)?); mesh.materials.len()],
-            Self::Model | Self::Each(_) => of_model(self.images(), mesh, budget, &images)?,
+            Self::Model | Self::Each(_) => of_model(self.images(), mesh, parts, budget, &images)?,
         };
         let are_of_colors = own.iter().all(Option::is_none);
         let mut own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
-        warnings.extend(fit(mesh, &mut own, budget, progress)?.into_warnings());
+        warnings.extend(fit(mesh, parts, &mut own, budget, progress)?.into_warnings());
         let held = budget.hold(bytes_beside_maps(mesh));
         held.map_err(|refused| too_much(mesh, own.iter().flatten().count(), refused))?;
         let heights = Heights::of_materials(mesh, &own, &progress.part(0.7, 1.0))?;
@@ -128,7 +134,7 @@ impl HeightSource {
     pub fn title(&self) -> String {
         match self {
             Self::Model => "As the file says".to_owned(),
-            Self::Each(_) => "Images of materials".to_owned(),
+            Self::Each(_) => "Images of parts".to_owned(),
             Self::Materials => "Base colour brightness".to_owned(),
             Self::File(path) => path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned(),
         }
@@ -142,6 +148,7 @@ impl HeightSource {
 pub fn load_heights(
     source: Option<&HeightSource>,
     mesh: &Mesh,
+    parts: &[Part],
     warnings: &mut Vec<String>,
     budget: &Budget,
     progress: &Progress,
@@ -149,7 +156,7 @@ pub fn load_heights(
     if source.is_none() && mesh.materials.iter().all(|material| material.height.is_none()) {
         return Ok(None);
     }
-    match source.unwrap_or(&HeightSource::Model).load(mesh, warnings, budget, progress) {
+    match source.unwrap_or(&HeightSource::Model).load(mesh, parts, warnings, budget, progress) {
         Err(error) if source.is_none() && !matches!(error, HeightError::Cancelled(_)) => {
             warnings.push(format!("its height images are left out: {error}."));
             Ok(None)
@@ -162,31 +169,41 @@ pub fn load_heights(
     }
 }
 
-/// The maps of materials: those that the model's file gives them, or these in place of some.
+/// The maps of materials, then those of parts: those that the model's file gives them, or these in place of some.
 fn of_model(
     images: &[NamedImage],
     mesh: &Mesh,
+    parts: &[Part],
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Vec<Option<HeightMap>>, HeightError> {
-    let mut own: Vec<_> = mesh.materials.iter().map(|material| material.height.clone()).collect();
-    let part = |index: usize| index as f32 / images.len() as f32;
+    let of_materials = mesh.materials.iter().map(|material| [MATERIAL, &material.name].concat());
+    let paths: Vec<String> = of_materials.chain(parts.iter().map(|part| part.name.clone())).collect();
+    let fraction = |index: usize| index as f32 / images.len() as f32;
     let mut known: HashMap<&Path, HeightMap> = HashMap::new();
-    for (index, NamedImage { material, path, amount }) in images.iter().enumerate() {
-        if mesh.materials.iter().all(|known| known.name != *material) {
-            let known: Vec<_> = mesh.materials.iter().map(|known| format!("\"{}\"", shown(&known.name))).collect();
-            let (name, known) = (mesh.name.clone(), known.join(", "));
-            return Err(HeightError::NoMaterial { name, material: shown(material), known });
+    let mut maps = Vec::new();
+    for (index, NamedImage { part, path, amount }) in images.iter().enumerate() {
+        let is_of_materials = mesh.materials.iter().any(|material| material.name == *part);
+        let name = if is_of_materials { format!("{MATERIAL}{part}/.") } else { part.clone() };
+        if !paths.iter().any(|path| is_part_of(path, &name)) {
+            let names = paths.iter().map(|path| path.strip_prefix(MATERIAL).unwrap_or(path));
+            let known: Vec<_> = names.map(|name| format!("\"{name}\"")).collect();
+            let (name, known) = (mesh.name.clone(), choice(&known, "it has none"));
+            return Err(HeightError::NoPart { name, part: shown(part), known });
         }
         let map = match known.get(&**path) {
             Some(map) => map.clone(),
-            None => read_map(path, budget, &progress.part(part(index), part(index + 1)))?,
+            None => read_map(path, budget, &progress.part(fraction(index), fraction(index + 1)))?,
         };
-        let users = mesh.materials.iter().zip(&mut own).filter(|(known, _)| known.name == *material);
-        users.for_each(|(_, own)| *own = Some(map.with_amount(*amount)));
+        maps.push((name, map.with_amount(*amount)));
         known.insert(path, map);
     }
-    Ok(own)
+    let of_file = mesh.materials.iter().map(|material| material.height.clone()).chain(parts.iter().map(|_| None));
+    let own = paths.iter().zip(of_file).map(|(path, of_file)| {
+        let meant = maps.iter().filter(|(name, _)| is_part_of(path, name));
+        meant.max_by_key(|(name, _)| closeness(path, name)).map(|(_, map)| map.clone()).or(of_file)
+    });
+    Ok(own.collect())
 }
 
 /// The height images that a model's file gives its materials, each read once; `K` tells them apart.
@@ -248,8 +265,15 @@ fn too_much(mesh: &Mesh, count: usize, refused: MemoryRefused) -> HeightError {
     HeightError::TooMuchOfMaterials { name: mesh.name.clone(), count, reason: refused.to_string() }
 }
 
-/// Halves the largest images until all fit one texture. Returns a sentence about the materials of each size that they then have.
-fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], budget: &Budget, progress: &Progress) -> Result<Notes, HeightError> {
+/// Halves the largest images of the materials, and then the parts, until all fit one texture. Returns a sentence about those of each
+/// size that they then have.
+fn fit(
+    mesh: &Mesh,
+    parts: &[Part],
+    own: &mut [Option<HeightMap>],
+    budget: &Budget,
+    progress: &Progress,
+) -> Result<Notes, HeightError> {
     let distinct: HashSet<_> = own.iter().flatten().map(|map| Arc::as_ptr(&map.heights)).collect();
     if distinct.len() > MAX_MAPS {
         return Err(HeightError::TooMany { name: mesh.name.clone() });
@@ -261,12 +285,14 @@ fn fit(mesh: &Mesh, own: &mut [Option<HeightMap>], budget: &Budget, progress: &P
         let Some((heights, half)) = largest.and_then(|map| Some((map.heights.clone(), map.halved()?))) else { break };
         let held = budget.hold(bytes_of_maps(std::iter::once(&half)));
         held.map_err(|refused| too_much(mesh, distinct.len(), refused))?;
-        for ((material, map), said) in mesh.materials.iter().zip(&mut *own).zip(&mut said) {
+        let materials = mesh.materials.iter().map(|material| ("material", &material.name));
+        let names = materials.chain(parts.iter().map(|part| ("part", &part.name)));
+        for (((what, name), map), said) in names.zip(&mut *own).zip(&mut said) {
             let Some(map) = map.as_mut().filter(|map| Arc::ptr_eq(&map.heights, &heights)) else { continue };
             *map = half.with_amount(map.amount).with_wrap(map.wrap);
-            let ([width, height], name) = (half.size, shown(&material.name));
+            let ([width, height], name) = (half.size, shown(name));
             let scaled = format!("is scaled down to {width} x {height} px: all together don't fit one texture");
-            *said = Some(format!("the height image of material \"{name}\" {scaled}."));
+            *said = Some(format!("the height image of {what} \"{name}\" {scaled}."));
         }
     }
     let mut notes = Notes::default();
@@ -297,7 +323,7 @@ fn of_colors(
     let mut maps = HashMap::new();
     for (index, (key, texture)) in textures.iter().enumerate() {
         let progress = progress.part(index as f32 / count as f32, (index + 1) as f32 / count as f32);
-        maps.insert(key, map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, &progress)?);
+        maps.insert(key, map_of_px(texture.size, [4, 1], &texture.rgba, &progress)?);
     }
     let own = |material: &Material| Some(maps.get(&of(material)?.0)?.with_wrap(material.sampling.wrap));
     Ok(mesh.materials.iter().map(own).collect())
@@ -306,20 +332,31 @@ fn of_colors(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::mesh::Shape;
-    use geometry::mesh::Texture;
+    use geometry::mesh::{PartRange, Shape, Texture};
+
+    /// Gives each material one of the first triangles.
+    fn one_triangle_each(mesh: &mut Mesh) {
+        (0..).zip(&mut mesh.materials).for_each(|(first, material)| material.triangles = first..first + 1);
+    }
+
+    /// The numbers of the maps of the first triangles.
+    fn maps_of<const N: usize>(heights: &Heights) -> [Option<u32>; N] {
+        std::array::from_fn(|triangle| heights.map_of(triangle as u32))
+    }
 
     #[test]
     fn materials_that_share_an_image_share_a_map() {
         let mut mesh = Shape::Torus.build();
-        let of_colors =
-            |mesh: &Mesh| HeightSource::Materials.load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new());
+        let of_colors = |mesh: &Mesh| {
+            HeightSource::Materials.load(mesh, &[], &mut Vec::new(), &Budget::unlimited(), &Progress::new())
+        };
         assert!(matches!(of_colors(&mesh), Err(HeightError::NoImage { .. })));
         let texture = std::sync::Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
         let textured = geometry::mesh::Material { texture: Some(texture), ..mesh.materials[0].clone() };
         mesh.materials = vec![textured.clone(), mesh.materials[0].clone(), textured];
+        one_triangle_each(&mut mesh);
         let heights = of_colors(&mesh).expect("an image");
-        assert_eq!((heights.maps.len(), heights.of_material), (1, vec![Some(0), None, Some(0)]));
+        assert_eq!((heights.maps.len(), heights.ranges), (1, vec![(0..1, 0), (2..3, 0)]));
         assert!(heights.are_of_colors);
     }
 
@@ -333,27 +370,64 @@ mod tests {
             ..mesh.materials[0].clone()
         };
         mesh.materials = vec![named("wall", Some(map.clone())), named("roof", None), named("door", None)];
+        one_triangle_each(&mut mesh);
         let of = |images: &[NamedImage], mesh: &Mesh| {
             let source = HeightSource::Each(images.to_vec());
             source
-                .load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new())
+                .load(mesh, &[], &mut Vec::new(), &Budget::unlimited(), &Progress::new())
                 .map_err(|error| error.to_string())
         };
         let heights = of(&[], &mesh).expect("an image");
-        assert_eq!((heights.maps[0].amount, &heights.of_material[..]), (map.amount, &[Some(0), None, None][..]));
+        assert_eq!((heights.maps[0].amount, maps_of(&heights)), (map.amount, [Some(0), None, None]));
         let path = assets::path("waves.png");
-        let image = |material: &str| NamedImage { material: material.to_owned(), path: path.clone(), amount: None };
+        let image = |name: &str| NamedImage { part: name.to_owned(), path: path.clone(), amount: None };
         let heights = of(&[image("roof")], &mesh).expect("two images");
-        assert_eq!(heights.of_material, [Some(0), Some(1), None]);
+        assert_eq!(maps_of(&heights), [Some(0), Some(1), None]);
         assert!(heights.follow_settings() && heights.maps[0].size == [2, 2] && !heights.are_of_colors);
         let heights = of(&[image("roof"), image("door")], &mesh).expect("two images");
-        assert_eq!(heights.of_material, [Some(0), Some(1), Some(1)], "a file is read once");
+        assert_eq!(maps_of(&heights), [Some(0), Some(1), Some(1)], "a file is read once");
         let heights = of(&[image("wall")], &mesh).expect("an image");
-        assert_eq!((heights.of_material, heights.maps[0].amount), (vec![Some(0), None, None], None));
+        assert_eq!((maps_of(&heights), heights.maps[0].amount), ([Some(0), None, None], None));
         let said = of(&[image("floor")], &mesh).expect_err("no such material");
-        assert!(said.ends_with("has no material \"floor\" to displace; it has \"wall\", \"roof\", \"door\""), "{said}");
+        let expected =
+            "has no material \"floor\" to displace, and no such part; choose one of \"wall\", \"roof\", \"door\"";
+        assert!(said.ends_with(expected), "{said}");
         mesh.materials[0].height = None;
         assert!(of(&[], &mesh).expect_err("no image").contains("no material has a base colour image"));
+    }
+
+    #[test]
+    fn parts_and_groups_have_the_images_that_are_named() {
+        let mut mesh = Shape::Torus.build();
+        mesh.materials[0].name = "wall".to_owned();
+        mesh.materials[0].height = Some(HeightMap::new([2, 2], vec![0.5; 4]));
+        mesh.part_ranges = (0..3).map(|part| PartRange { triangles: part + 1..part + 2, part }).collect();
+        let part = |name: &str| Part { name: name.to_owned(), triangles: 1, is_hidden: false, level: 0 };
+        let parts = ["Car", "Car/Wheel", "Hat/wall", "material:wall"].map(part);
+        let path = assets::path("waves.png");
+        // The scales of the images over the first triangles; 0 for that of the file, which has none.
+        let of = |names: &[&str]| {
+            let image = |(name, scale): (&&str, f32)| NamedImage {
+                part: (*name).to_owned(),
+                path: path.clone(),
+                amount: HeightAmount::new(scale, 0.5),
+            };
+            let source = HeightSource::Each(names.iter().zip([1.0, 2.0]).map(image).collect());
+            let heights = source.load(&mesh, &parts, &mut Vec::new(), &Budget::unlimited(), &Progress::new());
+            let heights = heights.map_err(|error| error.to_string())?;
+            let scale = |triangle| heights.map(triangle).expect("an image").amount.map_or(0.0, |own| own.scale);
+            Ok::<_, String>([0, 1, 2, 3, 4].map(scale))
+        };
+        assert_eq!(of(&["Car"]), Ok([0.0, 1.0, 1.0, 0.0, 0.0]));
+        assert_eq!(of(&["Hat/wall"]), Ok([0.0, 0.0, 0.0, 1.0, 0.0]));
+        assert_eq!(of(&["Wheel", "Car"]), Ok([0.0, 2.0, 1.0, 0.0, 0.0]), "what lies in a group wins over the group");
+        assert_eq!(of(&["Car/.", "Car"]), Ok([0.0, 1.0, 2.0, 0.0, 0.0]));
+        assert_eq!(of(&["Hat", "Hat"]), Ok([0.0, 0.0, 0.0, 2.0, 0.0]), "the last");
+        assert_eq!(of(&["wall"]), Ok([1.0; 5]), "a material wins over a part of the same name");
+        assert_eq!(of(&["Car", "material:wall"]), Ok([2.0, 1.0, 1.0, 2.0, 2.0]), "a part wins over its material");
+        let said = of(&["Wheels"]).expect_err("no such part");
+        assert!(said.contains("has no material \"Wheels\" to displace, and no such part; "), "{said}");
+        assert!(said.ends_with("; choose one of \"wall\", \"Car\", \"Car/Wheel\", \"Hat/wall\""), "{said}");
     }
 
     #[test]
@@ -373,7 +447,7 @@ mod tests {
         let mut own = [a, b, c, d, e].map(Some);
         // Three fit.
         let fit = |own: &mut [Option<HeightMap>], progress: &Progress| {
-            fit(&mesh, own, &Budget::unlimited(), progress).map(Notes::into_warnings)
+            fit(&mesh, &[], own, &Budget::unlimited(), progress).map(Notes::into_warnings)
         };
         assert_eq!(fit(&mut own[..3], &Progress::new()).expect("memory"), [""; 0]);
         let cancelled = Progress::new();
@@ -390,20 +464,23 @@ mod tests {
         // Of twenty each is halved, and some of them twice: the last size is said.
         mesh.materials = vec![mesh.materials[0].clone(); 20];
         let mut own: Vec<_> = (0..20).map(|_| Some(image())).collect();
-        let said = super::fit(&mesh, &mut own, &Budget::unlimited(), &Progress::new()).expect("memory").into_warnings();
+        let said =
+            super::fit(&mesh, &[], &mut own, &Budget::unlimited(), &Progress::new()).expect("memory").into_warnings();
         assert!(bytes_of_maps(own.iter().flatten()) <= MOST_BYTES && said.len() <= 2, "{said:?}");
     }
 
     #[test]
     fn more_images_than_are_used_are_refused_before_anything_is_made_of_them() {
-        let mut mesh = Shape::Torus.build();
+        let mut mesh = Shape::Torus.build_at(1);
         let textured = |_| {
             let texture = Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] });
             Material { texture: Some(texture), ..Material::plain("plain", [1.0; 4]) }
         };
         mesh.materials = (0..=MAX_MAPS).map(textured).collect();
+        one_triangle_each(&mut mesh);
         let budget = Budget::unlimited();
-        let load = |source: HeightSource, mesh: &Mesh| source.load(mesh, &mut Vec::new(), &budget, &Progress::new());
+        let load =
+            |source: HeightSource, mesh: &Mesh| source.load(mesh, &[], &mut Vec::new(), &budget, &Progress::new());
         assert!(matches!(load(HeightSource::Materials, &mesh), Err(HeightError::TooMany { .. })));
         assert_eq!(budget.held(), 0);
         for material in &mut mesh.materials {
@@ -421,7 +498,8 @@ mod tests {
         mesh.materials[0].texture = Some(Arc::new(Texture { size: [1, 1], rgba: vec![255; 4] }));
         for wrap in [[Wrap::Clamp, Wrap::Mirror], [Wrap::Repeat; 2]] {
             mesh.materials[0].sampling.wrap = wrap;
-            let heights = HeightSource::Materials.load(&mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new());
+            let heights =
+                HeightSource::Materials.load(&mesh, &[], &mut Vec::new(), &Budget::unlimited(), &Progress::new());
             assert_eq!(heights.expect("an image").maps[0].wrap, wrap);
         }
     }
@@ -433,7 +511,7 @@ mod tests {
         let small = Budget::new(0, 1);
         let mut warnings = Vec::new();
         let mut load = |source: Option<&HeightSource>, mesh: &Mesh| {
-            load_heights(source, mesh, &mut warnings, &small, &Progress::new())
+            load_heights(source, mesh, &[], &mut warnings, &small, &Progress::new())
         };
         assert!(load(None, &mesh).is_ok_and(|heights| heights.is_none()), "it has none");
         mesh.materials[0].height = Some(map);
@@ -446,7 +524,7 @@ mod tests {
     fn a_file_that_is_not_an_image_is_refused() {
         let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml"));
         let source = HeightSource::File(path.to_owned());
-        let error = source.load(&Mesh::default(), &mut Vec::new(), &Budget::unlimited(), &Progress::new());
+        let error = source.load(&Mesh::default(), &[], &mut Vec::new(), &Budget::unlimited(), &Progress::new());
         let error = error.expect_err("no image").to_string();
         assert!(error.contains("Cargo.toml can't be read as a height image"), "{error}");
     }

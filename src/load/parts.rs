@@ -121,10 +121,7 @@ impl Parts {
     /// The style of a path. That of what lies in a group wins over that of the group, and the last one among equals.
     fn style_at(&self, path: &str) -> PartStyle {
         let mut own: Vec<_> = self.selected.styles.iter().filter(|(name, _)| is_part_of(path, name)).collect();
-        own.sort_by_cached_key(|(name, _)| {
-            let begins = ends(path).position(|end| is_part_of(&path[..end], name));
-            (begins, name.trim_start_matches('/').len())
-        });
+        own.sort_by_cached_key(|(name, _)| closeness(path, name));
         own.into_iter().fold(PartStyle::default(), |others, (_, style)| style.or(others))
     }
 
@@ -207,6 +204,12 @@ impl Parts {
     pub(super) fn are_hidden(&self) -> bool {
         self.found.iter().any(|part| part.is_hidden && part.triangles > 0)
     }
+}
+
+/// How closely a name means a path, which it is known to mean: the greatest wins, so that what lies in a group wins over it.
+pub(super) fn closeness(path: &str, name: &str) -> (Option<usize>, usize) {
+    let begins = ends(path).position(|end| is_part_of(&path[..end], name));
+    (begins, name.trim_start_matches('/').len())
 }
 
 /// Adds the names that a name consists of to a path; `default` if there are none.

@@ -28,12 +28,11 @@ pub fn crease_band_warnings(band: &CreaseBand) -> Vec<String> {
 /// Returns a warning about triangles whose corners all have the same texture coordinates: displacement moves such a
 /// triangle as a whole.
 pub(super) fn untextured_warning(heights: &Heights, mesh: &Mesh) -> Option<String> {
-    let displaced = mesh.materials.iter().zip(&heights.of_material).filter(|(_, map)| map.is_some());
     let is_point = |triangle: &u32| {
         let [a, b, c] = mesh.triangles[*triangle as usize].map(|corner| mesh.corners[corner as usize].uv);
         a == b && b == c
     };
-    let count = displaced.flat_map(|(material, _)| material.triangles.clone()).filter(is_point).count();
+    let count = heights.ranges.iter().flat_map(|(range, _)| range.clone()).filter(is_point).count();
     (count > 0).then(|| format!("triangles without texture coordinates, which heights move as a whole: {count}."))
 }
 

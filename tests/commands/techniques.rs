@@ -132,6 +132,31 @@ fn materials_are_displaced_as_the_file_and_the_options_say() {
 }
 
 #[test]
+fn parts_are_displaced_by_images_of_one_floating_point_channel() {
+    let folder = Folder::new();
+    // TIFF 6.0: numbers about one px, each with its tag, its type (3 for 16 bits), how many there are, and itself; then 0.25.
+    let tags = [256, 257, 258, 259, 262, 273, 277, 278, 279, 284, 339];
+    let values = [1, 1, 32, 1, 1, 146, 1, 1, 4, 1, 3];
+    let mut bytes = b"II\x2a\0\x08\0\0\0\x0b\0".to_vec();
+    for (tag, value) in tags.into_iter().zip(values) {
+        bytes.extend([tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).as_flattened());
+    }
+    bytes.extend([0; 4]);
+    bytes.extend(0.25_f32.to_le_bytes());
+    let image = folder.write("quarter.tif", bytes);
+    let start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 5 1 0\nvt 0.5 0.5\nvn 0 0 1\n";
+    let mesh = folder.write("parts.obj", format!("{start}o near\nf 1/1/1 2/1/1 3/1/1\no far\nf 4/1/1 5/1/1 6/1/1\n"));
+    let of = |name: &str, amount: &str| format!("{name}={image}{amount}");
+    let [near, far] = [of("near", ",scale=2,midlevel=0"), of("far", ",scale=-1,midlevel=0")];
+    assert_eq!(heights_of(&folder, &mesh, &["--height", &near]), [0.0, 0.5]);
+    assert_eq!(heights_of(&folder, &mesh, &["--height", &near, "--height", &far]), [-0.25, 0.5]);
+    sentence(
+        &["render", &mesh, "-o", "unused.png", "--height", "no=a.png"],
+        &["no material \"no\"", "\"near\"", "\"far\""],
+    );
+}
+
+#[test]
 fn bad_height_images_are_named_and_wrong_options_are_usage_errors() {
     let folder = Folder::new();
     let out = folder.path("out.png");

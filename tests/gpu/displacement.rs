@@ -1,9 +1,12 @@
 //! Displacement on the device: held against the CPU, watertight where it says so, torn where it says so, and in view.
 
 use std::f32::consts::TAU;
+use std::ops::Range;
 use std::sync::Arc;
 
-use geometry::mesh::{Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Moment, Shape, Texture, Wrap};
+use geometry::mesh::{
+    Corner, HeightAmount, HeightMap, Heights, Material, Mesh, Moment, PartRange, Shape, Texture, Wrap,
+};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     Clip, Displacement, Edges, HullFactors, Lod, Normals, Partitioning, PatchFactors, Surface, Tessellation, Vertex,
@@ -346,20 +349,60 @@ fn halves(images: [&Arc<Texture>; 2]) -> (Loaded, Scene) {
     };
     mesh.materials = vec![half(images[0], 0..count / 2), half(images[1], count / 2..count)];
     mesh.heights = Some(Arc::new(
-        HeightSource::Materials.load(&mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::new()).expect("images"),
+        HeightSource::Materials
+            .load(&mesh, &[], &mut Vec::new(), &Budget::unlimited(), &Progress::new())
+            .expect("images"),
     ));
     on_device(Shape::Torus, mesh)
 }
 
 /// A torus in two halves of a material each, with images of their own or none.
 fn halves_under(own: &[Option<HeightMap>; 2]) -> (Loaded, Scene) {
+    parts_under(2, &[], own)
+}
+
+/// A torus in so many pieces of a material each, with parts of these numbers: first the materials and then the parts have images
+/// of their own or none.
+fn parts_under(materials: u32, parts: &[(Range<u32>, u32)], own: &[Option<HeightMap>]) -> (Loaded, Scene) {
     let mut mesh = Shape::Torus.build();
-    let count = mesh.triangles.len() as u32;
-    let half = |triangles| Material { triangles, ..mesh.materials[0].clone() };
-    mesh.materials = vec![half(0..count / 2), half(count / 2..count)];
+    let piece = mesh.triangles.len() as u32 / materials;
+    let of = |first| Material { triangles: first * piece..(first + 1) * piece, ..mesh.materials[0].clone() };
+    mesh.materials = (0..materials).map(of).collect();
+    let range = |(triangles, part): &(Range<u32>, u32)| PartRange { triangles: triangles.clone(), part: *part };
+    mesh.part_ranges = parts.iter().map(range).collect();
     let heights = Heights::of_materials(&mesh, own, &Progress::new()).expect("not cancelled").expect("few maps");
     mesh.heights = Some(Arc::new(heights));
     on_device(Shape::Torus, mesh)
+}
+
+/// Holds the device against the CPU, and checks that nothing cracks, in three ways to tessellate.
+fn assert_without_cracks((loaded, scene): &mut (Loaded, Scene), what: &str) {
+    let size = loaded.mesh.bounds().radius();
+    for (lod, normals) in
+        [(Lod::Uniform, Normals::Linear), (Lod::EdgeLength, Normals::Surface), (Lod::Error, Normals::Quadratic)]
+    {
+        let settings = Settings::from(Tessellation {
+            displacement: Displacement::On,
+            height_scale: 0.1,
+            factor: 5.3,
+            lod,
+            normals,
+            ..Tessellation::default()
+        });
+        let inputs = inputs(loaded, &settings);
+        let gpu = on_gpu(scene, &inputs);
+        // The device may compute factors in other last bits.
+        let given = (lod != Lod::Uniform).then(|| edge_factors(scene));
+        let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, given.as_deref());
+        let what = format!("{what} {lod:?} {normals:?}");
+        assert!(gpu.patch_factors == cpu.patch_factors && gpu.vertices.len() == cpu.vertices.len(), "{what}");
+        for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
+            let [p, q] = [a.position, b.position].map(glam::Vec3::from);
+            assert!(p.distance(q) <= 1e-5 * size, "{what}: {p} {q}");
+        }
+        let measured = measured(scene, loaded, &settings);
+        assert_eq!((measured.cracks.different_bits, measured.not_finite), (0, 0), "{what}");
+    }
 }
 
 #[test]
@@ -374,34 +417,36 @@ fn materials_with_images_of_their_own_meet_without_cracks() {
         [None, Some(usual)],
         [None, Some(deep)],
     ] {
-        let (loaded, mut scene) = halves_under(&own);
-        let size = loaded.mesh.bounds().radius();
-        for (lod, normals) in
-            [(Lod::Uniform, Normals::Linear), (Lod::EdgeLength, Normals::Surface), (Lod::Error, Normals::Quadratic)]
-        {
-            let settings = Settings::from(Tessellation {
-                displacement: Displacement::On,
-                height_scale: 0.1,
-                factor: 5.3,
-                lod,
-                normals,
-                ..Tessellation::default()
-            });
-            let inputs = inputs(&loaded, &settings);
-            let gpu = on_gpu(&mut scene, &inputs);
-            // The device may compute factors in other last bits.
-            let given = (lod != Lod::Uniform).then(|| edge_factors(&scene));
-            let cpu = tessellate(&loaded.mesh, &loaded.topology, &inputs, given.as_deref());
-            let amounts = own.each_ref().map(|map| map.as_ref().map(|map| map.amount));
-            let what = format!("{amounts:?} {lod:?} {normals:?}");
-            assert!(gpu.patch_factors == cpu.patch_factors && gpu.vertices.len() == cpu.vertices.len(), "{what}");
-            for (a, b) in gpu.vertices.iter().zip(&cpu.vertices) {
-                let [p, q] = [a.position, b.position].map(glam::Vec3::from);
-                assert!(p.distance(q) <= 1e-5 * size, "{what}: {p} {q}");
-            }
-            let measured = measured(&mut scene, &loaded, &settings);
-            assert_eq!((measured.cracks.different_bits, measured.not_finite), (0, 0), "{what}");
-        }
+        let amounts = own.each_ref().map(|map| map.as_ref().map(|map| map.amount));
+        assert_without_cracks(&mut halves_under(&own), &format!("{amounts:?}"));
+    }
+}
+
+#[test]
+fn parts_with_images_of_their_own_meet_without_cracks_across_materials() {
+    let amount = HeightAmount::from_factor(0.15, -0.05);
+    let [deep, usual, fine] = [waves(16).with_amount(amount), waves(64), waves(32).with_amount(amount)].map(Some);
+    // Both parts cross the materials' border at 128, and lie in several pieces.
+    let parts = [(9..40, 0), (40..57, 1), (100..128, 0), (128..150, 0), (150..171, 1), (171..180, 2), (201..255, 1)];
+    for own in [
+        [usual.clone(), None, deep.clone(), fine.clone()],
+        [None, fine, None, usual.clone()],
+        [deep.clone(), usual.clone(), usual.clone(), None],
+    ] {
+        let amounts = own.each_ref().map(|map| map.as_ref().map(|map| map.amount));
+        assert_without_cracks(&mut parts_under(2, &parts, &own), &format!("{amounts:?}"));
+    }
+    // Parts without materials of their own are displaced as materials are.
+    let mut of_materials = halves_under(&[deep.clone(), usual.clone()]);
+    let mut of_parts = parts_under(1, &[(0..128, 1), (128..256, 0)], &[None, usual, deep]);
+    let displacement = Displacement::On;
+    for lod in [Lod::Uniform, Lod::Error] {
+        let settings = Settings::from(Tessellation { displacement, lod, ..Tessellation::default() });
+        let [a, b] =
+            [&mut of_materials, &mut of_parts].map(|(loaded, scene)| on_gpu(scene, &inputs(loaded, &settings)));
+        let bits = |vertex: &Vertex| vertex.position.map(f32::to_bits);
+        assert!(a.vertices.iter().map(bits).eq(b.vertices.iter().map(bits)), "{lod:?}");
+        assert!(a.patch_factors == b.patch_factors, "{lod:?}");
     }
 }
 

@@ -88,8 +88,9 @@ fn heights_need_no_more_either() {
     let texture = geometry::mesh::Texture { size: [64, 64], rgba: image.into_raw() };
     let own = Arc::make_mut(&mut mesh.mesh);
     own.materials.iter_mut().for_each(|material| material.texture = Some(Arc::new(texture.clone())));
-    let heights =
-        HeightSource::Materials.load(own, &mut Vec::new(), &Budget::unlimited(), &Progress::new()).expect("images");
+    let heights = HeightSource::Materials
+        .load(own, &[], &mut Vec::new(), &Budget::unlimited(), &Progress::new())
+        .expect("images");
     own.heights = Some(Arc::new(heights));
     let settings =
         Settings::from(Tessellation { displacement: Displacement::On, lod: Lod::Error, ..Tessellation::default() });

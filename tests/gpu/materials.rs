@@ -459,7 +459,7 @@ fn a_normal_map_is_left_out_where_its_own_image_displaces_the_surface() {
     type Made<'a> = &'a dyn Fn(&Mesh) -> Heights;
     let of_colors: Made = &|mesh| {
         HeightSource::Materials
-            .load(mesh, &mut Vec::new(), &Budget::unlimited(), &Progress::default())
+            .load(mesh, &[], &mut Vec::new(), &Budget::unlimited(), &Progress::default())
             .expect("an image")
     };
     let of_file: Made = &|mesh| Heights::everywhere(mesh, HeightMap::new([2, 2], vec![0.5; 4]));

@@ -24,7 +24,7 @@ fn read_within(name: &str, bytes: &[u8], times: usize) -> (Result<Heights, Heigh
     let file = temporary(name, bytes);
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.to_path_buf()));
     let budget = Budget::from_mesh(&mesh, 0, Limits::default().memory);
-    let (result, took) = peak_of(|| source.load(&mesh, &mut Vec::new(), &budget, &Progress::new()));
+    let (result, took) = peak_of(|| source.load(&mesh, &[], &mut Vec::new(), &budget, &Progress::new()));
     let allowed = 4 * bytes.len() + Limits::default().memory as usize;
     println!("{name}: {} of {} MiB, read: {}", took >> 20, allowed >> 20, result.is_ok());
     assert!(took <= times * allowed, "{name}: {took} of {allowed} bytes");

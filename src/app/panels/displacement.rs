@@ -7,7 +7,7 @@ use crate::app::App;
 use crate::app::text::short;
 use crate::app::widgets::list_row;
 use crate::commands::{Action, HEIGHT_IMAGE, Purpose, key_name};
-use geometry::mesh::{HeightAmount, Material};
+use geometry::mesh::{HeightAmount, HeightMap};
 use geometry::names::shown;
 use geometry::tessellate::Displacement;
 use inspect::settings::options;
@@ -80,16 +80,22 @@ impl App {
         self.displacement_rows(ui);
     }
 
-    /// Names the first few materials whose images say how far they move the surface.
+    /// Lists the first few images that say how far they move the surface, by the first material or part that each displaces.
     fn amounts(&self) -> String {
         const NAMED: usize = 8;
-        let mesh = self.document.as_ref().map(|document| document.loaded.mesh.clone()).unwrap_or_default();
-        let line = |(index, material): (usize, &Material)| {
-            let HeightAmount { scale, midlevel } = mesh.heights.as_deref()?.map(index)?.amount?;
+        let Some(document) = &self.document else { return String::new() };
+        let (mesh, parts) = (&document.loaded.mesh, &document.loaded.contents.parts);
+        let Some(heights) = mesh.heights.as_deref() else { return String::new() };
+        let line = |(index, map): (u32, &HeightMap)| {
+            let HeightAmount { scale, midlevel } = map.amount?;
             let [scale, midlevel] = [scale, midlevel].map(|number| short(f64::from(number)));
-            Some(format!("\n{}: {scale} object units, midlevel {midlevel}", shown(&material.name)))
+            let (range, _) = heights.ranges.iter().find(|(_, own)| *own == index)?;
+            let material = mesh.materials.iter().find(|material| material.triangles.contains(&range.start))?;
+            let part = mesh.part_of(range.start).filter(|_| material.triangles != *range);
+            let name = part.and_then(|part| parts.get(part as usize)).map_or(&material.name, |part| &part.name);
+            Some(format!("\n{}: {scale} object units, midlevel {midlevel}", shown(name)))
         };
-        mesh.materials.iter().enumerate().filter_map(line).take(NAMED).collect()
+        (0..).zip(&heights.maps).filter_map(line).take(NAMED).collect()
     }
 
     pub(in crate::app) fn toggle_displacement(&mut self) {

@@ -7,11 +7,12 @@ mod relief;
 pub use relief::{PatchRelief, RELIEF_STEPS, Relief, patch_reliefs};
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::{Mesh, Wrap};
+use super::{Mesh, PartRange, Wrap};
 use crate::casts::{to_f32, to_u32};
 use crate::progress::{Cancelled, Progress};
 
@@ -81,8 +82,8 @@ pub struct HeightMap {
 pub struct Heights {
     /// The images.
     pub maps: Vec<HeightMap>,
-    /// For each of the mesh's materials, its map; none if the material isn't displaced.
-    pub of_material: Vec<Option<u32>>,
+    /// Triangles that follow one another, and the number of the map that displaces them, in their order. Others aren't displaced.
+    pub ranges: Vec<(Range<u32>, u32)>,
     /// Whether each map is the brightness of its material's base colour.
     pub are_of_colors: bool,
     /// The mesh's bounding radius at rest, in object units. The scale of displacement is a multiple of it.
@@ -127,7 +128,9 @@ impl Heights {
         Self::everywhere(mesh, HeightMap::new([side; 2], (0..side * side).map(height).collect()))
     }
 
-    /// Uses a map for each material that has one. Materials with equal maps share one. None if these are more than [`MAX_MAPS`].
+    /// Uses a map for each material that has one, and for each of the file's parts, where it wins over that of a material: `own` has
+    /// those of the materials, then those of the parts, if any have one. Equal maps are one. None if these are more than
+    /// [`MAX_MAPS`].
     ///
     /// # Errors
     /// [`Cancelled`] when `progress` says so.
@@ -136,10 +139,20 @@ impl Heights {
         own: &[Option<HeightMap>],
         progress: &Progress,
     ) -> Result<Option<Self>, Cancelled> {
-        let (mut maps, mut of_material, mut known) = (Vec::new(), vec![None; own.len()], HashMap::new());
-        for ((material, own), place) in mesh.materials.iter().zip(own).zip(&mut of_material) {
+        let (mut maps, mut ranges, mut known) = (Vec::new(), Vec::new(), HashMap::new());
+        let (of_materials, of_parts) = own.split_at_checked(mesh.materials.len()).unwrap_or((own, &[]));
+        let has_own = |range: &&PartRange| matches!(of_parts.get(range.part as usize), Some(Some(_)));
+        let parts = mesh.part_ranges.iter().filter(has_own).map(|range| &range.triangles);
+        let all = mesh.materials.iter().map(|material| &material.triangles).chain(parts);
+        let mut ends: Vec<u32> = all.flat_map(|range| [range.start, range.end]).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        for ends in ends.windows(2) {
             progress.check()?;
-            let Some(own) = own else { continue };
+            let [start, end] = [ends[0], ends[1]];
+            let of_part = mesh.part_of(start).and_then(|part| of_parts.get(part as usize)?.as_ref());
+            let material = mesh.materials.partition_point(|material| material.triangles.end <= start);
+            let Some(own) = of_part.or_else(|| of_materials.get(material)?.as_ref()) else { continue };
             let amount = own.amount.map(|own| [own.scale, own.midlevel].map(f32::to_bits));
             let index = *known.entry((Arc::as_ptr(&own.heights), amount, own.wrap)).or_insert(maps.len());
             if index == MAX_MAPS {
@@ -148,26 +161,27 @@ impl Heights {
             if index == maps.len() {
                 maps.push(HeightMap { wrap: [Wrap::Clamp; 2], ..own.clone() });
             }
-            *place = Some(to_u32(index));
-            let triangles = &mesh.triangles[material.triangles.start as usize..material.triangles.end as usize];
+            ranges.push((start..end, to_u32(index)));
+            let triangles = &mesh.triangles[start as usize..end as usize];
             let mut uvs = triangles.iter().flatten().map(|&corner| mesh.corners[corner as usize].uv);
             if uvs.any(|uv| uv.cmplt(Vec2::ZERO).any() || uv.cmpgt(Vec2::ONE).any()) {
                 maps[index].wrap = own.wrap;
             }
         }
-        let reliefs = relief::reliefs(mesh, &maps, &of_material, progress)?;
+        let reliefs = relief::reliefs(mesh, &maps, &ranges, progress)?;
         let (radius, angles) = (mesh.bounds().radius(), angles(mesh));
-        Ok(Some(Self { maps, of_material, are_of_colors: false, radius, angles, reliefs }))
+        Ok(Some(Self { maps, ranges, are_of_colors: false, radius, angles, reliefs }))
     }
 
-    /// Returns the number of a material's image, if it has one.
-    pub fn map_of(&self, material: usize) -> Option<u32> {
-        self.of_material.get(material).copied().flatten()
+    /// Returns the number of the image that displaces a triangle, if one does.
+    pub fn map_of(&self, triangle: u32) -> Option<u32> {
+        let place = self.ranges.partition_point(|(range, _)| range.end <= triangle);
+        self.ranges.get(place).filter(|(range, _)| range.contains(&triangle)).map(|(_, map)| *map)
     }
 
-    /// Returns a material's image, if it has one.
-    pub fn map(&self, material: usize) -> Option<&HeightMap> {
-        self.maps.get(self.map_of(material)? as usize)
+    /// Returns the image that displaces a triangle, if one does.
+    pub fn map(&self, triangle: u32) -> Option<&HeightMap> {
+        self.maps.get(self.map_of(triangle)? as usize)
     }
 
     /// Returns the greatest distance that a point can be moved by, in object units, where the settings say `usual`.
@@ -191,9 +205,11 @@ pub fn bytes_of_maps<'a>(maps: impl Iterator<Item = &'a HeightMap>) -> u64 {
     4 * known.into_values().sum::<usize>() as u64
 }
 
-/// Returns how many bytes [`Heights`] take for a mesh beside their maps: for angles, and for bounds over triangles while they are made.
+/// Returns how many bytes [`Heights`] take for a mesh beside their maps: for angles, ranges, and bounds over triangles while they are
+/// made.
 pub fn bytes_beside_maps(mesh: &Mesh) -> u64 {
-    4 * mesh.corners.len() as u64 + 132 * mesh.triangles.len() as u64
+    let ranges = 64 * (mesh.materials.len() + mesh.part_ranges.len());
+    4 * mesh.corners.len() as u64 + 132 * mesh.triangles.len() as u64 + ranges as u64
 }
 
 fn angles(mesh: &Mesh) -> Vec<f32> {
@@ -213,6 +229,12 @@ mod tests {
     use super::*;
     use crate::mesh::{Material, Shape};
 
+    /// Gives each of the first triangles a material of its own.
+    fn one_triangle_each(mesh: &mut Mesh, count: usize) {
+        let of = |first| Material { triangles: first..first + 1, ..mesh.materials[0].clone() };
+        mesh.materials = (0..to_u32(count)).map(of).collect();
+    }
+
     #[test]
     fn a_point_moves_by_the_height_that_differs_most_from_the_middle() {
         let map = HeightMap::new([4, 4], (0..16).map(|i| if i < 8 { 0.25 } else { 1.0 }).collect());
@@ -227,11 +249,11 @@ mod tests {
 
     #[test]
     fn more_maps_than_shaders_have_room_for_are_refused() {
-        let mut mesh = Shape::Torus.build();
+        let mut mesh = Shape::Torus.build_at(1);
         let map = HeightMap::new([1, 1], vec![0.5]);
         let numbered = |i: usize| Some(map.with_amount(HeightAmount::from_factor(i as f32, 0.0)));
         let own: Vec<_> = (0..=MAX_MAPS).map(numbered).collect();
-        mesh.materials = vec![Material::plain("plain", [1.0; 4]); own.len()];
+        one_triangle_each(&mut mesh, own.len());
         let count = |own: &[Option<HeightMap>], progress: &Progress| {
             Heights::of_materials(&mesh, own, progress).map(|made| made.map(|heights| heights.maps.len()))
         };
@@ -251,7 +273,7 @@ mod tests {
         mesh.corners.iter_mut().for_each(|corner| corner.uv *= 2.0);
         assert_eq!(Heights::everywhere(&mesh, map.clone()).maps[0].wrap, wrap);
         // One image that goes on in two ways is two maps of the same pixels.
-        mesh.materials = vec![mesh.materials[0].clone(); 2];
+        one_triangle_each(&mut mesh, 2);
         let own = [Some(map.clone()), Some(map.with_wrap([Wrap::Repeat; 2]))];
         let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps");
         assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
@@ -280,14 +302,41 @@ mod tests {
     #[test]
     fn materials_with_equal_maps_share_one_and_pixels_count_once() {
         let mut mesh = Shape::Torus.build();
-        mesh.materials = vec![mesh.materials[0].clone(); 4];
+        one_triangle_each(&mut mesh, 4);
         let map = HeightMap::new([2, 2], vec![0.5; 4]);
         let deep = map.with_amount(HeightAmount::from_factor(3.0, 0.0));
         let own = [Some(map.clone()), None, Some(deep.clone()), Some(map.clone())];
         let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps");
-        assert_eq!(heights.of_material, [Some(0), None, Some(1), Some(0)]);
+        assert_eq!(heights.ranges, [(0..1, 0), (2..3, 1), (3..4, 0)]);
+        assert_eq!([0, 1, 2, 3, 4].map(|triangle| heights.map_of(triangle)), [Some(0), None, Some(1), Some(0), None]);
         assert_eq!((heights.maps.len(), bytes_of_maps(heights.maps.iter())), (2, 4 * 5));
         assert!(heights.follow_settings() && !Heights::everywhere(&mesh, deep).follow_settings());
+    }
+
+    #[test]
+    fn an_image_of_a_part_wins_over_those_of_its_materials() {
+        let mut mesh = Shape::Torus.build();
+        let count = to_u32(mesh.triangles.len());
+        let of = |triangles| Material { triangles, ..mesh.materials[0].clone() };
+        mesh.materials = vec![of(0..10), of(10..count)];
+        let range = |triangles, part| PartRange { triangles, part };
+        mesh.part_ranges = vec![range(2..5, 1), range(5..10, 0), range(10..12, 1), range(20..count, 0)];
+        let [a, b] = [0.25, 0.75].map(|height| Some(HeightMap::new([1, 1], vec![height])));
+        let of = |own: &[Option<HeightMap>]| {
+            let heights =
+                Heights::of_materials(&mesh, own, &Progress::new()).expect("not cancelled").expect("few maps");
+            [0, 1, 2, 4, 5, 9, 10, 11, 12, 19, 20, count - 1]
+                .map(|triangle| heights.map(triangle).map_or(0.0, |map| map.heights[0]))
+        };
+        let all = [a.clone(), None, None, b.clone()];
+        assert_eq!(of(&all), [0.25, 0.25, 0.75, 0.75, 0.25, 0.25, 0.75, 0.75, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(of(&all[..2]), [0.25, 0.25, 0.25, 0.25, 0.25, 0.25, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        assert_eq!(of(&[None, None, b]), [0.0, 0.0, 0.0, 0.0, 0.75, 0.75, 0.0, 0.0, 0.0, 0.0, 0.75, 0.75]);
+        // A part that no range has, as a hidden one, changes nothing.
+        assert_eq!(
+            of(&[None, a.clone(), None, None, a]),
+            [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.25, 0.25, 0.25, 0.25, 0.25, 0.25]
+        );
     }
 
     #[test]

@@ -160,7 +160,7 @@ impl<'a> MeshDisplacement<'a> {
 
     /// Returns the height map of a patch.
     fn map(&self, patch: u32) -> Option<&'a HeightMap> {
-        self.heights.map(self.topology.material_of(patch))
+        self.heights.map(self.topology.patches[patch as usize].triangle)
     }
 
     /// Returns how far an image moves the surface.
@@ -340,12 +340,11 @@ fn directions(mesh: &Mesh, dominance: &Dominance) -> Vec<Vec3> {
 pub type DisplacedCorner = [f32; 10];
 
 /// Returns what displacement needs of every corner of a mesh that one height image displaces everywhere; `None` if there is no image, or
-/// several, or some material has none.
+/// several, or some triangle has none.
 pub fn displaced_corners(mesh: &Mesh, topology: &Topology) -> Option<Vec<DisplacedCorner>> {
     let heights = mesh.heights.as_deref()?;
     let [map] = &heights.maps[..] else { return None };
-    let has_map = |patch| heights.map_of(topology.material_of(patch)).is_some();
-    if !(0..topology.patches.len() as u32).all(has_map) {
+    if !topology.patches.iter().all(|patch| heights.map_of(patch.triangle).is_some()) {
         return None;
     }
     let dominance = Dominance::new(topology, &Curves::build(mesh, topology, Sharing::AllSides), &heights.angles);
@@ -495,7 +494,7 @@ mod tests {
         plain.heights = None;
         assert_eq!(displaced_corners(&plain, &Topology::new(&plain)), None);
         let mut partly = mesh;
-        let heights = Heights { of_material: vec![None], ..partly.heights.as_deref().expect("heights").clone() };
+        let heights = Heights { ranges: Vec::new(), ..partly.heights.as_deref().expect("heights").clone() };
         partly.heights = Some(Arc::new(heights));
         assert_eq!(displaced_corners(&partly, &Topology::new(&partly)), None);
     }

@@ -138,7 +138,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     if wanted.is_some() {
         progress.enter(Stage::Heights);
     }
-    let heights = load_heights(wanted, mesh, &mut warnings, &budget, &progress.part(of_mesh, 1.0))?;
+    let heights = load_heights(wanted, mesh, &contents.parts, &mut warnings, &budget, &progress.part(of_mesh, 1.0))?;
     mesh.heights = heights.map(Arc::new);
     let read = Arc::new(read);
     Ok(Loaded {

@@ -1,9 +1,12 @@
 //! Reads a height image: first its size, to check the memory that it takes, then its pixels row by row.
 
+mod one_channel;
+
+use std::fmt::Display;
 use std::io::Cursor;
 use std::path::Path;
 
-use image::{ColorType, ImageDecoder, ImageError, ImageFormat, Limits};
+use image::{ImageDecoder, ImageError, ImageFormat, Limits};
 use png::{BitDepth, DecodingError};
 
 use super::HeightError;
@@ -60,23 +63,22 @@ impl From<FileError> for HeightError {
     }
 }
 
-/// Computes the brightness of pixels of 8, 16 or 32 bits a channel, with the weights of Rec. 709 and no transfer function,
-/// since heights aren't light. Gray images keep their values with all bits.
+/// Computes the brightness of pixels with so many channels of so many bytes (1, 2, or 4 for floating-point numbers), with the
+/// weights of Rec. 709 and no transfer function, since heights aren't light. Gray images keep their values with all bits.
 ///
 /// # Errors
 /// [`Cancelled`] when `progress` says so.
 pub(super) fn map_of_px(
     size: [u32; 2],
-    color: ColorType,
+    [channels, depth]: [u8; 2],
     bytes: &[u8],
     progress: &Progress,
 ) -> Result<HeightMap, Cancelled> {
-    let line = usize::from(color.bytes_per_pixel()) * size[0] as usize;
+    let line = usize::from(channels) * usize::from(depth) * size[0] as usize;
     if line == 0 || size[1] == 0 || bytes.len() != line * size[1] as usize {
         return Ok(HeightMap::new([0, 0], Vec::new()));
     }
     let mut lines = bytes.chunks_exact(line);
-    let [channels, depth] = [color.channel_count(), color.bytes_per_pixel() / color.channel_count()];
     HeightMap::build(size, progress, |out| {
         let line = lines.next().unwrap_or_default();
         brighten(line, channels.into(), depth, u16::from_ne_bytes, out);
@@ -121,13 +123,18 @@ impl ImageFile<'_> {
         check_size("it", size).map(|()| size).map_err(|reason| self.fail(reason))
     }
 
+    /// The error of a decoder. Cancelling stops it with some error.
+    fn undecoded(&self, error: impl Display) -> HeightError {
+        self.progress.check().map_or_else(HeightError::from, |()| self.fail(error.to_string()))
+    }
+
     /// Reads an image in memory; errors are those of [`read_map`].
     pub(super) fn decode(&self, bytes: &[u8]) -> Result<HeightMap, HeightError> {
         let held = self.budget.held();
         let read = match png_header(bytes) {
             Some((_, false)) => self.read_rows(bytes),
             _ if is_ktx2(bytes) => self.read_texture(bytes),
-            _ => self.read_whole(bytes),
+            _ => self.read_channel(bytes).transpose().unwrap_or_else(|| self.read_whole(bytes)),
         };
         // A broken image takes no room from others.
         read.inspect_err(|_| self.budget.release(self.budget.held() - held))
@@ -139,7 +146,7 @@ impl ImageFile<'_> {
         let px = decoded_bytes(texture.size);
         self.budget.release(px);
         self.afford(texture.size, bytes, px, 0)?;
-        Ok(map_of_px(texture.size, ColorType::Rgba8, &texture.rgba, self.progress)?)
+        Ok(map_of_px(texture.size, [4, 1], &texture.rgba, self.progress)?)
     }
 
     /// Reads a PNG image that isn't interlaced.
@@ -168,15 +175,14 @@ impl ImageFile<'_> {
         let format = image::guess_format(bytes).ok();
         let is_deep = matches!(format, Some(ImageFormat::Tiff | ImageFormat::OpenExr | ImageFormat::Hdr));
         let is_unsupported = |error: &ImageError| matches!(error, ImageError::Unsupported(_));
-        // Cancelling stops the decoder with some error.
-        let undecoded = |error: ImageError| match (self.progress.check(), error) {
-            (Err(cancelled), _) => cancelled.into(),
-            _ if !is_image(bytes) => self.fail(NO_IMAGE.to_owned()),
-            // Floating-point numbers of one channel, say, aren't decoded. Of EXR the decoder tells it in words alone.
-            (_, error) if is_deep && (is_unsupported(&error) || error.to_string().contains("rgb channels")) => {
-                self.fail(format!("{error}; save it with red, green and blue, or as a 16-bit PNG"))
+        let undecoded = |error: ImageError| match error {
+            _ if !is_image(bytes) => self.undecoded(NO_IMAGE),
+            // Two channels, say, aren't decoded. Of EXR the decoder tells it in words alone.
+            error if is_deep && (is_unsupported(&error) || error.to_string().contains("rgb channels")) => {
+                let advice = "save it with one channel of 32-bit floating-point numbers, or as a 16-bit PNG";
+                self.undecoded(format!("{error}; {advice}"))
             }
-            (_, error) => self.fail(error.to_string()),
+            error => self.undecoded(error),
         };
         webp::check(bytes, self.budget.allowed()).map_err(|reason| self.fail(reason))?;
         let borrowed = Borrowed::from(self.budget);
@@ -197,7 +203,9 @@ impl ImageFile<'_> {
         let mut px = vec![0; to_usize(count)];
         decoder.read_image(&mut px).map_err(undecoded)?;
         drop(borrowed);
-        Ok(map_of_px(size, color, &px, &self.progress.part(0.6, 1.0))?)
+        let channels = color.channel_count();
+        let kind = [channels, color.bytes_per_pixel() / channels];
+        Ok(map_of_px(size, kind, &px, &self.progress.part(0.6, 1.0))?)
     }
 
     /// Checks that the budget has room for an image of this size: `px` bytes of decoded pixels, `decoding` bytes while
@@ -234,7 +242,9 @@ mod tests {
 
     fn of(image: &DynamicImage) -> HeightMap {
         let size = [image.width(), image.height()];
-        map_of_px(size, image.color(), image.as_bytes(), &Progress::new()).expect("not cancelled")
+        let (color, channels) = (image.color(), image.color().channel_count());
+        let kind = [channels, color.bytes_per_pixel() / channels];
+        map_of_px(size, kind, image.as_bytes(), &Progress::new()).expect("not cancelled")
     }
 
     fn png(image: &DynamicImage) -> Vec<u8> {
@@ -312,23 +322,6 @@ mod tests {
         assert_eq!(budget.held() - held, HeightMap::bytes_to_build([9, 5]), "the map alone");
         let file = write(&folder, "cut", &rgba[..rgba.len() / 2]);
         assert!(read_map(&file, &budget, &Progress::new()).is_err());
-    }
-
-    #[test]
-    fn floating_point_images_of_one_channel_are_refused_with_advice() {
-        // TIFF 6.0: eleven numbers about one px, each with its tag, its type (3 for 16 bits), how many there are, and itself.
-        let tags = [256, 257, 258, 259, 262, 273, 277, 278, 279, 284, 339];
-        let values = [1, 1, 32, 1, 1, 146, 1, 1, 4, 1, 3];
-        let mut bytes = b"II\x2a\0\x08\0\0\0\x0b\0".to_vec();
-        for (tag, value) in tags.into_iter().zip(values) {
-            bytes.extend([tag, 3, 1, 0, value, 0].map(u16::to_le_bytes).as_flattened());
-        }
-        bytes.extend([0; 4]);
-        bytes.extend(0.5_f32.to_le_bytes());
-        let folder = tempfile::tempdir().expect("a writable temporary folder");
-        let file = write(&folder, "gray.tif", &bytes);
-        let said = read_map(&file, &Budget::unlimited(), &Progress::new()).expect_err("one channel").to_string();
-        assert!(said.ends_with("; save it with red, green and blue, or as a 16-bit PNG"), "{said}");
     }
 
     #[test]

@@ -7,13 +7,13 @@ use super::{HeightSource, NamedImage};
 use geometry::mesh::HeightAmount;
 use geometry::tessellate::Tessellation;
 
-/// What is said of a text that names no image of a material.
-const FORM: &str = "write MATERIAL=IMAGE or MATERIAL=IMAGE,scale=S,midlevel=H with numbers of at most 1e9, or ./ in front of a \
-                    path with an equals sign";
+/// What is said of a text that names no image of a material or a part.
+const FORM: &str = "write NAME=IMAGE or NAME=IMAGE,scale=S,midlevel=H with a material's or a part's name and numbers of at most \
+                    1e9, or ./ in front of a path with an equals sign";
 
 impl HeightSource {
-    /// Reads `material`, `file`, `MATERIAL=IMAGE,scale=S,midlevel=H`, or the path of an image. A path with an equals sign in it is
-    /// absolute, or begins with a point.
+    /// Reads `material`, `file`, `NAME=IMAGE,scale=S,midlevel=H` with the name of a material or a part, or the path of an image. A
+    /// path with an equals sign in it is absolute, or begins with a point.
     ///
     /// # Errors
     /// A clause that says what to write.
@@ -37,7 +37,7 @@ impl HeightSource {
         }
     }
 
-    /// Returns the source that several options name; none without any. Only images of single materials can be several.
+    /// Returns the source that several options name; none without any. Only images of single materials and parts can be several.
     pub fn joined(all: &[Self]) -> Option<Self> {
         let images = |own: &Self| if let Self::Each(images) = own { images.clone() } else { Vec::new() };
         let images: Vec<_> = all.iter().flat_map(images).collect();
@@ -47,7 +47,7 @@ impl HeightSource {
 
 impl NamedImage {
     fn parse(text: &str) -> Option<Self> {
-        let (material, mut path) = text.split_once('=').filter(|(material, _)| !material.is_empty())?;
+        let (part, mut path) = text.split_once('=').filter(|(part, _)| !part.is_empty())?;
         let mut numbers = [None; 2];
         while let Some((before, option)) = path.rsplit_once(',') {
             let number = |name| option.strip_prefix(name);
@@ -61,13 +61,13 @@ impl NamedImage {
             [None, None] => None,
             [scale, midlevel] => Some(HeightAmount::new(scale?, midlevel.unwrap_or(Tessellation::default().midlevel))?),
         };
-        (!path.is_empty()).then(|| Self { material: material.to_owned(), path: path.into(), amount })
+        (!path.is_empty()).then(|| Self { part: part.to_owned(), path: path.into(), amount })
     }
 
     fn text(&self) -> String {
-        let Self { material, path, amount } = self;
+        let Self { part, path, amount } = self;
         let amount = amount.map(|own| format!(",scale={},midlevel={}", own.scale, own.midlevel)).unwrap_or_default();
-        format!("{material}={}{amount}", path.display())
+        format!("{part}={}{amount}", path.display())
     }
 }
 
@@ -75,9 +75,9 @@ impl NamedImage {
 mod tests {
     use super::*;
 
-    fn image(material: &str, path: &str, amount: Option<(f32, f32)>) -> HeightSource {
+    fn image(part: &str, path: &str, amount: Option<(f32, f32)>) -> HeightSource {
         let amount = amount.map(|(scale, midlevel)| HeightAmount { scale, midlevel });
-        HeightSource::Each(vec![NamedImage { material: material.to_owned(), path: path.into(), amount }])
+        HeightSource::Each(vec![NamedImage { part: part.to_owned(), path: path.into(), amount }])
     }
 
     #[test]
@@ -89,6 +89,8 @@ mod tests {
             ("a,b.png", HeightSource::File("a,b.png".into())),
             ("./a=b.png", HeightSource::File("./a=b.png".into())),
             ("wall=b.png", image("wall", "b.png", None)),
+            ("material:wall=b.png", image("material:wall", "b.png", None)),
+            ("Car/Wheel/.=b.png,scale=1", image("Car/Wheel/.", "b.png", Some((1.0, 0.5)))),
             ("old wall=a=b,c.png,scale=-2", image("old wall", "a=b,c.png", Some((-2.0, 0.5)))),
             ("wall=b.png,midlevel=0.25,scale=1e-3", image("wall", "b.png", Some((0.001, 0.25)))),
         ];

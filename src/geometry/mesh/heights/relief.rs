@@ -61,13 +61,13 @@ impl Relief {
 pub(super) fn reliefs(
     mesh: &Mesh,
     maps: &[HeightMap],
-    of_material: &[Option<u32>],
+    ranges: &[(Range<u32>, u32)],
     progress: &Progress,
 ) -> Result<Vec<Relief>, Cancelled> {
     let mut all = vec![Relief::default(); mesh.triangles.len()];
     for (index, map) in (0..).zip(maps) {
-        let materials = mesh.materials.iter().zip(of_material).filter(|(_, own)| **own == Some(index));
-        let triangles: Vec<u32> = materials.flat_map(|(material, _)| material.triangles.clone()).collect();
+        let own = ranges.iter().filter(|(_, own)| *own == index);
+        let triangles: Vec<u32> = own.flat_map(|(range, _)| range.clone()).collect();
         let uvs = |triangle: &u32| mesh.triangles[*triangle as usize].map(|corner| mesh.corners[corner as usize].uv);
         let part = |index: u32| index as f32 / maps.len() as f32;
         let progress = progress.part(part(index), part(index + 1));
@@ -102,15 +102,15 @@ impl PatchRelief {
 /// Returns what is known of the heights over every patch; nothing without heights.
 pub fn patch_reliefs(heights: Option<&Heights>, mesh: &Mesh, topology: &Topology) -> Vec<PatchRelief> {
     let Some(heights) = heights else { return Vec::new() };
-    let of_patch = |(index, patch): (u32, &Patch)| {
-        let Some(map) = heights.map(topology.material_of(index)) else { return PatchRelief::NONE };
+    let of_patch = |patch: &Patch| {
+        let Some(map) = heights.map(patch.triangle) else { return PatchRelief::NONE };
         let Relief { longest, range, slope, losses } = heights.reliefs[patch.triangle as usize];
         let size = Vec2::from(map.size.map(|side| side as f32));
         let [a, b, c] = topology.corners(patch).map(|corner| mesh.corners[corner as usize].uv * size);
         let (x, y) = (a - c, b - c);
         PatchRelief { form: [x.dot(x), x.dot(y), y.dot(y)], longest, range, slope, losses }
     };
-    (0..).zip(&topology.patches).map(of_patch).collect()
+    topology.patches.iter().map(of_patch).collect()
 }
 
 /// The texture coordinates of the triangles that an image displaces.

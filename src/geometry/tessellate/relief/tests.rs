@@ -129,7 +129,7 @@ fn steps_of_8_bits_cost_about_as_much_as_they_are_high() {
 #[test]
 fn what_no_image_displaces_has_no_error() {
     let (mut mesh, topology) = triangle([Vec2::ZERO; 3], image(3, [8, 8], 0));
-    let heights = Heights { of_material: vec![None], ..mesh.heights.as_deref().expect("heights").clone() };
+    let heights = Heights { ranges: Vec::new(), ..mesh.heights.as_deref().expect("heights").clone() };
     mesh.heights = Some(Arc::new(heights));
     assert_eq!(patch_reliefs(mesh.heights.as_deref(), &mesh, &topology), [PatchRelief::NONE]);
     assert_eq!(patch_reliefs(None, &mesh, &topology), []);
