@@ -93,6 +93,7 @@ impl App {
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),
             Action::SplitView => self.toggle_split(),
+            Action::KeepOnLeft => self.keep_on_left(),
             Action::HidePanels => self.panels.are_hidden = !self.panels.are_hidden,
             Action::FocusControls => context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next)),
             Action::OpenAllSections => self.panels.open.set_all(true),

@@ -33,7 +33,7 @@ impl App {
     }
 
     /// Whether there is nothing to compare with: the CPU doesn't know the limit surface of a shader.
-    fn lacks_reference(&self) -> bool {
+    pub(super) fn lacks_reference(&self) -> bool {
         self.uses_surface_shader() && self.yardstick().1.is_none()
     }
 
@@ -42,7 +42,7 @@ impl App {
     }
 
     /// Whether a half shows its deviation.
-    fn deviates(&self, half: SplitSide) -> bool {
+    pub(super) fn deviates(&self, half: SplitSide) -> bool {
         self.settings.half(half).is_some_and(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface)
     }
 
@@ -62,7 +62,7 @@ impl App {
         Some(self.known_deviation(half)?.largest.at_most)
     }
 
-    fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
+    pub(super) fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
         self.settings.half(half)?;
         self.deviating(half)?.found_of(self.deviation_of(half)?)
     }
@@ -237,7 +237,7 @@ impl App {
     }
 
     /// The largest distance of a half in px, in the view of the last picture.
-    fn deviation_px(&self, half: SplitSide) -> Option<f64> {
+    pub(super) fn deviation_px(&self, half: SplitSide) -> Option<f64> {
         let (worst, view) = (self.known_deviation(half)?.worst?, self.viewport.picture.seen_from()?);
         let at = |place: glam::DVec3| project(view.clip_from_object, view.viewport, place.as_vec3());
         Some(f64::from(at(worst.emitted)?.distance(at(worst.reference_shape)?)))

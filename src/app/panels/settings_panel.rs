@@ -8,7 +8,7 @@ use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, file_row, fixed, list_row};
 use crate::commands::{
-    Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
+    Action, BACKS_ARE_SEEN, Change, CompanionFile, KEEP_ON_LEFT, LEFT_MESH, Purpose, key_name, with_key, with_note,
 };
 use geometry::tessellate::{Lod, Surface, Tessellation};
 use inspect::settings::{
@@ -37,7 +37,7 @@ impl App {
         });
     }
 
-    /// Which half of a split view is edited, and a button that exchanges both halves, of a split view. While a file stands for
+    /// Which half of a split view is edited, and buttons that exchange both halves and that keep the right one. While a file stands for
     /// settings of the right half, these come back there when it is closed, so that half alone is edited.
     fn halves_row(&mut self, ui: &mut egui::Ui) {
         let has_files = self.given.is_some() || self.lod_shader.is_some() || self.surface_shader.is_some();
@@ -58,8 +58,12 @@ impl App {
             if ui.button("Swap").on_hover_text(hover).clicked() {
                 self.swap_halves();
             }
+            let keep = ui.button("Keep this on the left");
+            if keep.on_hover_text(with_key(KEEP_ON_LEFT, &Action::KeepOnLeft)).clicked() {
+                self.keep_on_left();
+            }
         };
-        ui.add_enabled_ui(has_left, |ui| ui.horizontal(row));
+        ui.add_enabled_ui(has_left, |ui| ui.horizontal_wrapped(row));
     }
 
     /// Shows rows whose settings are those of the half that is edited.
@@ -85,6 +89,13 @@ impl App {
             let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
             if has_before && ui.selectable_label(self.shows_before(), "Before the change on disk").clicked() {
                 self.compare_with_before();
+            }
+            let reference = self.reference_shape().filter(|source| source.shape().is_none()).cloned();
+            if let Some(source) = reference {
+                let is_shown = self.companion(CompanionFile::LeftMesh).as_ref() == Some(&source);
+                if ui.selectable_label(is_shown, format!("Reference surface: {}", source.title())).clicked() {
+                    self.open_left_mesh(ui.ctx(), source);
+                }
             }
             if ui.selectable_label(false, "Another file…").clicked() {
                 self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::LeftMesh));

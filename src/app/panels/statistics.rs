@@ -20,6 +20,7 @@ impl App {
                 ui.push_id("patch", |ui| self.patch_section(ui));
             }
             let pushed = self.pushed_down(ui, top);
+            ui.push_id("halves", |ui| self.halves_section(ui));
             ui.push_id("given", |ui| self.given_section(ui));
             self.deviation_section(ui);
             self.section(ui, Section::Cracks, |app, ui| app.crack_facts(ui));

@@ -72,13 +72,13 @@ impl App {
     /// What was measured last. The panels show all of it together: while another picture is measured, that of the picture before. None
     /// while a clip plays, and if the picture isn't drawn: these aren't measured.
     pub(in crate::app) fn results(&self) -> Option<&Results> {
-        let is_measured = !self.is_playing() && self.viewport.picture.cancelled.is_none();
-        self.last_results().filter(|_| is_measured)
+        self.results_of(SplitSide::Right)
     }
 
-    /// What was measured last of the document.
-    pub(in crate::app) fn last_results(&self) -> Option<&Results> {
-        self.document.as_ref()?.right().measure.last()
+    /// The same of a half.
+    pub(in crate::app) fn results_of(&self, half: SplitSide) -> Option<&Results> {
+        let is_measured = !self.is_playing() && self.viewport.picture.cancelled.is_none();
+        self.document.as_ref()?.halves[half as usize].measure.last().filter(|_| is_measured)
     }
 
     pub(in crate::app) fn found(&self, half: SplitSide) -> Option<&Measured> {

@@ -288,6 +288,12 @@ impl Settings {
         self.swap_looks();
     }
 
+    /// Makes the left half a copy of the right one. Looks that both share go on being shared.
+    pub fn keep_on_left(&mut self) {
+        self.left = self.tessellation;
+        self.left_looks = self.left_looks.map(|_| self.looks());
+    }
+
     fn swap_looks(&mut self) {
         if let Some(left) = self.left_looks {
             *self = Self { left_looks: Some(self.looks()), ..self.with_looks(left) };

@@ -360,7 +360,7 @@ impl Shot {
                 accuracy: reference_surface
                     .filter(|_| stats.is_some())
                     .map(|reference_shape| (&**reference_shape, &inputs.view, AccuracyOptions::default())),
-                sizes: (stats.is_some() && half == SplitSide::Right).then_some(view),
+                sizes: stats.is_some().then_some(view),
             };
             self.results[half as usize] = Some(self.engine.measure_watched(scene, &wanted, progress)?);
             progress.check()?;
