@@ -19,9 +19,6 @@ const CLIPS: usize = 1000;
 /// The width of the crease band that is switched on by a command, as a part of the bounding diagonal.
 const CREASE_BAND: f32 = 0.02;
 
-pub(crate) const KEEP_ON_LEFT: &str = "Makes the left half of the split view a copy of the right one, with its mesh, settings and \
-                                       moment of a clip, so that you can compare what you change then.";
-
 pub(super) fn commands(now: &Availability) -> Vec<Command> {
     let all = [settings(), colors_and_overlays(), mesh(), clips(now), recent(now), bookmarks(now), file_cameras(now)];
     all.into_iter().flatten().collect()
@@ -71,8 +68,10 @@ fn left_surfaces() -> Vec<Command> {
     };
     let both = declared! {
         "Swap left and right" needs Split => Change::SwapHalves,
-            "Exchanges the tessellations left and right of the split.";
-        "Keep this on the left" [shift(Key::J)] needs Document Surface => Action::KeepOnLeft, KEEP_ON_LEFT;
+            "Exchanges the tessellations left and right of the split, and looks and poses that differ.";
+        "Keep this on the left" [shift(Key::J)] needs Document Surface => Action::KeepOnLeft,
+            "Makes the left half of the split view a copy of the right one, with its mesh, settings and moment of a clip, to \
+             compare what you change then.";
         "Blink left and right" [plain(Key::J)] needs Split => Change::BlinkHalves,
             "Shows the left half in all of the picture, and then the right one. S brings the divider back.";
     };

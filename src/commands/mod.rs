@@ -26,7 +26,6 @@ pub use fixed::ENVIRONMENT;
 pub(crate) use fixed::{
     CLOSE_ENVIRONMENT, CLOSE_LOD_SHADER, CLOSE_SURFACE_SHADER, HEIGHT_IMAGE, LEFT_MESH, MATCAP_IMAGE,
 };
-pub(crate) use generated::KEEP_ON_LEFT;
 
 /// What the window does when a command is given.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +41,6 @@ pub enum Action {
     ResetSettings,
     ForgetEverything,
     SplitView,
-    /// Makes the left half of a split view a copy of the right one.
     KeepOnLeft,
     HidePanels,
     FocusControls,

@@ -143,7 +143,7 @@ fn a_moment_that_is_kept_on_the_left_stays_while_the_right_half_moves() {
     show(&mut harness, 0.25);
     harness.get_by_label_contains("Left: All at 0.5 s, PN-AEN");
     harness.get_by_label_contains("Right: All at 0.25 s, PN-AEN");
-    harness.get_by_label("Triangles, difference: 0");
+    harness.get_by_label("Triangles, Difference: 0");
     let context = harness.ctx.clone();
     harness.state_mut().undo(&context);
     settle(&mut harness);
@@ -157,7 +157,7 @@ fn a_moment_that_is_kept_on_the_left_stays_while_the_right_half_moves() {
     harness.get_by_label_contains("Left: PN-AEN");
     click_without_rest(&mut harness, "Play or pause");
     assert!(harness.state().is_playing());
-    harness.get_by_label("Triangles, left: …");
+    harness.get_by_label("Triangles, Left: …");
 }
 
 /// Clicks on what starts to play, which never rests.

@@ -26,25 +26,25 @@ fn the_figures_of_both_halves_stand_beside_each_other() {
     settle(&mut harness);
     // Patches of 13 triangles on the left, and of 121 on the right, which has 9 segments an edge.
     for label in [
-        "Triangles, left: 156",
-        "Triangles, right: 1,452",
-        "Triangles, difference: +1,296",
-        "Culled patches, left: 0",
-        "At max factor, difference: 0",
-        "Cracked edges, left: 12",
-        "Cracked edges, right: 0",
-        "Cracked edges, difference: -12",
-        "Widest gap, px, right: 0",
+        "Triangles, Left: 156",
+        "Triangles, Right: 1,452",
+        "Triangles, Difference: +1,296",
+        "Culled patches, Left: 0",
+        "At max factor, Difference: 0",
+        "Cracked edges, Left: 12",
+        "Cracked edges, Right: 0",
+        "Cracked edges, Difference: -12",
+        "Widest gap, px, Right: 0",
     ] {
         harness.get_by_label(label);
     }
-    harness.get_by_label_contains("Widest gap, px, difference: -");
-    assert!(harness.query_by_label_contains("Deviation, left: ").is_none(), "the overlay is off");
+    harness.get_by_label_contains("Widest gap, px, Difference: -");
+    assert!(harness.query_by_label_contains("Deviation, Left: ").is_none(), "the overlay is off");
     scroll_to(&mut harness, "Left and right");
     click(&mut harness, "Left and right");
-    assert!(harness.query_by_label("Triangles, left: 156").is_none(), "the section is folded");
+    assert!(harness.query_by_label("Triangles, Left: 156").is_none(), "the section is folded");
     click(&mut harness, "Left and right");
-    harness.get_by_label("Triangles, left: 156");
+    harness.get_by_label("Triangles, Left: 156");
     press(&mut harness, egui::Key::S);
     assert!(harness.query_by_label("Left and right").is_none());
 }
@@ -56,14 +56,13 @@ fn the_deviations_of_both_halves_are_compared_if_both_show_it() {
     choose(&mut harness, "Left", "Flat");
     press(&mut harness, egui::Key::V);
     // The distance between the inscribed and the circumscribed sphere, and a third of it or less.
-    harness.get_by_label("Deviation, left: 0.205");
-    harness.get_by_label_contains("Deviation, right: 0.06");
-    harness.get_by_label_contains("Deviation, difference: -0.1");
-    harness.get_by_label_contains("Deviation, px, difference: -");
+    harness.get_by_label("Deviation, Left: 0.205");
+    harness.get_by_label_contains("Deviation, Right: 0.06");
+    harness.get_by_label_contains("Deviation, Difference: -0.1");
     choose(&mut harness, "Left looks", "Its own");
     press(&mut harness, egui::Key::V);
     assert!(harness.state().deviation(SplitSide::Left).is_some());
-    assert!(harness.query_by_label_contains("Deviation, left: ").is_none(), "the right half has no deviation");
+    assert!(harness.query_by_label_contains("Deviation, Left: ").is_none(), "the right half has no deviation");
 }
 
 #[test]
@@ -74,10 +73,10 @@ fn what_is_shown_is_kept_on_the_left_and_compared_with_what_is_changed_then() {
     let kept = *harness.state().settings();
     assert!(kept.split.is_some(), "the split opens");
     assert_eq!((kept.left, kept.left_looks), (before.tessellation, None));
-    harness.get_by_label("Triangles, difference: 0");
+    harness.get_by_label("Triangles, Difference: 0");
     choose(&mut harness, "Surface", "PN");
-    harness.get_by_label("Cracked edges, left: 0");
-    harness.get_by_label("Cracked edges, difference: +12");
+    harness.get_by_label("Cracked edges, Left: 0");
+    harness.get_by_label("Cracked edges, Difference: +12");
     // Looks of its own are those of the right half, too.
     choose(&mut harness, "Left looks", "Its own");
     press(&mut harness, egui::Key::W);
@@ -89,7 +88,7 @@ fn what_is_shown_is_kept_on_the_left_and_compared_with_what_is_changed_then() {
     scroll_to(&mut harness, "Keep this on the left");
     click(&mut harness, "Keep this on the left");
     assert_eq!(left(&harness), (Surface::Pn, true));
-    harness.get_by_label("Cracked edges, left: 12");
+    harness.get_by_label("Cracked edges, Left: 12");
     press(&mut harness, egui::Key::W);
     assert_eq!(left(&harness), (Surface::Pn, true), "the right half alone changes");
     let context = harness.ctx.clone();
@@ -97,7 +96,7 @@ fn what_is_shown_is_kept_on_the_left_and_compared_with_what_is_changed_then() {
     harness.state_mut().undo(&context);
     settle(&mut harness);
     assert_eq!(left(&harness), (Surface::PnAen, false));
-    harness.get_by_label("Cracked edges, left: 0");
+    harness.get_by_label("Cracked edges, Left: 0");
 }
 
 #[test]

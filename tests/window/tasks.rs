@@ -301,9 +301,8 @@ fn page() -> String {
     });
     format!(
         "# Where to click\n\n\
-         This page shows the clicks for common tasks. They are counted from the first start, when the vase is open in a \
-         split view. You can also find every command by its name with Ctrl+P, and most commands have a [key](keys.md). To open a \
-         file, you can also drop it on the window.\n\n{}",
+         These are the clicks for common tasks, counted from the first start, when the vase is open in a split view. Ctrl+P \
+         finds every command by its name, and most have a [key](keys.md).\n\n{}",
         table(&["to", "click", "clicks"], &[0, 1], &rows)
     )
 }

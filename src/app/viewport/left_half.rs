@@ -1,7 +1,5 @@
 //! The left half of a split view. Its scene is made on a thread of its own, and only while it is shown.
 
-use std::time::Duration;
-
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::job_list::Work;
@@ -14,15 +12,7 @@ use inspect::render::Scene;
 use inspect::settings::SplitSide;
 use inspect::shot::{HalfFacts, half_title, surface_title};
 
-/// Making a scene for longer than this is shown in the window.
-const NOTICED: Duration = Duration::from_millis(300);
-
 impl App {
-    /// Whether making the left half's scene takes so long that the window should say so.
-    pub(super) fn left_takes_long(&self) -> bool {
-        self.jobs.get(Work::LeftHalf).is_some_and(|job| job.since.elapsed() > NOTICED)
-    }
-
     /// Makes the left half's scene or drops it, as the settings want it. Waits until no picture is under way.
     pub(in crate::app) fn keep_left(&mut self, context: &egui::Context) -> Result<(), GpuError> {
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };

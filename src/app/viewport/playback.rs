@@ -95,8 +95,7 @@ impl App {
     /// shared.
     pub(in crate::app) fn keep_on_left(&mut self) {
         self.close_companion(CompanionFile::LeftMesh);
-        self.settings.keep_on_left();
-        self.settings.split.get_or_insert(self.viewport.last_split);
+        self.settings.keep_on_left(self.viewport.last_split);
         self.viewport.playback.left = self.moment().map_or(LeftPose::Same, |moment| LeftPose::Own(Some(moment)));
     }
 

@@ -371,7 +371,7 @@ impl Shot {
 
     /// Compares outlines, if they are shown: those of the right half, in all of the picture.
     fn compare_outlines(&mut self, progress: &Progress) -> Result<(), ShotError> {
-        if self.subject.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::Outlines) {
+        if self.subject.settings.any_half_shows(ColorSource::Outlines) {
             let seen = self.view.camera.lod_view(self.target.viewport(), &self.scene.bounds);
             let view = SilhouetteView { size: self.target.size, seen, lod: self.lod_view };
             let tessellation = &self.subject.settings.tessellation;

@@ -10,7 +10,7 @@ use super::outline_stats::SilhouetteStats;
 use super::reference::ReferenceStats;
 use super::reference_surface::{AccuracyStats, DeviationStats};
 use super::user_shader_report::{LodShaderStats, SurfaceShaderStats};
-use super::{Shot, ShotError};
+use super::{Numbers, Shot, ShotError};
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gates::{GateKind, Judgement};
 use crate::measure::{Measured, SeamTurns, Seams};
@@ -236,8 +236,8 @@ struct HalfStats {
     #[serde(skip_serializing_if = "Option::is_none")]
     mesh: Option<String>,
     settings: SettingsStats,
-    triangles_in: u64,
-    patches: u64,
+    #[serde(flatten)]
+    numbers: Numbers,
     /// Patches that are left out for any reason.
     patches_culled: u32,
     patches_out_of_view: u32,
@@ -248,8 +248,6 @@ struct HalfStats {
     triangles_in_view: u64,
     /// Those of them that cover less than 4.5 px² (half of a square of 3 px).
     triangles_below_3_px: u64,
-    triangles_out: u64,
-    vertices_out: u64,
     cracks: CrackStats,
     seams: SeamStats,
     /// Triangles that face away from the side that their patch faces.
@@ -265,7 +263,7 @@ struct HalfStats {
     deviation: Option<DeviationStats>,
     /// None at rest.
     animation: Option<AnimationStats>,
-    /// What each pass takes, drawn alone, and of the right half loading.
+    /// What each pass takes if the half is drawn alone, in ms; of the right half also what loading took.
     ms: BTreeMap<&'static str, f64>,
 }
 
@@ -279,8 +277,10 @@ impl Shot {
         let mut halves = SplitSide::BOTH.map(|half| self.half_stats(half));
         let (engine, target, scene) = (&self.engine, &self.target, &mut self.scene);
         let (settings, camera, lod_view) = (&self.subject.settings, &self.view.camera, self.lod_view);
-        let Some(results) = &self.results[SplitSide::Right as usize] else { return Ok(None) };
-        let Some(measured) = &results.survey else { return Ok(None) };
+        let results = self.results[SplitSide::Right as usize].as_ref();
+        let Some((results, measured)) = results.and_then(|own| Some((own, own.survey.as_ref()?))) else {
+            return Ok(None);
+        };
         for (half, stats) in SplitSide::BOTH.into_iter().zip(&mut halves) {
             let Some((scene, stats)) = scene.half_mut(half).zip(stats.as_mut()) else { continue };
             let alone = Settings { split: None, ..settings.half(half).unwrap_or(*settings) };
@@ -331,23 +331,19 @@ impl Shot {
         let settings = self.subject.settings.half(half)?;
         let (scene, results) = self.scene.half(half).zip(self.results(half))?;
         let (tessellator, measured) = (&scene.tessellator, results.survey.as_ref()?);
-        let (vertices_out, triangles_out) = tessellator.totals();
         let is_right = half == SplitSide::Right;
         let judged = if is_right { &self.judged[..] } else { &[] };
         let topology = if is_right { &self.posed.topology } else { tessellator.topology() };
         Some(HalfStats {
             mesh: self.subject.left.as_ref().filter(|_| !is_right).map(|left| left.source.to_string()),
             settings: SettingsStats::new(&settings, tessellator.surface_shader().is_some(), judged),
-            triangles_in: tessellator.mesh().triangles.len() as u64,
-            patches: topology.patches.len() as u64,
+            numbers: Numbers::new(scene),
             patches_culled: measured.culled.total(),
             patches_out_of_view: measured.culled.out_of_view,
             patches_facing_away: measured.culled.facing_away,
             patches_below_factor_2: measured.patches_low,
             triangles_in_view: results.sizes.map_or(0, |sizes| sizes.in_view),
             triangles_below_3_px: results.sizes.map_or(0, |sizes| sizes.small),
-            triangles_out,
-            vertices_out,
             cracks: CrackStats::new(measured, topology, self.view()),
             seams: SeamStats::new(&measured.seams),
             folds: measured.folds,
