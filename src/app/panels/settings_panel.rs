@@ -37,8 +37,8 @@ impl App {
         });
     }
 
-    /// Which half of a split view is edited, and buttons that exchange both halves and that keep the right one. While a file stands for
-    /// settings of the right half, these come back there when it is closed, so that half alone is edited.
+    /// Which half of a split view is edited, and buttons that exchange both halves and that keep the right one. While a file stands
+    /// for settings of the right half, these come back there when it is closed, so that half alone is edited.
     fn halves_row(&mut self, ui: &mut egui::Ui) {
         let has_files = self.given.is_some() || self.lod_shader.is_some() || self.surface_shader.is_some();
         let has_left = self.settings.split.is_some() && !has_files;

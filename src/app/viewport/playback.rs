@@ -91,8 +91,8 @@ impl App {
         self.swap_poses();
     }
 
-    /// Makes the left half a copy of the right one, and opens the split. A moment of a clip stays there; a pose at rest goes on being
-    /// shared.
+    /// Makes the left half a copy of the right one, and opens the split. A moment of a clip stays there; a pose at rest goes on
+    /// being shared.
     pub(in crate::app) fn keep_on_left(&mut self) {
         self.close_companion(CompanionFile::LeftMesh);
         self.settings.keep_on_left(self.viewport.last_split);

@@ -293,7 +293,7 @@ impl Settings {
         self.swap_looks();
     }
 
-    /// Makes the left half a copy of the right one, in a picture that is split here if it isn't. Looks that both share go on being shared.
+    /// Makes the left half a copy of the right one, and splits a picture that isn't. Looks that both share go on being shared.
     pub fn keep_on_left(&mut self, at: f32) {
         self.left = self.tessellation;
         self.left_looks = self.left_looks.map(|_| self.looks());
