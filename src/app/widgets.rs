@@ -95,9 +95,8 @@ pub(super) fn fact(ui: &mut egui::Ui, name: &str, value: &str, hover: &str) {
 }
 
 /// A right-aligned number, monospaced.
-pub(super) fn number(ui: &mut egui::Ui, text: &str) -> egui::Response {
-    let text = RichText::new(text).monospace();
-    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(text)).inner
+pub(super) fn number(ui: &mut egui::Ui, text: &str) {
+    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| ui.label(RichText::new(text).monospace()));
 }
 
 /// A row of text in columns that can't be clicked, aligned with rows that can. Headers are weak.

@@ -1,12 +1,11 @@
 //! What is measured of both halves of a split view, side by side.
 
-use egui::{Role, WidgetInfo};
+use egui::{Align, Layout, RichText, Role, WidgetInfo};
 
 use crate::app::App;
 use crate::app::jobs::measure_job::Results;
 use crate::app::sections::Section;
 use crate::app::text::{grouped, short};
-use crate::app::widgets::number;
 use inspect::settings::SplitSide;
 
 const COLUMNS: [&str; 3] = ["Left", "Right", "Difference"];
@@ -31,7 +30,7 @@ impl App {
             return;
         }
         egui::Grid::new("halves").num_columns(4).min_col_width(50.0).show(ui, |ui| {
-            cells(ui, ["Half", "The difference is right minus left."], COLUMNS.map(str::to_owned));
+            cells(ui, ["Half", "The difference is right minus left."], COLUMNS.map(RichText::new));
             for (name, hover, of) in FIGURES {
                 row(ui, [name, hover], SplitSide::BOTH.map(|half| self.results_of(half).map(of)));
             }
@@ -48,16 +47,17 @@ impl App {
 fn row(ui: &mut egui::Ui, name: [&str; 2], [left, right]: [Option<f64>; 2]) {
     let difference = left.zip(right).map(|(left, right)| right - left);
     let sign = if difference > Some(0.0) { "+" } else { "" };
-    cells(ui, name, [written(left), written(right), sign.to_owned() + &written(difference)]);
+    let texts = [written(left), written(right), sign.to_owned() + &written(difference)];
+    cells(ui, name, texts.map(|text| RichText::new(text).monospace()));
 }
 
 /// A row of texts under the columns, after its name with a hover text.
-fn cells(ui: &mut egui::Ui, [name, hover]: [&str; 2], texts: [String; 3]) {
+fn cells(ui: &mut egui::Ui, [name, hover]: [&str; 2], texts: [RichText; 3]) {
     ui.label(name).on_hover_text(hover);
     for (column, text) in COLUMNS.into_iter().zip(texts) {
-        let says = format!("{name}, {column}: {text}");
-        let cell = number(ui, &text).on_hover_text(&says);
-        cell.widget_info(|| WidgetInfo::labeled(Role::Label, true, &says));
+        let says = format!("{name}, {column}: {}", text.text());
+        let cell = ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text)).inner;
+        cell.on_hover_text(&says).widget_info(|| WidgetInfo::labeled(Role::Label, true, &says));
     }
     ui.end_row();
 }
