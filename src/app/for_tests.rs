@@ -49,10 +49,10 @@ impl App {
 
     /// Sizes of the triangles shown, if they were measured for the present view, or for the frozen one if there is one.
     pub fn sizes_shown(&self) -> Option<&Sizes> {
-        let bounds = self.document.as_ref()?.scene.bounds;
-        let frozen = self.viewport.frozen.map(|frozen| frozen.screen_view(&bounds));
+        let document = self.document.as_ref()?;
+        let frozen = self.viewport.frozen.map(|frozen| frozen.screen_view(&document.scene.bounds));
         let seen_from = frozen.or(self.viewport.picture.seen_from())?;
-        self.last_results().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
+        document.right().measure.last().map(|results| &results.sizes).filter(|sizes| sizes.view == seen_from)
     }
 
     /// How many previews have been drawn out of sight, before the camera moved.

@@ -27,7 +27,7 @@ use geometry::mesh::Texture;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
 use inspect::engine::{Engine, Loaded};
 use inspect::measure::Cracks;
-use inspect::render::{Camera, WindowPipelines};
+use inspect::render::{Camera, WindowPipelines, lay_over};
 use inspect::settings::{Settings, SplitSide};
 use load::Source;
 use load::files::Limits;
@@ -182,7 +182,9 @@ impl App {
     pub fn read_picture(&self) -> Result<Option<RgbaImage>, GpuError> {
         let read = self.viewport.picture.target.as_ref().map(|(target, _)| target.read(&self.engine.gpu));
         let mut picture = read.transpose()?;
-        picture.iter_mut().for_each(|picture| self.lay_outlines_over(picture));
+        if let Some((picture, outlines)) = picture.as_mut().zip(self.found_outlines()) {
+            lay_over(picture, &outlines.picture, &self.settings);
+        }
         Ok(picture)
     }
 

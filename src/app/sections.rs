@@ -36,6 +36,7 @@ sections! {
     Import => "Import", false;
     Advanced => "Advanced", false;
     Patch => "Patch", true;
+    Halves => "Left and right", true;
     Factors => "Factors of a file", true;
     LodShader => "Factors of a shader", true;
     Deviation => "Deviation", true;

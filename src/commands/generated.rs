@@ -58,7 +58,7 @@ fn settings() -> Vec<Command> {
     all.concat()
 }
 
-/// A command for each surface that the left half can show, and one that exchanges both halves.
+/// A command for each surface that the left half can show, and those for both halves.
 fn left_surfaces() -> Vec<Command> {
     let unset = options::SPLIT_LEFT.unset.iter().map(|unset| (None, unset.label, unset.text));
     let surfaces = Surface::ALL.iter().map(|surface| (Some(*surface), surface.label(), surface.text()));
@@ -68,7 +68,10 @@ fn left_surfaces() -> Vec<Command> {
     };
     let both = declared! {
         "Swap left and right" needs Split => Change::SwapHalves,
-            "Exchanges the tessellations left and right of the split.";
+            "Exchanges the tessellations left and right of the split, and looks and poses that differ.";
+        "Keep this on the left" [shift(Key::J)] needs Document Surface => Action::KeepOnLeft,
+            "Makes the left half of the split view a copy of the right one, with its mesh, settings and moment of a clip, to \
+             compare what you change then.";
         "Blink left and right" [plain(Key::J)] needs Split => Change::BlinkHalves,
             "Shows the left half in all of the picture, and then the right one. S brings the divider back.";
     };

@@ -41,6 +41,7 @@ pub enum Action {
     ResetSettings,
     ForgetEverything,
     SplitView,
+    KeepOnLeft,
     HidePanels,
     FocusControls,
     OpenAllSections,

@@ -23,7 +23,7 @@ fn page() -> String {
     });
     format!(
         "# Keys and commands\n\n\
-         Look up here which key does what. Ctrl is Cmd on macOS. In the window, Help > Keys lists the keys, and Ctrl+P finds \
+         Ctrl is Cmd on macOS. In the window, Help > Keys lists the keys, and Ctrl+P finds \
          every command by its name and says what it does.\n\n\
          ## In the picture\n\n{}\n\
          ## Keys\n\n{}\n\

@@ -56,10 +56,14 @@ fn both_halves_of_a_split_are_measured_and_share_a_scale() {
     for scale in [&both["deviation"]["scale"], &both["left"]["deviation"]["scale"]] {
         assert_eq!(*scale, serde_json::json!([0.0025, 0.25]), "the scale of the larger deviation");
     }
-    for equal in ["triangles_out", "vertices_out"] {
+    for equal in ["patches", "patches_culled", "triangles_out", "vertices_out"] {
         assert_eq!(both["left"][equal], both[equal], "the same factors");
     }
     assert_eq!(number(&both, "/left/cracks/edges"), 0.0);
+    assert_eq!((number(&both, "/patches"), number(&both, "/left/folds")), (20.0, 0.0));
+    let in_view = number(&both, "/left/triangles_in_view");
+    assert!(in_view > 0.0 && in_view >= number(&both, "/left/triangles_below_3_px"), "{both}");
+    assert!(["/left/ms/draw", "/ms/draw"].map(|ms| number(&both, ms)).iter().all(|ms| *ms > 0.0), "{both}");
     // The right half has the same numbers as without a split.
     let alone = drawn(&["--overlay", "deviation"]);
     assert_eq!(alone["left"], Value::Null);

@@ -130,6 +130,43 @@ fn the_left_half_keeps_a_pose_that_is_copied_exchanged_and_undone() {
 }
 
 #[test]
+fn a_moment_that_is_kept_on_the_left_stays_while_the_right_half_moves() {
+    let (mut harness, _folder) = moving_window();
+    let show = |harness: &mut Harness<App>, time: f64| {
+        harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(time);
+        settle(harness);
+    };
+    choose(&mut harness, "Clip", CLIPS[3]);
+    show(&mut harness, 0.5);
+    press_with(&mut harness, Modifiers::SHIFT, Key::J);
+    harness.get_by_label_contains("Left: All at 0.5 s, PN-AEN");
+    show(&mut harness, 0.25);
+    harness.get_by_label_contains("Left: All at 0.5 s, PN-AEN");
+    harness.get_by_label_contains("Right: All at 0.25 s, PN-AEN");
+    harness.get_by_label("Triangles, Difference: 0");
+    let context = harness.ctx.clone();
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert!(harness.state().settings().split.is_none());
+    assert_eq!(time(&harness), 0.25, "the right half stays");
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    harness.get_by_label_contains("Left: All at 0.5 s, PN-AEN");
+    choose(&mut harness, "Clip", "Rest pose");
+    press_with(&mut harness, Modifiers::SHIFT, Key::J);
+    harness.get_by_label_contains("Left: PN-AEN");
+    click_without_rest(&mut harness, "Play or pause");
+    assert!(harness.state().is_playing());
+    harness.get_by_label("Triangles, Left: …");
+}
+
+/// Clicks on what starts to play, which never rests.
+fn click_without_rest(harness: &mut Harness<App>, label: &str) {
+    harness.get_by_label(label).click();
+    harness.run_steps(3);
+}
+
+#[test]
 fn space_plays_and_pauses_and_cracks_are_measured_only_when_paused() {
     let (mut harness, _folder) = moving_window();
     harness.key_press(Key::Space);

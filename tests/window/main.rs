@@ -10,6 +10,7 @@ mod environment;
 mod file_cameras;
 mod findings;
 mod foreign_factors;
+mod halves;
 mod import;
 mod lasting;
 mod layout;

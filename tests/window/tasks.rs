@@ -49,7 +49,7 @@ fn is_written(folder: &Path, name: &str) -> bool {
     std::fs::metadata(folder.join(name)).is_ok_and(|file| file.len() > 0)
 }
 
-const TASKS: [Task; 30] = [
+const TASKS: [Task; 31] = [
     Task {
         what: "open a mesh",
         steps: &[Click("File"), Click("Open…"), Type("other.glb")],
@@ -105,6 +105,14 @@ const TASKS: [Task; 30] = [
         what: "exchange both halves",
         steps: &[Click("Swap")],
         done: |window, _| window.state().settings().tessellation == Tessellation::untessellated(),
+    },
+    Task {
+        what: "compare a change with what was before",
+        steps: &[Click("Keep this on the left"), List("Surface", "Phong")],
+        done: |window, _| {
+            let settings = window.state().settings();
+            (settings.left.surface, settings.tessellation.surface) == (Surface::PnAen, Surface::Phong)
+        },
     },
     Task {
         what: "see triangles that fold over",
@@ -293,9 +301,8 @@ fn page() -> String {
     });
     format!(
         "# Where to click\n\n\
-         This page shows the clicks for common tasks. They are counted from the first start, when the vase is open in a \
-         split view. You can also find every command by its name with Ctrl+P, and most commands have a [key](keys.md). To open a \
-         file, you can also drop it on the window.\n\n{}",
+         These are the clicks for common tasks, counted from the first start, when the vase is open in a split view. Ctrl+P \
+         finds every command by its name, and most have a [key](keys.md).\n\n{}",
         table(&["to", "click", "clicks"], &[0, 1], &rows)
     )
 }

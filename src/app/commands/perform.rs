@@ -9,7 +9,7 @@ use crate::app::panels::destinations::{Destination, Step};
 use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
 use gpu::{LodShader, SurfaceShader};
-use inspect::settings::{Declaration, Settings, SplitSide, options};
+use inspect::settings::{ColorSource, Declaration, Settings, SplitSide, options};
 use load::format::Format;
 use load::{HeightSource, Import, Source};
 
@@ -26,6 +26,7 @@ impl App {
             matches!(self.source(), Some(Source::File(path)) if Format::from_name(path) != Some(Format::Gltf));
         let scenes = SplitSide::BOTH.into_iter().filter_map(|half| document?.scene.half(half));
         let has_bones = scenes.map(|own| own.tessellator.mesh()).any(|mesh| !mesh.bones.is_empty());
+        let cameras = document.map(|document| &document.loaded.mesh.cameras);
         let needs = [
             (Need::Document, document.is_some()),
             (Need::File, self.source().is_some_and(|source| source.shape().is_none())),
@@ -58,7 +59,7 @@ impl App {
             (Need::Culling, self.can_cull_back_faces()),
             (Need::Split, self.settings.split.is_some()),
             (Need::Frozen, self.viewport.frozen.is_some()),
-            (Need::Deviation, self.shows_deviation()),
+            (Need::Deviation, self.settings.any_half_shows(ColorSource::ReferenceSurface)),
             (Need::MeasurableChart, self.can_measure_chart()),
             (Need::Chart, !self.chart_rows().is_empty()),
             (Need::Clips, !clips.is_empty()),
@@ -66,7 +67,7 @@ impl App {
         Availability {
             has: needs.into_iter().filter(|(_, holds)| *holds).map(|(need, _)| need).collect(),
             bookmarks,
-            file_cameras: self.file_camera_names(),
+            file_cameras: cameras.into_iter().flatten().map(|camera| camera.name.clone()).collect(),
             clips,
             recent: self.persistence.recent().map(Into::into).collect(),
         }
@@ -93,6 +94,7 @@ impl App {
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),
             Action::SplitView => self.toggle_split(),
+            Action::KeepOnLeft => self.keep_on_left(),
             Action::HidePanels => self.panels.are_hidden = !self.panels.are_hidden,
             Action::FocusControls => context.memory_mut(|memory| memory.move_focus(egui::FocusDirection::Next)),
             Action::OpenAllSections => self.panels.open.set_all(true),

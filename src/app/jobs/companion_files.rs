@@ -254,9 +254,8 @@ impl App {
     pub(in crate::app) fn compare_with_before(&mut self) {
         let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
         self.close_companion(CompanionFile::LeftMesh);
-        self.settings.left = self.settings.tessellation;
+        self.settings.keep_on_left(self.viewport.last_split);
         self.left_mesh = Some(Opened::new(None, before));
-        self.settings.split.get_or_insert(self.viewport.last_split);
     }
 
     /// Whether the left half is for the mesh as it was before its file changed.

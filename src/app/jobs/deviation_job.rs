@@ -33,7 +33,7 @@ pub(crate) struct DeviationBasis {
 /// A result. The scene has the samples themselves.
 #[derive(Clone, Copy)]
 pub(crate) struct DeviationResult {
-    of: DeviationBasis,
+    pub of: DeviationBasis,
     /// The largest distance, in object units; 0 if nothing was emitted.
     pub largest: Interval,
     /// Where its lower end is; none if nothing was emitted.
@@ -45,11 +45,6 @@ pub(crate) struct DeviationResult {
 }
 
 impl DeviationJob {
-    /// The result, if it is about this.
-    pub(crate) fn found_of(&self, of: DeviationBasis) -> Option<&DeviationResult> {
-        self.found.as_ref().filter(|found| found.of == of)
-    }
-
     pub(crate) fn is_busy(&self) -> bool {
         self.walk.is_some()
     }

@@ -51,10 +51,4 @@ impl App {
         let ((_, view), leaks) = self.document.as_ref()?.leaks.found()?;
         (view == self.results()?.seen.view).then_some(&leaks[..])
     }
-
-    /// The cracked edge that comes closest to a leak on screen.
-    pub(in crate::app) fn edge_of_leak(&self, leak: &Leak) -> Option<u32> {
-        let (document, results) = (self.document.as_ref()?, self.results()?);
-        Some(results.found.crack_seen_at(&document.shown().1, &results.seen.view, leak.px)?.edge)
-    }
 }

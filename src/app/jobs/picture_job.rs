@@ -209,7 +209,7 @@ impl App {
 
     /// What commands compare with, and its name: the chosen surface; and while the overlay is on, an exact one.
     fn reference_surface(&self, settings: &Settings) -> Option<(String, Arc<ReferenceShape>)> {
-        let is_shown = settings.halves().any(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface);
+        let is_shown = settings.any_half_shows(ColorSource::ReferenceSurface);
         let (own, reference_shape) = (self.source()?.to_string(), self.yardstick().1?);
         let name = match self.reference_shape.as_ref().map(|chosen| &chosen.from) {
             Some(Some(source)) => source.to_string(),

@@ -13,7 +13,7 @@ use gpu::{GpuError, Readback, Tessellator};
 use inspect::engine::silhouette::sibling;
 use inspect::engine::{Engine, SilhouetteDrawing, SilhouetteView};
 use inspect::measure::{SampleGrid, Silhouette};
-use inspect::render::{Scene, lay_over, outlines_picture};
+use inspect::render::{Scene, outlines_picture};
 use inspect::settings::ColorSource;
 
 /// The comparison of outlines, and its last result.
@@ -30,7 +30,7 @@ pub(crate) struct OutlineDrawing {
 
 pub(crate) struct MeasuredOutlines {
     pub silhouette: Silhouette,
-    picture: RgbaImage,
+    pub picture: RgbaImage,
     /// The picture, which lies over that of the view.
     pub texture: TextureHandle,
 }
@@ -81,10 +81,6 @@ impl MeasuredOutlines {
 }
 
 impl App {
-    fn shows_silhouette(&self) -> bool {
-        self.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::Outlines)
-    }
-
     /// Goes on comparing outlines, once all else that is shown was measured. Without the overlay nothing of it is kept.
     pub(in crate::app) fn compare_outlines(
         &mut self,
@@ -93,7 +89,7 @@ impl App {
         view: &SilhouetteView,
         screen: ScreenView,
     ) -> Result<(), MeasureError> {
-        let shows = self.shows_silhouette();
+        let shows = self.settings.any_half_shows(ColorSource::Outlines);
         let Some(document) = &mut self.document else { return Ok(()) };
         if !shows {
             document.silhouette = SilhouetteJob::default();
@@ -116,16 +112,9 @@ impl App {
 
     /// The outlines of what is shown, once they are compared.
     pub(in crate::app) fn found_outlines(&self) -> Option<&MeasuredOutlines> {
-        let document = self.document.as_ref().filter(|_| self.shows_silhouette())?;
+        let document = self.document.as_ref().filter(|_| self.settings.any_half_shows(ColorSource::Outlines))?;
         let view = self.viewport.picture.seen_from()?;
         let (of, found) = document.silhouette.found()?;
         (of == (document.scene.tessellator.generation(), view)).then_some(found)
-    }
-
-    /// Lays the outlines over a copy of the picture that is shown.
-    pub(in crate::app) fn lay_outlines_over(&self, picture: &mut RgbaImage) {
-        if let Some(found) = self.found_outlines() {
-            lay_over(picture, &found.picture, &self.settings);
-        }
     }
 }

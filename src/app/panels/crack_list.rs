@@ -143,7 +143,11 @@ impl App {
             return;
         }
         let spot = self.edge_spot(topology, edge, at);
-        self.select_edge_alone(edge);
+        // The selected triangle stays if it is one of its edges.
+        if !self.patch_has(edge) {
+            self.deselect();
+        }
+        self.select_only_edge(Some(edge));
         self.show_place(SplitSide::Right, &Spot::Edge(spot), None);
     }
 

@@ -12,9 +12,9 @@ use crate::app::widgets::{fact, marked, number};
 use geometry::tessellate::Inputs;
 use geometry::view::project;
 use inspect::gates::{PatchSpot, Spot};
-use inspect::measure::{DeviationTarget, MOST_TRIANGLES};
+use inspect::measure::{DeviationTarget, MOST_TRIANGLES, WorstPoint};
 use inspect::render::layout::WORST_COLOR;
-use inspect::render::{Distances, LineSegment, Scale, deviation_scale, worst_lines};
+use inspect::render::{Distances, Scale, deviation_scale};
 use inspect::settings::{Choice, ColorSource, SplitSide, SurfaceUnit, options};
 
 impl App {
@@ -37,19 +37,19 @@ impl App {
         self.uses_surface_shader() && self.yardstick().1.is_none()
     }
 
-    pub(in crate::app) fn shows_deviation(&self) -> bool {
-        SplitSide::BOTH.into_iter().any(|half| self.deviates(half))
-    }
-
     /// Whether a half shows its deviation.
-    fn deviates(&self, half: SplitSide) -> bool {
+    pub(super) fn deviates(&self, half: SplitSide) -> bool {
         self.settings.half(half).is_some_and(|own| own.overlays.colors.source() == ColorSource::ReferenceSurface)
     }
 
     /// Counts changes of the deviation that the picture shows; 0 without the overlay.
     pub(in crate::app) fn deviation_shown(&self) -> u64 {
         let jobs = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half));
-        if self.shows_deviation() { jobs.map(|job| job.generation).sum() } else { 0 }
+        if self.settings.any_half_shows(ColorSource::ReferenceSurface) {
+            jobs.map(|job| job.generation).sum()
+        } else {
+            0
+        }
     }
 
     /// The largest distance of a half from the reference surface, once it is known.
@@ -62,16 +62,17 @@ impl App {
         Some(self.known_deviation(half)?.largest.at_most)
     }
 
-    fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
+    pub(super) fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
         self.settings.half(half)?;
-        self.deviating(half)?.found_of(self.deviation_of(half)?)
+        let of = self.deviation_of(half)?;
+        self.deviating(half)?.found.as_ref().filter(|found| found.of == of)
     }
 
     /// Goes on measuring if the overlay is on, no clip plays and no picture is under way. Without a reference surface both
     /// halves are compared with the limit surface of the right one, which has these inputs. The limit surface of a flat left
     /// half would be that half itself.
     pub(in crate::app) fn deviate(&mut self, inputs: &Inputs) -> Result<(), MeasureError> {
-        if !self.shows_deviation() || self.viewport.playback.is_playing() {
+        if !self.settings.any_half_shows(ColorSource::ReferenceSurface) || self.viewport.playback.is_playing() {
             let halves = self.document.iter_mut().flat_map(|document| &mut document.halves);
             halves.for_each(|half| half.deviation.stop());
             return Ok(());
@@ -95,7 +96,12 @@ impl App {
             };
             document.halves[half as usize].deviation.go_on(&self.engine.gpu, scene, of, target)?;
         }
-        self.scale_deviation();
+        let (Some(scale), Some(document)) = (self.deviation_scale(), self.document.as_mut()) else { return Ok(()) };
+        for half in SplitSide::BOTH {
+            if let Some(scene) = document.scene.half_mut(half) {
+                scene.scale_deviation(scale);
+            }
+        }
         Ok(())
     }
 
@@ -103,33 +109,18 @@ impl App {
     fn deviation_scale(&self) -> Option<Scale> {
         let scene = &self.document.as_ref()?.scene;
         let shown = SplitSide::BOTH.into_iter().filter(|half| self.deviates(*half));
-        let largest = shown
-            .filter_map(|half| self.deviating(half)?.found.as_ref())
-            .map(|found| found.largest.at_least)
-            .reduce(f64::max)?;
-        Some(deviation_scale(largest, scene.ulp))
+        let largest = shown.filter_map(|half| Some(self.deviating(half)?.found.as_ref()?.largest.at_least));
+        Some(deviation_scale(largest.reduce(f64::max)?, scene.ulp))
     }
 
-    fn scale_deviation(&mut self) {
-        let (Some(scale), Some(document)) = (self.deviation_scale(), self.document.as_mut()) else { return };
-        for half in SplitSide::BOTH {
-            if let Some(scene) = document.scene.half_mut(half) {
-                scene.scale_deviation(scale);
-            }
-        }
-    }
-
-    /// The lines that mark the point of a half that is farthest from the reference surface.
-    pub(in crate::app) fn worst_mark(&self, half: SplitSide) -> Vec<LineSegment> {
-        let shown = self.known_deviation(half).filter(|_| self.deviates(half));
-        let worst = shown.and_then(|found| found.worst);
-        worst.map_or_else(Vec::new, |worst| worst_lines(worst.emitted.as_vec3(), worst.reference_shape.as_vec3()))
+    /// The point of a half that is farthest from the reference surface, if it is marked.
+    pub(in crate::app) fn marked_worst(&self, half: SplitSide) -> Option<WorstPoint> {
+        self.known_deviation(half).filter(|_| self.deviates(half))?.worst
     }
 
     /// The number of the result that each half's mark shows; 0 for no mark.
     pub(in crate::app) fn worst_marked(&self) -> [u64; 2] {
-        let is_marked = |half| self.deviates(half) && self.known_deviation(half).is_some();
-        let marked = |half| self.deviating(half).filter(|_| is_marked(half));
+        let marked = |half| self.marked_worst(half).and(self.deviating(half));
         SplitSide::BOTH.map(|half| marked(half).map_or(0, |job| job.generation))
     }
 
@@ -153,7 +144,9 @@ impl App {
 
     /// The section about deviation: the reference surface and the distances. It is shown with the overlay.
     pub(in crate::app) fn deviation_section(&mut self, ui: &mut egui::Ui) {
-        if !self.shows_deviation() || !self.panels.open.title(ui, Section::Deviation) {
+        if !self.settings.any_half_shows(ColorSource::ReferenceSurface)
+            || !self.panels.open.title(ui, Section::Deviation)
+        {
             return;
         }
         if self.lacks_reference() {
@@ -198,8 +191,10 @@ impl App {
             let text = format!("Only the first {most} triangles are measured; {} have no colour.", grouped(left_out));
             ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
         }
-        if let Some(half) = clicked {
-            self.frame_worst(half);
+        let worst = clicked.and_then(|half| Some((half, self.known_deviation(half)?.worst?)));
+        if let Some(((half, worst), document)) = worst.zip(self.document.as_ref()) {
+            let corners = document.patch_positions(half, worst.patch);
+            self.show_place(half, &Spot::Patch(PatchSpot::new(corners, worst.emitted.as_vec3())), None);
         }
     }
 
@@ -241,12 +236,5 @@ impl App {
         let (worst, view) = (self.known_deviation(half)?.worst?, self.viewport.picture.seen_from()?);
         let at = |place: glam::DVec3| project(view.clip_from_object, view.viewport, place.as_vec3());
         Some(f64::from(at(worst.emitted)?.distance(at(worst.reference_shape)?)))
-    }
-
-    fn frame_worst(&mut self, half: SplitSide) {
-        let Some(worst) = self.known_deviation(half).and_then(|found| found.worst) else { return };
-        let Some(document) = &self.document else { return };
-        let corners = document.patch_positions(half, worst.patch);
-        self.show_place(half, &Spot::Patch(PatchSpot::new(corners, worst.emitted.as_vec3())), None);
     }
 }

@@ -1,6 +1,7 @@
 //! The lists of leaks and of patches with folds.
 
 use crate::app::App;
+use crate::app::jobs::measure_job::Results;
 use crate::app::text::{grouped, short};
 use crate::app::widgets::{FoundRow, columns, found_list, list_title};
 use inspect::gates::Spot;
@@ -38,8 +39,10 @@ impl App {
     pub(in crate::app) fn show_leak(&mut self, leak: &Leak) {
         self.settings.overlays.cracks = true;
         self.keep_view();
-        let edge = self.edge_of_leak(leak);
-        edge.into_iter().for_each(|edge| self.select_edge(edge));
+        let (Some(document), Some(Results { found, seen, .. })) = (&self.document, self.results()) else { return };
+        if let Some(crack) = found.crack_seen_at(&document.shown().1, &seen.view, leak.px) {
+            self.select_edge(crack.edge);
+        }
     }
 
     /// The list of patches with folds, the largest area first. A click frames one.

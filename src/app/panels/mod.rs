@@ -12,6 +12,7 @@ mod deviation;
 pub(super) mod displacement;
 mod factors_list;
 mod found_lists;
+mod halves;
 mod import;
 mod light_rows;
 mod matcap;

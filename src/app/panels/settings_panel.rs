@@ -8,7 +8,7 @@ use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, file_row, fixed, list_row};
 use crate::commands::{
-    Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, key_name, with_key, with_note,
+    Action, BACKS_ARE_SEEN, Change, CompanionFile, LEFT_MESH, Purpose, all, key_name, with_key, with_note,
 };
 use geometry::tessellate::{Lod, Surface, Tessellation};
 use inspect::settings::{
@@ -37,8 +37,8 @@ impl App {
         });
     }
 
-    /// Which half of a split view is edited, and a button that exchanges both halves, of a split view. While a file stands for
-    /// settings of the right half, these come back there when it is closed, so that half alone is edited.
+    /// Which half of a split view is edited, and buttons that exchange both halves and that keep the right one. While a file stands
+    /// for settings of the right half, these come back there when it is closed, so that half alone is edited.
     fn halves_row(&mut self, ui: &mut egui::Ui) {
         let has_files = self.given.is_some() || self.lod_shader.is_some() || self.surface_shader.is_some();
         let has_left = self.settings.split.is_some() && !has_files;
@@ -54,25 +54,25 @@ impl App {
                              its looks and overlays, if Left looks gives the left half its own.";
                 ui.selectable_value(&mut self.panels.edited, half, name).on_hover_text(hover);
             }
-            let hover = "Exchanges the tessellations left and right, and looks and poses that differ.";
-            if ui.button("Swap").on_hover_text(hover).clicked() {
-                self.swap_halves();
+            let now = self.availability();
+            let commands = all(&now);
+            for (action, name) in [(Change::SwapHalves.into(), "Swap"), (Action::KeepOnLeft, "Keep this on the left")] {
+                self.command_button(ui, &commands, &now, &action, [name; 2]);
             }
         };
-        ui.add_enabled_ui(has_left, |ui| ui.horizontal(row));
+        ui.add_enabled_ui(has_left, |ui| ui.horizontal_wrapped(row));
     }
 
     /// Shows rows whose settings are those of the half that is edited.
     pub(super) fn of_half(&mut self, show: impl FnOnce(&mut Self)) {
         let is_left = self.panels.edited == SplitSide::Left && self.settings.split.is_some();
-        let exchange = |settings: &mut Settings| {
-            if is_left {
-                settings.swap_halves();
-            }
-        };
-        exchange(&mut self.settings);
+        if is_left {
+            self.settings.swap_halves();
+        }
         show(self);
-        exchange(&mut self.settings);
+        if is_left {
+            self.settings.swap_halves();
+        }
     }
 
     /// Which mesh the left half shows.
@@ -85,6 +85,12 @@ impl App {
             let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
             if has_before && ui.selectable_label(self.shows_before(), "Before the change on disk").clicked() {
                 self.compare_with_before();
+            }
+            let file = self.reference_shape().filter(|source| source.shape().is_none()).cloned();
+            if let Some(file) = file
+                && ui.selectable_label(false, format!("Reference surface: {}", file.title())).clicked()
+            {
+                self.open_left_mesh(ui.ctx(), file);
             }
             if ui.selectable_label(false, "Another file…").clicked() {
                 self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::LeftMesh));

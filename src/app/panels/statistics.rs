@@ -6,7 +6,7 @@ use crate::app::text::{grouped, part, short};
 use crate::app::widgets::{fact, marked, number};
 use geometry::mesh::EdgeKind;
 use geometry::view::ulp;
-use inspect::measure::{Cracks, Culled, SeamTurns};
+use inspect::measure::{Measured, SeamTurns};
 use inspect::render::layout::{CRACK_COLOR, FOLD_COLOR, WASTE_COLOR, edge_color};
 use inspect::settings::Choice;
 
@@ -24,6 +24,7 @@ impl App {
                 ui.push_id("patch", |ui| self.patch_section(ui));
             }
             let pushed = self.pushed_down(ui, top);
+            ui.push_id("halves", |ui| self.halves_section(ui));
             ui.push_id("given", |ui| self.given_section(ui));
             self.deviation_section(ui);
             self.section(ui, Section::Cracks, |app, ui| app.crack_facts(ui));
@@ -61,11 +62,10 @@ impl App {
     /// How far shading normals turn at seams. Until that is measured, the rows show ellipses.
     fn seam_facts(&self, ui: &mut egui::Ui) {
         let seams = self.results().map(|results| results.found.seams.shading);
-        let angle = |of: fn(&SeamTurns) -> f64| {
-            seams.map_or_else(
-                || "…".into(),
-                |seams| if seams.edges > 0 { format!("{:.2}°", of(&seams)) } else { "-".into() },
-            )
+        let angle = |of: fn(&SeamTurns) -> f64| match seams {
+            None => "…".to_owned(),
+            Some(seams) if seams.edges > 0 => format!("{:.2}°", of(&seams)),
+            Some(_) => "-".to_owned(),
         };
         let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv seam.";
         fact(ui, "Angle at seams", &angle(|seams| seams.emitted.most), hover);
@@ -80,33 +80,30 @@ impl App {
         let Some(document) = &self.document else { return };
         // Until they are measured, the rows show ellipses.
         let results = self.results();
-        let cracks = results.map(|results| &results.found.cracks);
-        let count = |number: fn(&Cracks) -> u64| cracks.map_or_else(|| "…".into(), |cracks| grouped(number(cracks)));
-        let gap = |size: &dyn Fn(&Cracks) -> f64, unit: &str| {
-            cracks.map_or_else(|| format!("… {unit}"), |cracks| format!("{} {unit}", short(size(cracks))))
-        };
+        let found = results.map(|results| &results.found);
+        let count = |number: fn(&Measured) -> u64| found.map_or_else(|| "…".into(), |found| grouped(number(found)));
+        let gap = |size: Option<f64>, unit: &str| format!("{} {unit}", size.map_or_else(|| "…".into(), short));
+        let widest = found.map(|found| found.cracks.max_gap());
         let ulp = ulp(&document.loaded.topology);
         let hover = "Points of edges with several sides, counted once for each side after the first.";
-        fact(ui, "Points compared", &count(|cracks| cracks.edge_points), hover);
+        fact(ui, "Points compared", &count(|found| found.cracks.edge_points), hover);
         let hover = "Points that differ in at least one bit from the first side's.";
-        fact(ui, "Different", &count(|cracks| cracks.different_bits), hover);
+        fact(ui, "Different", &count(|found| found.cracks.different_bits), hover);
         let hover = "Edges whose sides were given factors that differ in at least one bit.";
-        fact(ui, "Factors differ", &count(|cracks| cracks.different_factors), hover);
+        fact(ui, "Factors differ", &count(|found| found.cracks.different_factors), hover);
         let hover = "Points whose normals differ in at least one bit although the normals in the file agree.";
-        fact(ui, "Normals differ", &count(|cracks| cracks.different_normals), hover);
+        fact(ui, "Normals differ", &count(|found| found.cracks.different_normals), hover);
         let hover = "Edges with a point that differs. The overlay Cracks shows them.";
-        let cracked = count(|cracks| cracks.cracked().len() as u64);
+        let cracked = count(|found| found.cracks.cracked().len() as u64);
         marked_fact(ui, CRACK_COLOR, "Cracked edges", &cracked, hover);
         let hover = "The largest distance between two sides' positions of one point, in object units.";
-        fact(ui, "Largest gap", &gap(&Cracks::max_gap, "units"), hover);
+        fact(ui, "Largest gap", &gap(widest, "units"), hover);
         let hover = "The same in ULP of the mesh's largest coordinate.";
-        fact(ui, "", &gap(&|cracks| cracks.max_gap() / ulp, "ULP"), hover);
-        let px = results.and_then(|results| results.widest_crack).map_or(0.0, |(_, px)| px);
+        fact(ui, "", &gap(widest.map(|gap| gap / ulp), "ULP"), hover);
         let hover = "The gap that is the widest as the camera of LOD sees it.";
-        fact(ui, "", &gap(&|_| px, "px"), hover);
+        fact(ui, "", &gap(results.map(|results| results.widest_crack.map_or(0.0, |(_, px)| px)), "px"), hover);
         let hover = "Triangles that face away from the side that their patch faces.";
-        let folds = results.map_or_else(|| "…".into(), |results| grouped(results.found.folds));
-        marked_fact(ui, FOLD_COLOR, "Folds", &folds, hover);
+        marked_fact(ui, FOLD_COLOR, "Folds", &count(|found| found.folds), hover);
     }
 
     /// By how much the section of the patch, which begins at `top`, pushes down what the pointer is over, in points: the panel is
@@ -123,29 +120,24 @@ impl App {
         let Some(document) = &self.document else { return };
         let all = document.loaded.topology.patches.len() as u64;
         let found = self.results().map(|results| &results.found);
-        let culled = found.map(|found| found.culled);
         let count =
-            |number: &dyn Fn(Culled) -> u64| culled.map_or_else(|| "…".into(), |culled| grouped(number(culled)));
-        let drawn = count(&|culled| all - u64::from(culled.total()));
+            |number: &dyn Fn(&Measured) -> u64| found.map_or_else(|| "…".into(), |found| grouped(number(found)));
+        let drawn = count(&|found| all - u64::from(found.culled.total()));
         fact(ui, "Drawn", &drawn, "Patches that emit triangles.");
         let hover = "Patches that clipping leaves out, because the LOD camera can't see them.";
-        fact(ui, "Out of view", &count(&|culled| culled.out_of_view.into()), hover);
+        fact(ui, "Out of view", &count(&|found| found.culled.out_of_view.into()), hover);
         let hover = "Patches that are left out because the LOD camera sees only their backs.";
-        fact(ui, "Facing away", &count(&|culled| culled.facing_away.into()), hover);
-        let limit = found.map_or_else(|| "…".into(), |found| grouped(found.patches_at_limit.into()));
+        fact(ui, "Facing away", &count(&|found| found.culled.facing_away.into()), hover);
         let hover = "Patches with a factor at the tessellator's maximum: 127 under rows, else 63 or 64. They may need more \
                      segments, so LOD by error may miss its tolerance there.";
-        fact(ui, "At maximum factor", &limit, hover);
+        fact(ui, "At maximum factor", &count(&|found| found.patches_at_limit.into()), hover);
     }
 
     /// What is tessellated too finely or needlessly.
     fn waste_facts(&self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
         let patches = document.loaded.topology.patches.len() as u64;
-        let unknown = || {
-            if document.right().measure.is_busy() { "…".to_owned() } else { "-".to_owned() }
-        };
-        let results = self.results();
+        let (results, unknown) = (self.results(), || "…".to_owned());
         let small = results.map_or_else(unknown, |results| part(results.sizes.small, results.sizes.in_view));
         let low = results.map_or_else(unknown, |results| part(results.found.patches_low.into(), patches));
         let hover = "Triangles in view with an area below 4.5 px, half of a square with sides of 3 px, and their share of all \

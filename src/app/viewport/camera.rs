@@ -49,11 +49,6 @@ impl App {
         }
     }
 
-    pub(in crate::app) fn file_camera_names(&self) -> Vec<String> {
-        let cameras = self.document.as_ref().map(|document| &document.loaded.mesh.cameras);
-        cameras.into_iter().flatten().map(|camera| camera.name.clone()).collect()
-    }
-
     /// Moves the camera to where a camera of the file is at this moment, and gives it the same field of view, or height. It follows
     /// that camera while a clip plays.
     fn look_through_file_camera(&mut self, index: usize) {

@@ -9,7 +9,7 @@ use crate::commands::{Action, key_name};
 use geometry::mesh::Bounds;
 use geometry::tessellate::LodView;
 use geometry::view::ScreenView;
-use inspect::render::{Camera, LineSegment, lod_camera_lines};
+use inspect::render::Camera;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FrozenCamera {
@@ -77,11 +77,5 @@ impl App {
     pub(in crate::app) fn frozen_shown(&self) -> Option<(FrozenCamera, Bounds)> {
         let bounds = self.document.as_ref()?.scene.bounds;
         self.viewport.frozen.filter(|frozen| frozen.camera != self.viewport.camera).map(|frozen| (frozen, bounds))
-    }
-
-    /// The frozen camera's frustum as lines over the mesh.
-    pub(in crate::app) fn frozen_lines(&self) -> Vec<LineSegment> {
-        let shown = self.frozen_shown();
-        shown.map_or_else(Vec::new, |(frozen, bounds)| lod_camera_lines(&frozen.camera, frozen.viewport, &bounds))
     }
 }

@@ -4,7 +4,9 @@ use super::frozen_camera::FrozenCamera;
 use super::ruler::Ruler;
 use crate::app::{App, Document};
 use geometry::mesh::{Bounds, Moment, Topology};
-use inspect::render::{LeftPose, LineSegment, axis_lines, bone_lines, crack_lines, t_junction_lines};
+use inspect::render::{
+    LeftPose, LineSegment, axis_lines, bone_lines, crack_lines, lod_camera_lines, t_junction_lines, worst_lines,
+};
 use inspect::settings::{Overlays, SplitSide};
 
 /// Everything that the lines over the mesh depend on.
@@ -91,8 +93,12 @@ impl App {
         if let Some(own) = document.scene.half(half).filter(|_| overlays.bones) {
             lines.extend(bone_lines(own));
         }
-        lines.extend(self.worst_mark(half));
-        lines.extend(self.frozen_lines());
+        if let Some(worst) = self.marked_worst(half) {
+            lines.extend(worst_lines(worst.emitted.as_vec3(), worst.reference_shape.as_vec3()));
+        }
+        if let Some((frozen, bounds)) = self.frozen_shown() {
+            lines.extend(lod_camera_lines(&frozen.camera, frozen.viewport, &bounds));
+        }
         lines.extend(self.ruler_lines());
         // The selection comes last, so that it is over all other lines, and the colours of factors are over that of an edge.
         if let Some(topology) = posed {

@@ -1,7 +1,5 @@
 //! The left half of a split view. Its scene is made on a thread of its own, and only while it is shown.
 
-use std::time::Duration;
-
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::job_list::Work;
@@ -14,15 +12,7 @@ use inspect::render::Scene;
 use inspect::settings::SplitSide;
 use inspect::shot::{HalfFacts, half_title, surface_title};
 
-/// Making a scene for longer than this is shown in the window.
-const NOTICED: Duration = Duration::from_millis(300);
-
 impl App {
-    /// Whether making the left half's scene takes so long that the window should say so.
-    pub(super) fn left_takes_long(&self) -> bool {
-        self.jobs.get(Work::LeftHalf).is_some_and(|job| job.since.elapsed() > NOTICED)
-    }
-
     /// Makes the left half's scene or drops it, as the settings want it. Waits until no picture is under way.
     pub(in crate::app) fn keep_left(&mut self, context: &egui::Context) -> Result<(), GpuError> {
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };
@@ -72,13 +62,13 @@ impl App {
     /// What was measured last. The panels show all of it together: while another picture is measured, that of the picture before. None
     /// while a clip plays, and if the picture isn't drawn: these aren't measured.
     pub(in crate::app) fn results(&self) -> Option<&Results> {
-        let is_measured = !self.is_playing() && self.viewport.picture.cancelled.is_none();
-        self.last_results().filter(|_| is_measured)
+        self.results_of(SplitSide::Right)
     }
 
-    /// What was measured last of the document.
-    pub(in crate::app) fn last_results(&self) -> Option<&Results> {
-        self.document.as_ref()?.right().measure.last()
+    /// The same of a half.
+    pub(in crate::app) fn results_of(&self, half: SplitSide) -> Option<&Results> {
+        let is_measured = !self.is_playing() && self.viewport.picture.cancelled.is_none();
+        self.document.as_ref()?.halves[half as usize].measure.last().filter(|_| is_measured)
     }
 
     pub(in crate::app) fn found(&self, half: SplitSide) -> Option<&Measured> {

@@ -1,6 +1,7 @@
 //! The viewport's panel: moving the camera with the pointer, and the divider, notes and progress over the picture.
 
 use std::sync::Arc;
+use std::time::Duration;
 
 use egui::{PointerButton, Sense};
 use glam::vec2;
@@ -36,6 +37,9 @@ const ALIGN: [egui::Align2; 2] = [egui::Align2::RIGHT_TOP, egui::Align2::LEFT_TO
 
 /// From this width on, in points, a half has room for more than the first line of its title.
 const WIDE_HALF: f32 = 180.0;
+
+/// Making the left half's scene for longer than this is shown.
+const NOTICED: Duration = Duration::from_millis(300);
 
 /// The line of help at a first start.
 const GREETING: &str =
@@ -228,7 +232,7 @@ impl App {
             context.request_repaint();
         } else if measures_only {
             // Drawing the window more often would only slow the measurement down.
-            context.request_repaint_after(std::time::Duration::from_millis(30));
+            context.request_repaint_after(Duration::from_millis(30));
         }
         Ok(())
     }
@@ -313,11 +317,9 @@ impl App {
 
     /// The number of triangles of the wanted picture, as text.
     pub(in crate::app) fn triangles(&self) -> String {
-        let of_half = |half| {
-            self.settings.half(half)?;
-            Some(self.document.as_ref()?.scene.half(half)?.tessellator.totals().1)
-        };
-        counted(SplitSide::BOTH.into_iter().filter_map(of_half).sum(), "triangle")
+        let scene = |half| self.settings.half(half).and(self.document.as_ref()?.scene.half(half));
+        let scenes = SplitSide::BOTH.into_iter().filter_map(scene);
+        counted(scenes.map(|own| own.tessellator.totals().1).sum(), "triangle")
     }
 
     /// Whether nothing was done yet: no camera moved, no setting changed, nothing selected and no other mesh opened.
@@ -339,9 +341,9 @@ impl App {
                 let unit = if spacing == 1.0 { "unit" } else { "units" };
                 format!("Grid: {spacing} {unit}")
             });
-        let has_left = self.document.as_ref().is_some_and(|document| document.scene.half(SplitSide::Left).is_some());
-        let difference = (has_left && self.settings.shows_difference())
-            .then(|| "Difference: black where both halves are equal".to_owned());
+        let left = self.document.as_ref().and_then(|document| document.scene.half(SplitSide::Left));
+        let difference = left.filter(|_| self.settings.shows_difference());
+        let difference = difference.map(|_| "Difference: black where both halves are equal".to_owned());
         let distance = self.viewport.ruler.map(|ruler| ruler.text());
         let bookmarked = self.viewport.bookmarks.iter().position(|bookmark| *bookmark == self.viewport.camera);
         let bookmark = bookmarked.map(|index| format!("Bookmark {}", index + 1));
@@ -385,7 +387,8 @@ impl App {
         let is_old = self.document.as_ref().map(|document| document.generation)
             != self.viewport.picture.drawn.as_ref().map(|drawn| drawn.document);
         let is_cancelled = self.viewport.picture.cancelled.is_some();
-        if self.document.is_some() && !is_cancelled && (is_old || self.left_takes_long()) {
+        let left_takes_long = self.jobs.get(Work::LeftHalf).is_some_and(|job| job.since.elapsed() > NOTICED);
+        if self.document.is_some() && !is_cancelled && (is_old || left_takes_long) {
             let text = note_text(ui, "Tessellating…", egui::Color32::from_gray(235));
             let place = egui::Align2::CENTER_TOP.align_size_within_rect(text.size(), rect.shrink(40.0));
             paint_note(ui, place, text);
@@ -396,7 +399,7 @@ impl App {
             if progress(ui, rect, &under_way.title, done, &stop, under_way.stopping) {
                 self.stop(&under_way);
             }
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+            ui.ctx().request_repaint_after(Duration::from_millis(50));
         } else if self.viewport.picture.cancelled.is_some() {
             let hover = "Draw anyway. Changing any setting also redraws.";
             if progress(ui, rect, &format!("Not drawn: {}", self.triangles()), None, "Draw", hover) {

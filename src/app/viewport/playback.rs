@@ -1,6 +1,7 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
+use crate::commands::CompanionFile;
 use geometry::defaults::with_defaults;
 use geometry::mesh::Moment;
 use geometry::mesh::rig::Clip;
@@ -88,6 +89,14 @@ impl App {
     pub(in crate::app) fn swap_halves(&mut self) {
         self.settings.swap_halves();
         self.swap_poses();
+    }
+
+    /// Makes the left half a copy of the right one, and opens the split. A moment of a clip stays there; a pose at rest goes on
+    /// being shared.
+    pub(in crate::app) fn keep_on_left(&mut self) {
+        self.close_companion(CompanionFile::LeftMesh);
+        self.settings.keep_on_left(self.viewport.last_split);
+        self.viewport.playback.left = self.moment().map_or(LeftPose::Same, |moment| LeftPose::Own(Some(moment)));
     }
 
     /// Exchanges the poses of both halves, if the left one has its own.

@@ -74,14 +74,6 @@ impl App {
         self.document.iter_mut().for_each(|document| document.selection.edge = edge);
     }
 
-    /// Selects an edge. The selected triangle stays if it is one of its edges.
-    pub(in crate::app) fn select_edge_alone(&mut self, edge: u32) {
-        if !self.patch_has(edge) {
-            self.deselect();
-        }
-        self.select_only_edge(Some(edge));
-    }
-
     /// Whether it is an edge of the selected patch.
     pub(in crate::app) fn patch_has(&self, edge: u32) -> bool {
         let (Some(patch), Some(document)) = (self.selected_patch(), &self.document) else { return false };

@@ -282,10 +282,22 @@ impl Settings {
         SplitSide::BOTH.into_iter().filter_map(|half| self.half(half))
     }
 
+    /// Whether colours of a half come from this source.
+    pub fn any_half_shows(&self, source: ColorSource) -> bool {
+        self.halves().any(|own| own.overlays.colors.source() == source)
+    }
+
     /// Exchanges what is left and right of the split.
     pub fn swap_halves(&mut self) {
         std::mem::swap(&mut self.left, &mut self.tessellation);
         self.swap_looks();
+    }
+
+    /// Makes the left half a copy of the right one, and splits a picture that isn't. Looks that both share go on being shared.
+    pub fn keep_on_left(&mut self, at: f32) {
+        self.left = self.tessellation;
+        self.left_looks = self.left_looks.map(|_| self.looks());
+        self.split.get_or_insert(at);
     }
 
     fn swap_looks(&mut self) {

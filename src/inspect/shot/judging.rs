@@ -9,7 +9,7 @@ use crate::gates::{Deviation, Facts, Gate, GateKind, Judgement, Limit, Spot, Sta
 use crate::measure::{
     Accuracy, AccuracyOptions, CrossedPatches, CrossingMeasurement, MOST_KEPT, Narrow, Pop, Sight, farthest_pop,
 };
-use crate::render::{Camera, Leaks, worst_lines};
+use crate::render::{Camera, Leaks, Scene, worst_lines};
 use crate::settings::{Overlays, Settings, SplitSide};
 use geometry::mesh::t_junctions;
 use geometry::progress::Progress;
@@ -28,6 +28,14 @@ pub struct Numbers {
     pub patches: u64,
     pub triangles_out: u64,
     pub vertices_out: u64,
+}
+
+impl Numbers {
+    pub(super) fn new(Scene { tessellator, .. }: &Scene) -> Self {
+        let [triangles_in, patches] = [tessellator.mesh().triangles.len(), tessellator.topology().patches.len()];
+        let (vertices_out, triangles_out) = tessellator.totals();
+        Self { triangles_in: triangles_in as u64, patches: patches as u64, triangles_out, vertices_out }
+    }
 }
 
 impl Shot {
@@ -188,9 +196,7 @@ impl Shot {
 
     /// How much the mesh has, and how much was emitted.
     pub fn numbers(&self) -> Numbers {
-        let (vertices_out, triangles_out) = self.scene.tessellator.totals();
-        let triangles_in = self.posed.mesh.triangles.len() as u64;
-        Numbers { triangles_in, patches: self.posed.topology.patches.len() as u64, triangles_out, vertices_out }
+        Numbers::new(&self.scene)
     }
 
     /// Draws the worst place that a gate found, with the overlay that shows it, as it was tessellated for the judged picture.

@@ -360,7 +360,7 @@ impl Shot {
                 accuracy: reference_surface
                     .filter(|_| stats.is_some())
                     .map(|reference_shape| (&**reference_shape, &inputs.view, AccuracyOptions::default())),
-                sizes: (stats.is_some() && half == SplitSide::Right).then_some(view),
+                sizes: stats.is_some().then_some(view),
             };
             self.results[half as usize] = Some(self.engine.measure_watched(scene, &wanted, progress)?);
             progress.check()?;
@@ -371,7 +371,7 @@ impl Shot {
 
     /// Compares outlines, if they are shown: those of the right half, in all of the picture.
     fn compare_outlines(&mut self, progress: &Progress) -> Result<(), ShotError> {
-        if self.subject.settings.halves().any(|own| own.overlays.colors.source() == ColorSource::Outlines) {
+        if self.subject.settings.any_half_shows(ColorSource::Outlines) {
             let seen = self.view.camera.lod_view(self.target.viewport(), &self.scene.bounds);
             let view = SilhouetteView { size: self.target.size, seen, lod: self.lod_view };
             let tessellation = &self.subject.settings.tessellation;

@@ -10,7 +10,7 @@ use super::outline_stats::SilhouetteStats;
 use super::reference::ReferenceStats;
 use super::reference_surface::{AccuracyStats, DeviationStats};
 use super::user_shader_report::{LodShaderStats, SurfaceShaderStats};
-use super::{Shot, ShotError};
+use super::{Numbers, Shot, ShotError};
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gates::{GateKind, Judgement};
 use crate::measure::{Measured, SeamTurns, Seams};
@@ -38,23 +38,10 @@ pub struct Stats {
     degenerate: u32,
     /// Triangles' corners without a normal in the file, which are smooth up to the crease angle.
     normals_made: u32,
-    patches: u64,
-    /// Patches that are left out for any reason.
-    patches_culled: u32,
-    patches_out_of_view: u32,
-    patches_facing_away: u32,
-    /// Patches drawn with factors that are all below 2, edges and inside.
-    patches_below_factor_2: u32,
-    /// Emitted triangles that are neither wholly outside one side of the view nor cut by its near plane.
-    triangles_in_view: u64,
-    /// Those of them that cover less than 4.5 px² (half of a square of 3 px).
-    triangles_below_3_px: u64,
     bytes: Bytes,
     /// Px through which one can see into the mesh; none if it is open, reaches the near plane, or patches that face away were
     /// left out.
     leaks: Option<u64>,
-    /// Vertices with a position or uv that is no finite number.
-    not_finite: u64,
     /// Patches that LOD by error shows as one triangle because their surface is flat, though its points slide: their error is
     /// the distance to the nearest point of the surface. None if errors weren't measured.
     patches_flat: Option<u64>,
@@ -80,7 +67,6 @@ pub struct Stats {
     pub reference: Option<ReferenceStats>,
     /// How the gates of `--fail-on` judged.
     gates: Vec<Judgement>,
-    ms: BTreeMap<&'static str, f64>,
 }
 
 /// What was drawn, in the options' names: each with its value, or null if it has no effect.
@@ -250,13 +236,24 @@ struct HalfStats {
     #[serde(skip_serializing_if = "Option::is_none")]
     mesh: Option<String>,
     settings: SettingsStats,
-    triangles_in: u64,
-    triangles_out: u64,
-    vertices_out: u64,
+    #[serde(flatten)]
+    numbers: Numbers,
+    /// Patches that are left out for any reason.
+    patches_culled: u32,
+    patches_out_of_view: u32,
+    patches_facing_away: u32,
+    /// Patches drawn with factors that are all below 2, edges and inside.
+    patches_below_factor_2: u32,
+    /// Emitted triangles that are neither wholly outside one side of the view nor cut by its near plane.
+    triangles_in_view: u64,
+    /// Those of them that cover less than 4.5 px² (half of a square of 3 px).
+    triangles_below_3_px: u64,
     cracks: CrackStats,
     seams: SeamStats,
     /// Triangles that face away from the side that their patch faces.
     folds: u64,
+    /// Vertices with a position or uv that is no finite number.
+    not_finite: u64,
     /// The largest distance on screen between what was emitted and its surface, in px; none if it wasn't measured, or
     /// nothing is in view.
     max_error_px: Option<f64>,
@@ -266,6 +263,8 @@ struct HalfStats {
     deviation: Option<DeviationStats>,
     /// None at rest.
     animation: Option<AnimationStats>,
+    /// What each pass takes if the half is drawn alone, in ms; of the right half also what loading took.
+    ms: BTreeMap<&'static str, f64>,
 }
 
 impl Shot {
@@ -275,14 +274,20 @@ impl Shot {
     /// # Errors
     /// The device was lost.
     pub fn stats(&mut self) -> Result<Option<Stats>, ShotError> {
-        let Some(right) = self.half_stats(SplitSide::Right) else { return Ok(None) };
+        let mut halves = SplitSide::BOTH.map(|half| self.half_stats(half));
         let (engine, target, scene) = (&self.engine, &self.target, &mut self.scene);
         let (settings, camera, lod_view) = (&self.subject.settings, &self.view.camera, self.lod_view);
-        let Some(results) = &self.results[SplitSide::Right as usize] else { return Ok(None) };
-        let Some(measured) = &results.survey else { return Ok(None) };
-        // Only the right half is timed.
-        let alone = Settings { split: None, ..*settings };
-        let passes = engine.time(scene, target, camera, lod_view, &alone, Runs::default())?;
+        let results = self.results[SplitSide::Right as usize].as_ref();
+        let Some((results, measured)) = results.and_then(|own| Some((own, own.survey.as_ref()?))) else {
+            return Ok(None);
+        };
+        for (half, stats) in SplitSide::BOTH.into_iter().zip(&mut halves) {
+            let Some((scene, stats)) = scene.half_mut(half).zip(stats.as_mut()) else { continue };
+            let alone = Settings { split: None, ..settings.half(half).unwrap_or(*settings) };
+            let passes = engine.time(scene, target, camera, lod_view, &alone, Runs::default())?;
+            stats.ms = passes.iter().map(|time| (time.pass, time.ms)).collect();
+        }
+        let [left, Some(mut right)] = halves else { return Ok(None) };
         let leaks = engine.leaks(scene, measured, target.size, camera)?;
         let factors_capped = engine.factors_capped(scene, &settings.tessellation)?;
         let lod_shader = LodShaderStats::new(engine, scene)?;
@@ -293,7 +298,7 @@ impl Shot {
             None => None,
         };
         let Loaded { mesh, topology, .. } = &self.posed;
-        let of_mesh = [("load", self.posed.load_ms), ("topology", self.posed.topology_ms)];
+        right.ms.extend([("load", self.posed.load_ms), ("topology", self.posed.topology_ms)]);
         let mirrored = camera.is_mirrored().then_some(self.view.size[0]);
         Ok(Some(Stats {
             // The name of the view, the reference picture and the factors file are known to those who draw.
@@ -308,26 +313,17 @@ impl Shot {
             edges: topology.edge_counts(),
             degenerate: topology.degenerate,
             normals_made: self.posed.read.repairs.normals_made,
-            patches: topology.patches.len() as u64,
-            patches_culled: measured.culled.total(),
-            patches_out_of_view: measured.culled.out_of_view,
-            patches_facing_away: measured.culled.facing_away,
-            patches_below_factor_2: measured.patches_low,
-            triangles_in_view: results.sizes.map_or(0, |sizes| sizes.in_view),
-            triangles_below_3_px: results.sizes.map_or(0, |sizes| sizes.small),
             bytes,
             leaks,
-            not_finite: measured.not_finite,
             patches_flat: results.flat_patches,
             lod_comparison,
             factors_capped,
             lod_shader,
             surface_shader,
             silhouette: self.silhouette.as_ref().map(|silhouette| SilhouetteStats::new(silhouette, mirrored)),
-            left: self.half_stats(SplitSide::Left),
+            left,
             camera: Some(ViewStats::new(camera, self.view.size, &self.scene.bounds)),
             gates: self.judged.clone(),
-            ms: passes.iter().map(|time| (time.pass, time.ms)).chain(of_mesh).collect(),
         }))
     }
 
@@ -335,23 +331,28 @@ impl Shot {
         let settings = self.subject.settings.half(half)?;
         let (scene, results) = self.scene.half(half).zip(self.results(half))?;
         let (tessellator, measured) = (&scene.tessellator, results.survey.as_ref()?);
-        let (vertices_out, triangles_out) = tessellator.totals();
         let is_right = half == SplitSide::Right;
         let judged = if is_right { &self.judged[..] } else { &[] };
         let topology = if is_right { &self.posed.topology } else { tessellator.topology() };
         Some(HalfStats {
             mesh: self.subject.left.as_ref().filter(|_| !is_right).map(|left| left.source.to_string()),
             settings: SettingsStats::new(&settings, tessellator.surface_shader().is_some(), judged),
-            triangles_in: tessellator.mesh().triangles.len() as u64,
-            triangles_out,
-            vertices_out,
+            numbers: Numbers::new(scene),
+            patches_culled: measured.culled.total(),
+            patches_out_of_view: measured.culled.out_of_view,
+            patches_facing_away: measured.culled.facing_away,
+            patches_below_factor_2: measured.patches_low,
+            triangles_in_view: results.sizes.map_or(0, |sizes| sizes.in_view),
+            triangles_below_3_px: results.sizes.map_or(0, |sizes| sizes.small),
             cracks: CrackStats::new(measured, topology, self.view()),
             seams: SeamStats::new(&measured.seams),
             folds: measured.folds,
+            not_finite: measured.not_finite,
             max_error_px: results.screen_error.map(|worst| worst.value),
             accuracy: self.accuracy(half),
             deviation: self.deviation(half),
             animation: scene.clip_and_time().map(|(name, time)| AnimationStats { name, time }),
+            ms: BTreeMap::new(),
         })
     }
 }

@@ -1,0 +1,119 @@
+//! Both halves of a split view beside each other: their figures, and the left half as what was shown before a change.
+
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+use geometry::mesh::Shape;
+use geometry::tessellate::Surface;
+use inspect::settings::SplitSide;
+use load::Source;
+use pnaen::app::App;
+
+use crate::editing::press_with;
+use crate::{choose, click, press, scroll_to, settle, uniform, uniform_of};
+
+const QUAD: &str = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n";
+
+#[test]
+fn the_figures_of_both_halves_stand_beside_each_other() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    assert!(harness.query_by_label("Left and right").is_none(), "the view isn't split");
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Left", "PN");
+    click(&mut harness, "Edit left (A)");
+    choose(&mut harness, "Partitioning", "Integer");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(3.0);
+    settle(&mut harness);
+    // Patches of 13 triangles on the left, and of 121 on the right, which has 9 segments an edge.
+    for label in [
+        "Triangles, Left: 156",
+        "Triangles, Right: 1,452",
+        "Triangles, Difference: +1,296",
+        "Culled patches, Left: 0",
+        "At max factor, Difference: 0",
+        "Cracked edges, Left: 12",
+        "Cracked edges, Right: 0",
+        "Cracked edges, Difference: -12",
+        "Widest gap, px, Right: 0",
+    ] {
+        harness.get_by_label(label);
+    }
+    harness.get_by_label_contains("Widest gap, px, Difference: -");
+    assert!(harness.query_by_label_contains("Deviation, Left: ").is_none(), "the overlay is off");
+    scroll_to(&mut harness, "Left and right");
+    click(&mut harness, "Left and right");
+    assert!(harness.query_by_label("Triangles, Left: 156").is_none(), "the section is folded");
+    click(&mut harness, "Left and right");
+    harness.get_by_label("Triangles, Left: 156");
+    press(&mut harness, egui::Key::S);
+    assert!(harness.query_by_label("Left and right").is_none());
+}
+
+#[test]
+fn the_deviations_of_both_halves_are_compared_if_both_show_it() {
+    let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Left", "Flat");
+    press(&mut harness, egui::Key::V);
+    // The distance between the inscribed and the circumscribed sphere, and a third of it or less.
+    harness.get_by_label("Deviation, Left: 0.205");
+    harness.get_by_label_contains("Deviation, Right: 0.06");
+    harness.get_by_label_contains("Deviation, Difference: -0.1");
+    choose(&mut harness, "Left looks", "Its own");
+    press(&mut harness, egui::Key::V);
+    assert!(harness.state().deviation(SplitSide::Left).is_some());
+    assert!(harness.query_by_label_contains("Deviation, Left: ").is_none(), "the right half has no deviation");
+}
+
+#[test]
+fn what_is_shown_is_kept_on_the_left_and_compared_with_what_is_changed_then() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    let before = *harness.state().settings();
+    press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::J);
+    let kept = *harness.state().settings();
+    assert!(kept.split.is_some(), "the split opens");
+    assert_eq!((kept.left, kept.left_looks), (before.tessellation, None));
+    harness.get_by_label("Triangles, Difference: 0");
+    choose(&mut harness, "Surface", "PN");
+    harness.get_by_label("Cracked edges, Left: 0");
+    harness.get_by_label("Cracked edges, Difference: +12");
+    // Looks of its own are those of the right half, too.
+    choose(&mut harness, "Left looks", "Its own");
+    press(&mut harness, egui::Key::W);
+    let left = |harness: &Harness<App>| {
+        let left = harness.state().settings().half(SplitSide::Left).expect("it is split");
+        (left.tessellation.surface, left.overlays.wireframe)
+    };
+    assert_eq!(left(&harness), (Surface::PnAen, false));
+    scroll_to(&mut harness, "Keep this on the left");
+    click(&mut harness, "Keep this on the left");
+    assert_eq!(left(&harness), (Surface::Pn, true));
+    harness.get_by_label("Cracked edges, Left: 12");
+    press(&mut harness, egui::Key::W);
+    assert_eq!(left(&harness), (Surface::Pn, true), "the right half alone changes");
+    let context = harness.ctx.clone();
+    harness.state_mut().undo(&context);
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert_eq!(left(&harness), (Surface::PnAen, false));
+    harness.get_by_label("Cracked edges, Left: 0");
+}
+
+#[test]
+fn the_reference_surface_is_shown_on_the_left_until_the_right_half_is_kept_there() {
+    let (folder, mut harness) = uniform_of("quad.obj", QUAD);
+    let path = folder.path().join("high.obj");
+    std::fs::write(&path, QUAD.replace("f 1 2 3 4", "f 1 2 3")).expect("a writable folder");
+    press(&mut harness, egui::Key::S);
+    let context = harness.ctx.clone();
+    harness.state_mut().open_reference_shape(&context, Source::File(path));
+    settle(&mut harness);
+    choose(&mut harness, "Left mesh", "Reference surface: high.obj");
+    harness.get_by_label_contains("Left: high.obj");
+    scroll_to(&mut harness, "Keep this on the left");
+    click(&mut harness, "Keep this on the left");
+    harness.get_by_label_contains("Left: PN-AEN");
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    harness.get_by_label_contains("Left: high.obj");
+}
