@@ -56,6 +56,7 @@ fn shown<'a>(
         reference_shape: None,
         reference_subdivide: None,
         left_mesh: None,
+        left_morphs: None,
         factors: None,
         lod_shader: None,
         surface_shader: None,

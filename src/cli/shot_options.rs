@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::options::{LodCameraOption, PictureOptions, ReferenceOption, seconds, whole_from};
+use super::options::{LodCameraOption, PictureOptions, ReferenceOption, morph, seconds, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of, files_of_heights,
     keep_apart, load, load_apart, note, options, refuse, warn,
@@ -13,7 +13,7 @@ use super::{
 use geometry::mesh::Moment;
 use geometry::progress::Progress;
 use gpu::Given;
-use inspect::engine::{ClipFinding, Engine, Loaded, Preparation, worst_moment};
+use inspect::engine::{self, ClipFinding, Engine, Loaded, worst_moment};
 use inspect::gates::{Gate, GateKind};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::environment::Environment;
@@ -47,6 +47,10 @@ pub struct ShotOptions {
     /// Another mesh for the left of the split, such as the high-poly original: a mesh file, or a shape
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub split_with: Option<Source>,
+    /// Give a morph target or blend shape this weight left of the split, where no clip moves it; may be given several times. Others
+    /// have there those of --morph, or with --split-with those of its file
+    #[arg(long, value_name = "NAME=WEIGHT", requires = "split", value_parser = morph, allow_hyphen_values = true)]
+    pub split_morph: Vec<(String, f32)>,
     /// Show the mesh left of the split in a pose of this animation, or at `rest`
     #[arg(long, value_name = "NAME", requires = "split", allow_hyphen_values = true)]
     pub split_animation: Option<String>,
@@ -148,8 +152,7 @@ impl ShotOptions {
         let surface_shader = self.user_surface.read(&self.surface.weld.parts)?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface)?;
-        let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
-        let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
+        let left = self.left_mesh(&loaded)?;
         let has_bones = left.iter().chain([&loaded]).any(|own| !own.mesh.bones.is_empty());
         if self.shows(|own| own.overlays.bones) && !has_bones {
             note("--overlay bones has no effect: no skin moves the mesh");
@@ -177,6 +180,18 @@ impl ShotOptions {
             ..Subject::new(loaded, settings)
         };
         Ok((subject, factors_file))
+    }
+
+    /// The mesh left of the split, if it isn't the right one: that of another file, or the right one with other weights.
+    fn left_mesh(&self, right: &Loaded) -> Result<Option<Loaded>, CliError> {
+        let morphs = self.split_morph.iter().cloned().collect();
+        let preparation = right.preparation.of_left(self.split_with.is_some(), &morphs);
+        match &self.split_with {
+            Some(source) => load(source, &preparation).map(Some),
+            None if self.split_morph.is_empty() => Ok(None),
+            // What is said of it was said of the right one.
+            None => Ok(Some(engine::load(&right.source, &preparation, &Progress::new())?)),
+        }
     }
 
     /// The pose of the mesh left of the split.

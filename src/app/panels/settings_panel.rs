@@ -54,17 +54,22 @@ impl App {
                              its looks and overlays, if Left looks gives the left half its own.";
                 ui.selectable_value(&mut self.panels.edited, half, name).on_hover_text(hover);
             }
-            let hover = "Exchanges the tessellations left and right, and looks and poses that differ.";
+            let hover = "Exchanges the tessellations left and right, and looks, poses and morph weights that differ.";
             if ui.button("Swap").on_hover_text(hover).clicked() {
-                self.swap_halves();
+                self.swap_halves(ui.ctx());
             }
         };
         ui.add_enabled_ui(has_left, |ui| ui.horizontal(row));
     }
 
+    /// Whether the left half is edited.
+    pub(super) fn edits_left(&self) -> bool {
+        self.panels.edited == SplitSide::Left && self.settings.split.is_some()
+    }
+
     /// Shows rows whose settings are those of the half that is edited.
     pub(super) fn of_half(&mut self, show: impl FnOnce(&mut Self)) {
-        let is_left = self.panels.edited == SplitSide::Left && self.settings.split.is_some();
+        let is_left = self.edits_left();
         let exchange = |settings: &mut Settings| {
             if is_left {
                 settings.swap_halves();

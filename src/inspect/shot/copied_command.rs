@@ -13,7 +13,7 @@ use crate::settings::{Choice, ColorSource, Declaration, Lighting, Settings, Valu
 use geometry::tessellate::{Displacement, Tessellation};
 use load::files::Limits;
 use load::import::Subdivide;
-use load::{HeightSource, Source};
+use load::{HeightSource, MorphWeights, Source};
 
 /// What stands for the pose without a clip where a clip is named.
 pub const AT_REST: &str = "rest";
@@ -35,6 +35,8 @@ pub struct CopiedCommand<'a> {
     pub reference_subdivide: Option<Subdivide>,
     /// The mesh left of the split, if it is another one.
     pub left_mesh: Option<&'a Source>,
+    /// The weights of morph targets that the left half has otherwise than the right one, or has of another mesh.
+    pub left_morphs: Option<&'a MorphWeights>,
     /// The file whose factors take the place of those of LOD.
     pub factors: Option<&'a Path>,
     /// The file whose functions take the place of LOD.
@@ -101,7 +103,7 @@ impl CopiedCommand<'_> {
         parts.hidden.iter().for_each(|name| line.option("--hide-part", name));
         parts.only.iter().for_each(|name| line.option("--show-part", name));
         parts.style_texts().for_each(|text| line.option("--part", text));
-        parts.morphs.iter().for_each(|(name, weight)| line.option("--morph", format!("{name}={weight}")));
+        line.morphs("--morph", Some(&parts.morphs));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         heights.iter().flat_map(HeightSource::texts).for_each(|text| line.option("--height", text));
@@ -177,8 +179,9 @@ impl CopiedCommand<'_> {
         for (name, path) in files.into_iter().filter_map(|(name, path)| Some((name, path?))) {
             line.option(name, named(&Source::File(path.to_owned())));
         }
-        if let Some(left) = self.left_mesh.filter(|_| self.settings.split.is_some()) {
-            line.option("--split-with", named(left));
+        if self.settings.split.is_some() {
+            self.left_mesh.iter().for_each(|left| line.option("--split-with", named(left)));
+            line.morphs("--split-morph", self.left_morphs);
         }
         if self.animation.is_none() && self.left_animation.is_none() {
             self.reference_shape.iter().for_each(|own| line.option("--reference-surface", named(own)));
@@ -240,6 +243,10 @@ impl Line {
             true => write!(self.0, " {}", word(&format!("{name}={value}"))),
             false => write!(self.0, " {name} {}", word(&value)),
         };
+    }
+
+    fn morphs(&mut self, option: &str, weights: Option<&MorphWeights>) {
+        weights.into_iter().flatten().for_each(|(name, weight)| self.option(option, format!("{name}={weight}")));
     }
 
     fn switch(&mut self, name: &str, is_on: bool) {

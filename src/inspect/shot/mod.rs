@@ -33,7 +33,7 @@ pub(crate) use picture_comparison::DIFFERENCE_FLOOR;
 pub use picture_comparison::{CompareError, Comparison, compare};
 pub use picture_file::{png_bytes, write_drawn, write_picture};
 pub use reference::{BETWEEN_DRIVERS, Judged, Reference};
-pub use split_titles::{HalfFacts, half_title, surface_title};
+pub use split_titles::{HalfFacts, half_title, mesh_title, surface_title};
 pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
 pub use user_shader_report::{not_numbers_said, report_user_lod, report_user_surface, straight_sides_said};
@@ -295,7 +295,7 @@ impl Shot {
         let meshes = self.subject.left.as_ref().map(|left| [left, &self.subject.loaded]);
         let measured = self.results(half).and_then(|results| results.survey.as_ref());
         let facts = HalfFacts {
-            mesh: meshes.map(|meshes| meshes[half as usize].source.title()),
+            mesh: meshes.map_or_else(Vec::new, |own| mesh_title(half, own, own.map(|own| own.source.title()))),
             pose: self.scene.pose_title(half),
             triangles: self.scene.half(half).map(|own| own.tessellator.totals().1),
             cracked_edges: measured.map(|measured| measured.cracks.cracked().len() as u64),

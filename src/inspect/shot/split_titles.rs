@@ -3,8 +3,10 @@
 use image::RgbaImage;
 
 use super::legend::plate_of_lines;
+use crate::engine::Loaded;
 use crate::plot::ChartError;
 use crate::settings::{Choice, Declaration, Settings, SplitSide, options};
+use geometry::names::{shortened, shown};
 
 /// The colour of the divider.
 const DIVIDER: image::Rgba<u8> = image::Rgba([190, 190, 190, 255]);
@@ -12,8 +14,8 @@ const DIVIDER: image::Rgba<u8> = image::Rgba([190, 190, 190, 255]);
 /// What is known of a half beside its settings.
 #[derive(Clone, Debug, Default)]
 pub struct HalfFacts {
-    /// The mesh's name, if the halves show different ones.
-    pub mesh: Option<String>,
+    /// What the mesh is called, if the halves show different ones: see [`mesh_title`].
+    pub mesh: Vec<String>,
     /// Its pose, if they have different ones.
     pub pose: Option<String>,
     /// The name of a shader in place of the surface.
@@ -31,6 +33,20 @@ pub fn surface_title(settings: &Settings, half: SplitSide) -> &'static str {
         SplitSide::Left => settings.left_surface().map_or("untessellated", |surface| surface.label()),
         SplitSide::Right => settings.tessellation.surface.label(),
     }
+}
+
+/// The greatest length of the weights in a title, in characters.
+const LONGEST: usize = 60;
+
+/// What the mesh of a half is called beside that of the other one: by its name and the weights that were chosen for its morph targets, as far
+/// as these differ. The left one is the first of the meshes and of their names.
+pub fn mesh_title(half: SplitSide, meshes: [&Loaded; 2], names: [String; 2]) -> Vec<String> {
+    let [own, other] = [half as usize, 1 - half as usize].map(|of| &meshes[of].preparation.parts.morphs);
+    let unlike = own.iter().filter(|(name, weight)| other.get(*name) != Some(*weight));
+    let weights: Vec<_> = unlike.map(|(name, weight)| format!("{} {weight}", shown(name))).collect();
+    let name = if names[0] == names[1] { "" } else { &names[half as usize] };
+    let words = [name.to_owned(), shortened(&weights.join(", "), LONGEST)];
+    words.into_iter().filter(|text| !text.is_empty()).collect()
 }
 
 /// The title of a half: the mesh and the surface, what else differs between the halves, and what was counted.

@@ -20,6 +20,7 @@ use geometry::mesh::{EdgeCounts, Topology};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::{ScreenView, ulp};
 use gpu::GpuError;
+use load::MorphWeights;
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]
@@ -30,8 +31,6 @@ pub struct Stats {
     adapter: String,
     #[serde(flatten)]
     right: HalfStats,
-    /// What parts and materials have in place of settings, as `--part` has it.
-    parts: Vec<String>,
     points: u64,
     corners: u64,
     edges: EdgeCounts,
@@ -250,6 +249,10 @@ struct HalfStats {
     #[serde(skip_serializing_if = "Option::is_none")]
     mesh: Option<String>,
     settings: SettingsStats,
+    /// What parts and materials have in place of settings, as `--part` has it.
+    parts: Vec<String>,
+    /// The weights of morph targets that were chosen.
+    morphs: MorphWeights,
     triangles_in: u64,
     triangles_out: u64,
     vertices_out: u64,
@@ -302,7 +305,6 @@ impl Shot {
             factors_file: None,
             adapter: engine.gpu.info.name.clone(),
             right,
-            parts: self.posed.preparation.parts.style_texts().collect(),
             points: topology.points.len() as u64,
             corners: mesh.corners.len() as u64,
             edges: topology.edge_counts(),
@@ -339,9 +341,13 @@ impl Shot {
         let is_right = half == SplitSide::Right;
         let judged = if is_right { &self.judged[..] } else { &[] };
         let topology = if is_right { &self.posed.topology } else { tessellator.topology() };
+        let other = self.subject.left.as_ref().filter(|_| !is_right);
+        let parts = &other.unwrap_or(&self.posed).preparation.parts;
         Some(HalfStats {
-            mesh: self.subject.left.as_ref().filter(|_| !is_right).map(|left| left.source.to_string()),
+            mesh: other.map(|left| left.source.to_string()),
             settings: SettingsStats::new(&settings, tessellator.surface_shader().is_some(), judged),
+            parts: parts.style_texts().collect(),
+            morphs: parts.morphs.clone(),
             triangles_in: tessellator.mesh().triangles.len() as u64,
             triangles_out,
             vertices_out,
