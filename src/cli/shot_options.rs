@@ -22,7 +22,7 @@ use inspect::settings::{Choice, ColorSource, Lighting, Settings};
 use inspect::shot::{AT_REST, FactorsFile, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
-use load::{Source, load_matcap};
+use load::{MorphWeights, Source, load_matcap};
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct ShotOptions {
@@ -47,8 +47,8 @@ pub struct ShotOptions {
     /// Another mesh for the left of the split, such as the high-poly original: a mesh file, or a shape
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub split_with: Option<Source>,
-    /// Give a morph target or blend shape this weight left of the split, where no clip moves it; may be given several times. Others
-    /// have there those of --morph, or with --split-with those of its file
+    /// Give a morph target this weight left of the split, as --morph does; may be given several times. Others weigh there as on
+    /// the right, or with --split-with as its file says
     #[arg(long, value_name = "NAME=WEIGHT", requires = "split", value_parser = morph, allow_hyphen_values = true)]
     pub split_morph: Vec<(String, f32)>,
     /// Show the mesh left of the split in a pose of this animation, or at `rest`
@@ -152,7 +152,14 @@ impl ShotOptions {
         let surface_shader = self.user_surface.read(&self.surface.weld.parts)?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface)?;
-        let left = self.left_mesh(&loaded)?;
+        let morphs: MorphWeights = self.split_morph.iter().cloned().collect();
+        let preparation = loaded.preparation.of_left(self.split_with.is_some(), &morphs);
+        let left = match &self.split_with {
+            Some(source) => Some(load(source, &preparation)?),
+            None if morphs.is_empty() => None,
+            // What is said of it was said of the right one.
+            None => Some(engine::load(&loaded.source, &preparation, &Progress::new())?),
+        };
         let has_bones = left.iter().chain([&loaded]).any(|own| !own.mesh.bones.is_empty());
         if self.shows(|own| own.overlays.bones) && !has_bones {
             note("--overlay bones has no effect: no skin moves the mesh");
@@ -180,18 +187,6 @@ impl ShotOptions {
             ..Subject::new(loaded, settings)
         };
         Ok((subject, factors_file))
-    }
-
-    /// The mesh left of the split, if it isn't the right one: that of another file, or the right one with other weights.
-    fn left_mesh(&self, right: &Loaded) -> Result<Option<Loaded>, CliError> {
-        let morphs = self.split_morph.iter().cloned().collect();
-        let preparation = right.preparation.of_left(self.split_with.is_some(), &morphs);
-        match &self.split_with {
-            Some(source) => load(source, &preparation).map(Some),
-            None if self.split_morph.is_empty() => Ok(None),
-            // What is said of it was said of the right one.
-            None => Ok(Some(engine::load(&right.source, &preparation, &Progress::new())?)),
-        }
     }
 
     /// The pose of the mesh left of the split.

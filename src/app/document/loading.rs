@@ -219,7 +219,7 @@ impl App {
         if keep_view && is_turned {
             self.forget_before();
         }
-        if let Some(LeftChoice::Read(from, morphs)) = self.left_choice().filter(|_| keep_view)
+        if let Some(LeftChoice::Read(from, morphs)) = self.left_choice()
             && (from.is_none() || is_turned)
         {
             // It is prepared as this one is, and the mesh of another file turned and scaled.

@@ -59,10 +59,8 @@ impl<T> OpenFile<T> {
 
 impl LeftMesh {
     pub(crate) fn title(&self) -> String {
-        match self.from {
-            LeftChoice::Before => "before the change".to_owned(),
-            LeftChoice::Read(..) => self.content.source.title(),
-        }
+        let is_before = self.from == LeftChoice::Before;
+        if is_before { "before the change".to_owned() } else { self.content.source.title() }
     }
 }
 

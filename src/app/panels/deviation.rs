@@ -23,10 +23,7 @@ impl App {
     }
 
     fn deviation_of(&self, half: SplitSide) -> Option<DeviationBasis> {
-        if self.lacks_reference() {
-            return None;
-        }
-        let document = self.document.as_ref()?;
+        let document = self.document.as_ref().filter(|_| !self.lacks_reference())?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
         let (reference_shape, limit) = (self.yardstick().0, self.settings.tessellation.surface);
         Some(DeviationBasis { tessellation, reference_shape, limit })
@@ -89,10 +86,8 @@ impl App {
             let is_posed = document.moment == self.viewport.playback.moment();
             let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
             let Some(scene) = scene else { continue };
-            let target = || {
-                reference_shape
-                    .map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::ReferenceShape)
-            };
+            let limit = || DeviationTarget::Limit(Box::new(*inputs));
+            let target = || reference_shape.map_or_else(limit, DeviationTarget::ReferenceShape);
             document.halves[half as usize].deviation.go_on(&self.engine.gpu, scene, of, target)?;
         }
         self.scale_deviation();
@@ -103,11 +98,8 @@ impl App {
     fn deviation_scale(&self) -> Option<Scale> {
         let scene = &self.document.as_ref()?.scene;
         let shown = SplitSide::BOTH.into_iter().filter(|half| self.deviates(*half));
-        let largest = shown
-            .filter_map(|half| self.deviating(half)?.found.as_ref())
-            .map(|found| found.largest.at_least)
-            .reduce(f64::max)?;
-        Some(deviation_scale(largest, scene.ulp))
+        let largest = shown.filter_map(|half| Some(self.deviating(half)?.found?.largest.at_least));
+        Some(deviation_scale(largest.reduce(f64::max)?, scene.ulp))
     }
 
     fn scale_deviation(&mut self) {

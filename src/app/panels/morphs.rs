@@ -13,20 +13,17 @@ use load::MorphWeights;
 
 impl App {
     /// A slider for each morph target, if the edited half's file has any. The mesh is loaded again with other weights.
-    pub(in crate::app) fn morphs_section(&mut self, ui: &mut Ui) {
-        let (is_left, right) = (self.edits_left(), self.preparation().parts.morphs);
+    pub(in crate::app) fn morphs_section(&mut self, ui: &mut Ui, is_left: bool) {
+        let right = self.preparation().parts.morphs;
         let (from, before) = match self.left_choice().filter(|_| is_left) {
             Some(LeftChoice::Before) => return,
             Some(LeftChoice::Read(from, morphs)) => (from, morphs),
             None if is_left => Default::default(),
             None => (None, right.clone()),
         };
-        let contents = match (&from, &self.left_mesh) {
-            (None, _) => self.contents(),
-            (Some(from), Some(left)) if *from == left.content.source => left.content.contents.clone(),
-            // It isn't read yet.
-            (Some(_), _) => return,
-        };
+        let left = self.left_mesh.as_ref().filter(|left| from.as_ref() == Some(&left.content.source));
+        let of_left = || left.map(|left| left.content.contents.clone()).unwrap_or_default();
+        let contents = if from.is_some() { of_left() } else { self.contents() };
         let targets = &contents.morph_targets;
         if targets.is_empty() || !self.panels.open.title(ui, Section::MorphTargets) {
             return;

@@ -57,11 +57,10 @@ impl App {
     /// How far shading normals turn at seams. Until that is measured, the rows show ellipses.
     fn seam_facts(&self, ui: &mut egui::Ui) {
         let seams = self.results().map(|results| results.found.seams.shading);
-        let angle = |of: fn(&SeamTurns) -> f64| {
-            seams.map_or_else(
-                || "…".into(),
-                |seams| if seams.edges > 0 { format!("{:.2}°", of(&seams)) } else { "-".into() },
-            )
+        let angle = |of: fn(&SeamTurns) -> f64| match &seams {
+            Some(seams) if seams.edges > 0 => format!("{:.2}°", of(seams)),
+            Some(_) => "-".to_owned(),
+            None => "…".to_owned(),
         };
         let hover = "The largest angle between the shading normals of the two sides of an edge with split normals or a uv seam.";
         fact(ui, "Angle at seams", &angle(|seams| seams.emitted.most), hover);

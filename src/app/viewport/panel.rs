@@ -18,7 +18,7 @@ use crate::commands::{Action, CameraAction, key_name, with_key};
 use geometry::view::ScreenView;
 use gpu::GpuError;
 use inspect::engine::SilhouetteView;
-use inspect::render::{Ground, Scene, framed_size, half_at};
+use inspect::render::{Ground, framed_size, half_at};
 use inspect::settings::{Settings, SplitSide};
 use load::Source;
 
@@ -317,13 +317,9 @@ impl App {
 
     /// The number of triangles of the wanted picture, as text.
     pub(in crate::app) fn triangles(&self) -> String {
-        let of = |scene: &Scene| scene.tessellator.totals().1;
-        let triangles = self.document.as_ref().map_or(0, |document| {
-            let halves =
-                SplitSide::BOTH.into_iter().filter_map(|half| self.settings.half(half).and(document.scene.half(half)));
-            halves.map(of).sum()
-        });
-        counted(triangles, "triangle")
+        let scene = |half| self.settings.half(half).and(self.document.as_ref()?.scene.half(half));
+        let scenes = SplitSide::BOTH.into_iter().filter_map(scene);
+        counted(scenes.map(|scene| scene.tessellator.totals().1).sum(), "triangle")
     }
 
     /// Whether nothing was done yet: no camera moved, no setting changed, nothing selected and no other mesh opened.

@@ -1,7 +1,6 @@
 //! The animation: clip, time and speed, and playing.
 
 use crate::app::App;
-use crate::app::jobs::job_list::LeftChoice;
 use geometry::defaults::with_defaults;
 use geometry::mesh::Moment;
 use geometry::mesh::rig::Clip;
@@ -85,17 +84,10 @@ impl App {
         }
     }
 
-    /// Exchanges what is left and right of the split, with their poses, and of the same mesh the weights of morph targets.
-    pub(in crate::app) fn swap_halves(&mut self, context: &egui::Context) {
+    /// Exchanges what is left and right of the split, with their poses.
+    pub(in crate::app) fn swap_halves(&mut self) {
         self.settings.swap_halves();
         self.swap_poses();
-        if let Some(LeftChoice::Read(None, left)) = self.left_choice() {
-            let mut right = self.contents().morph_targets.clone();
-            right.extend(self.preparation().parts.morphs);
-            right.retain(|name, _| left.contains_key(name));
-            self.prepare(context, |own| own.parts.morphs.extend(left));
-            self.read_left(context, None, right);
-        }
     }
 
     /// Exchanges the poses of both halves, if the left one has its own.

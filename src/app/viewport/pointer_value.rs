@@ -118,7 +118,7 @@ impl App {
         let (view, middle) = place.pixel.seen();
         let vertices = found.triangle?.vertices;
         let corners = vertices.map(|vertex| Vec3::from(vertex.position));
-        let settings = self.settings.half(place.half)?;
+        let (settings, scene) = (self.settings.half(place.half)?, self.document.as_ref()?.scene.half(place.half)?);
         match settings.overlays.colors {
             Colors::TriangleSize => {
                 let size = size_px(corners.map(|corner| view.clip_from_object * corner.extend(1.0)), view.viewport)?;
@@ -140,7 +140,6 @@ impl App {
                 self.curvature_at(place.half, found.patch, mean_at(&view, middle, &vertices, domain)?)
             }
             Colors::TexelDensity => {
-                let scene = self.document.as_ref()?.scene.half(place.half)?;
                 let material = scene.tessellator.topology().material_of(found.patch);
                 let material = &scene.tessellator.mesh().materials[material];
                 let (density, unit) = match settings.texel_density_per {
@@ -154,7 +153,6 @@ impl App {
                 Some(format!("{} texels / {unit}", short(density?.into())))
             }
             _ => {
-                let scene = self.document.as_ref()?.scene.half(place.half)?;
                 let sides = self.found(place.half)?.outlines.patch(scene.tessellator.topology(), found.patch)?;
                 let of_edge = |i| sides[factor_side(scene.tessellator.convention(), i) as usize].factor;
                 let factors = [0, 1, 2].map(|i| factor(f64::from(of_edge(i)), 2));

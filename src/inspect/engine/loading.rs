@@ -13,10 +13,7 @@ use load::heights::load_heights;
 use load::import::Subdivide;
 use load::part_tree::{self, Branch};
 use load::selection::Selection;
-use load::{
-    Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, MorphWeights, ShownParts, Source,
-    crease_band_warnings,
-};
+use load::{Budget, Contents, HeightSource, Import, LoadError, LoadedMesh, ShownParts, Source, crease_band_warnings};
 
 /// A mesh with its topology, and how long both took.
 #[derive(Clone, Debug, Default)]
@@ -89,7 +86,7 @@ impl Preparation {
 
     /// That of the mesh left of a split, which has these weights of morph targets: of the same mesh, or of another one, which is taken as
     /// this one is.
-    pub fn of_left(&self, is_other: bool, morphs: &MorphWeights) -> Self {
+    pub fn of_left(&self, is_other: bool, morphs: &load::MorphWeights) -> Self {
         let plain = Self { import: self.import, limits: self.limits, ..Self::default() };
         let mut left = if is_other { plain } else { self.clone() };
         left.parts.morphs.extend(morphs.clone());

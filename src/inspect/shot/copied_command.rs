@@ -103,7 +103,7 @@ impl CopiedCommand<'_> {
         parts.hidden.iter().for_each(|name| line.option("--hide-part", name));
         parts.only.iter().for_each(|name| line.option("--show-part", name));
         parts.style_texts().for_each(|text| line.option("--part", text));
-        line.morphs("--morph", Some(&parts.morphs));
+        parts.morphs.iter().for_each(|(name, weight)| line.option("--morph", format!("{name}={weight}")));
         line.changed("--max-size", &limits.file, &file);
         line.changed("--max-memory", &limits.memory, &memory);
         heights.iter().flat_map(HeightSource::texts).for_each(|text| line.option("--height", text));
@@ -181,20 +181,19 @@ impl CopiedCommand<'_> {
         }
         if self.settings.split.is_some() {
             self.left_mesh.iter().for_each(|left| line.option("--split-with", named(left)));
-            line.morphs("--split-morph", self.left_morphs);
+            for (name, weight) in self.left_morphs.into_iter().flatten() {
+                line.option("--split-morph", format!("{name}={weight}"));
+            }
         }
         if self.animation.is_none() && self.left_animation.is_none() {
             self.reference_shape.iter().for_each(|own| line.option("--reference-surface", named(own)));
             self.reference_subdivide.iter().for_each(|own| line.option("--reference-subdivide", own.name()));
         }
         self.triangle.into_iter().for_each(|triangle| line.option("--select", triangle));
-        if let Some((name, time)) = self.animation {
-            line.option("--animation", name);
-            line.changed("--time", &time, &0.0);
-        }
-        if let Some((name, time)) = self.left_animation {
-            line.option("--split-animation", name);
-            line.changed("--split-time", &time, &0.0);
+        let animations = [("", self.animation), ("split-", self.left_animation)];
+        for (prefix, (name, time)) in animations.into_iter().filter_map(|(prefix, own)| Some((prefix, own?))) {
+            line.option(&format!("--{prefix}animation"), name);
+            line.changed(&format!("--{prefix}time"), &time, &0.0);
         }
         line.switch("--transparent", self.view.transparent);
         line.switch("--legend", self.view.legend);
@@ -243,10 +242,6 @@ impl Line {
             true => write!(self.0, " {}", word(&format!("{name}={value}"))),
             false => write!(self.0, " {name} {}", word(&value)),
         };
-    }
-
-    fn morphs(&mut self, option: &str, weights: Option<&MorphWeights>) {
-        weights.into_iter().flatten().for_each(|(name, weight)| self.option(option, format!("{name}={weight}")));
     }
 
     fn switch(&mut self, name: &str, is_on: bool) {

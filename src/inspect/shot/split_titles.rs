@@ -6,7 +6,7 @@ use super::legend::plate_of_lines;
 use crate::engine::Loaded;
 use crate::plot::ChartError;
 use crate::settings::{Choice, Declaration, Settings, SplitSide, options};
-use geometry::names::{shortened, shown};
+use geometry::names::shown;
 
 /// The colour of the divider.
 const DIVIDER: image::Rgba<u8> = image::Rgba([190, 190, 190, 255]);
@@ -35,17 +35,14 @@ pub fn surface_title(settings: &Settings, half: SplitSide) -> &'static str {
     }
 }
 
-/// The greatest length of the weights in a title, in characters.
-const LONGEST: usize = 60;
-
 /// What the mesh of a half is called beside that of the other one: by its name and the weights that were chosen for its morph targets, as far
 /// as these differ. The left one is the first of the meshes and of their names.
 pub fn mesh_title(half: SplitSide, meshes: [&Loaded; 2], names: [String; 2]) -> Vec<String> {
     let [own, other] = [half as usize, 1 - half as usize].map(|of| &meshes[of].preparation.parts.morphs);
     let unlike = own.iter().filter(|(name, weight)| other.get(*name) != Some(*weight));
-    let weights: Vec<_> = unlike.map(|(name, weight)| format!("{} {weight}", shown(name))).collect();
+    let weights: Vec<_> = unlike.map(|(name, weight)| format!("{name} {weight}")).collect();
     let name = if names[0] == names[1] { "" } else { &names[half as usize] };
-    let words = [name.to_owned(), shortened(&weights.join(", "), LONGEST)];
+    let words = [name.to_owned(), shown(&weights.join(", "))];
     words.into_iter().filter(|text| !text.is_empty()).collect()
 }
 
@@ -97,4 +94,28 @@ pub(super) fn draw_titles(picture: &mut RgbaImage, split: Option<f32>, titles: &
         image::imageops::replace(picture, &plate, left, margin.into());
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Preparation;
+    use load::ShownParts;
+
+    #[test]
+    fn meshes_are_called_by_what_differs() {
+        let weighed = |morphs: &[(&str, f32)]| {
+            let morphs = morphs.iter().map(|(name, weight)| ((*name).to_owned(), *weight)).collect();
+            let parts = ShownParts { morphs, ..ShownParts::default() };
+            Loaded { preparation: Preparation { parts, ..Preparation::default() }, ..Loaded::default() }
+        };
+        let [left, right] = [weighed(&[("Blink", 1.0), ("Smile", 0.7)]), weighed(&[("Blink", 1.0), ("Frown", 0.5)])];
+        let called = |names: [&str; 2]| {
+            SplitSide::BOTH.map(|half| mesh_title(half, [&left, &right], names.map(str::to_owned)).join(", "))
+        };
+        assert_eq!(called(["a", "a"]), ["Smile 0.7", "Frown 0.5"]);
+        assert_eq!(called(["a", "b"]), ["a, Smile 0.7", "b, Frown 0.5"]);
+        let same = mesh_title(SplitSide::Left, [&left, &left], ["a", "a"].map(str::to_owned));
+        assert!(same.is_empty(), "{same:?}");
+    }
 }

@@ -20,7 +20,6 @@ use geometry::mesh::{EdgeCounts, Topology};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::{ScreenView, ulp};
 use gpu::GpuError;
-use load::MorphWeights;
 
 /// What was done and what it cost. Times are medians in ms.
 #[derive(Debug, Serialize)]
@@ -251,8 +250,6 @@ struct HalfStats {
     settings: SettingsStats,
     /// What parts and materials have in place of settings, as `--part` has it.
     parts: Vec<String>,
-    /// The weights of morph targets that were chosen.
-    morphs: MorphWeights,
     triangles_in: u64,
     triangles_out: u64,
     vertices_out: u64,
@@ -342,12 +339,10 @@ impl Shot {
         let judged = if is_right { &self.judged[..] } else { &[] };
         let topology = if is_right { &self.posed.topology } else { tessellator.topology() };
         let other = self.subject.left.as_ref().filter(|_| !is_right);
-        let parts = &other.unwrap_or(&self.posed).preparation.parts;
         Some(HalfStats {
             mesh: other.map(|left| left.source.to_string()),
             settings: SettingsStats::new(&settings, tessellator.surface_shader().is_some(), judged),
-            parts: parts.style_texts().collect(),
-            morphs: parts.morphs.clone(),
+            parts: other.unwrap_or(&self.posed).preparation.parts.style_texts().collect(),
             triangles_in: tessellator.mesh().triangles.len() as u64,
             triangles_out,
             vertices_out,
