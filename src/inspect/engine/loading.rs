@@ -84,8 +84,8 @@ impl Preparation {
         }
     }
 
-    /// That of the mesh left of a split, which has these weights of morph targets: of the same mesh, or of another one, which is taken as
-    /// this one is.
+    /// That of the mesh left of a split, which has these weights of morph targets: of the same mesh, or of another one, which is
+    /// taken as this one is.
     pub fn of_left(&self, is_other: bool, morphs: &load::MorphWeights) -> Self {
         let plain = Self { import: self.import, limits: self.limits, ..Self::default() };
         let mut left = if is_other { plain } else { self.clone() };

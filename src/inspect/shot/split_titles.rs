@@ -35,8 +35,8 @@ pub fn surface_title(settings: &Settings, half: SplitSide) -> &'static str {
     }
 }
 
-/// What the mesh of a half is called beside that of the other one: by its name and the weights that were chosen for its morph targets, as far
-/// as these differ. The left one is the first of the meshes and of their names.
+/// What the mesh of a half is called beside that of the other one: by its name and the weights that were chosen for its morph
+/// targets, as far as these differ. The left one is the first of the meshes and of their names.
 pub fn mesh_title(half: SplitSide, meshes: [&Loaded; 2], names: [String; 2]) -> Vec<String> {
     let [own, other] = [half as usize, 1 - half as usize].map(|of| &meshes[of].preparation.parts.morphs);
     let unlike = own.iter().filter(|(name, weight)| other.get(*name) != Some(*weight));
