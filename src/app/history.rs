@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 
 use super::App;
-use super::jobs::job_list::Work;
+use super::jobs::job_list::{LeftChoice, Work};
 use crate::commands::CompanionFile;
 use gpu::{LodShader, SurfaceShader};
 use inspect::engine::Preparation;
@@ -27,8 +27,8 @@ pub(super) struct Undoable {
     pub companions: [Option<Source>; CompanionFile::ALL.len()],
     /// Whether the mesh is compared with the limit of its own cage.
     pub own_limit: bool,
-    /// Whether the mesh is compared with what it was before its file changed.
-    pub is_with_before: bool,
+    /// What is left of the split in place of the mesh.
+    pub left: Option<LeftChoice>,
     pub left_pose: LeftPose,
     /// Whether the poses of both halves were exchanged an odd number of times. The right one's is in no step.
     pub is_swapped: bool,
@@ -120,7 +120,7 @@ impl App {
             preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
             companions: CompanionFile::ALL.map(|companion| self.companion(companion)),
             own_limit: self.has_own_limit(),
-            is_with_before: self.shows_before(),
+            left: self.left_mesh.as_ref().map(|left| left.from.clone()),
             left_pose: self.viewport.playback.left,
             is_swapped: self.viewport.playback.is_swapped,
         }
@@ -140,11 +140,10 @@ impl App {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
             step.own_limit = false;
-            for companion in [CompanionFile::ReferenceShape, CompanionFile::LeftMesh, CompanionFile::Factors] {
+            for companion in [CompanionFile::ReferenceShape, CompanionFile::Factors] {
                 step.companions[companion as usize] = None;
             }
-            step.is_with_before = false;
-            (step.left_pose, step.is_swapped) = (LeftPose::Same, false);
+            (step.left, step.left_pose, step.is_swapped) = (None, LeftPose::Same, false);
         });
     }
 
@@ -171,7 +170,7 @@ impl App {
 
     fn take_back(&mut self, context: &egui::Context, step: Option<Undoable>) {
         let Some(step) = step else { return };
-        let Undoable { settings, preparation, companions, own_limit, is_with_before, left_pose, is_swapped } = step;
+        let Undoable { settings, preparation, companions, own_limit, left, left_pose, is_swapped } = step;
         if self.viewport.playback.is_swapped != is_swapped {
             self.swap_poses();
         }
@@ -197,8 +196,12 @@ impl App {
                 source.into_iter().for_each(|source| self.open_companion(context, companion, source));
             }
         }
-        if self.shows_before() != is_with_before {
-            if is_with_before { self.compare_with_before() } else { self.close_companion(LeftMesh) }
+        if self.left_mesh.as_ref().map(|own| &own.from) != left.as_ref() {
+            match left {
+                Some(LeftChoice::Before) => self.compare_with_before(),
+                Some(LeftChoice::Read(from, morphs)) => self.read_left(context, from, morphs),
+                None => self.close_companion(LeftMesh),
+            }
         }
         self.put_settings(settings);
         let preparation = Preparation { import: settings.import, ..preparation };

@@ -13,7 +13,7 @@ use inspect::settings::{Colors, Lighting, Settings, options};
 use inspect::shot::{CopiedCommand, ShotView, Turn, given};
 use load::files::Limits;
 use load::import::Subdivide;
-use load::{HeightSource, NormalSource, ShownParts, Source};
+use load::{HeightSource, MorphWeights, NormalSource, ShownParts, Source};
 use proptest::prelude::*;
 
 use crate::cli::options::Declared;
@@ -56,6 +56,7 @@ fn shown<'a>(
         reference_shape: None,
         reference_subdivide: None,
         left_mesh: None,
+        left_morphs: None,
         factors: None,
         lod_shader: None,
         surface_shader: None,
@@ -195,6 +196,21 @@ fn the_file_of_the_light_is_written_while_it_is_used() {
     assert_eq!(implied.picture.0.lighting, Lighting::Environment);
     let other = parsed("pnaen render shape:torus -o a.png --environment sky.hdr --lighting studio").shot;
     assert!(other.check(&source, &[], &[]).is_err_and(|error| matches!(error, CliError::Usage(_))));
+}
+
+#[test]
+fn weights_of_the_left_half_are_written_while_there_is_one() {
+    let (source, preparation) = ("shape:torus".parse().expect("a shape"), Preparation::default());
+    let (settings, camera) = (Settings { split: Some(0.25), ..Settings::usual() }, camera());
+    let weights: MorphWeights = [("-a = b".to_owned(), -0.1), ("Smile".to_owned(), 0.7)].into();
+    let with = |settings| {
+        let left_morphs = Some(&weights);
+        CopiedCommand { left_morphs, ..shown(&source, &preparation, settings, &camera) }.line()
+    };
+    let written = parsed(&with(&settings)).shot.split_morph;
+    assert_eq!(written, weights.clone().into_iter().collect::<Vec<_>>());
+    let whole = with(&Settings { split: None, ..settings });
+    assert!(!whole.contains("--split-morph"), "{whole}");
 }
 
 #[test]

@@ -33,7 +33,7 @@ pub(crate) use declared::{
 };
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{
-    CameraOption, ending_in, heights, picture, picture_or_page, seconds, size, source, whole, whole_from, within,
+    CameraOption, ending_in, heights, morph, picture, picture_or_page, seconds, size, source, whole, whole_from, within,
 };
 pub(crate) use view::{LodCameraOption, MeshAt, ViewOptions};
 

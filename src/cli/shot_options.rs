@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::options::{LodCameraOption, PictureOptions, ReferenceOption, seconds, whole_from};
+use super::options::{LodCameraOption, PictureOptions, ReferenceOption, morph, seconds, whole_from};
 use super::{
     CliError, FactorsOption, LodShaderOption, SurfaceOptions, SurfaceShaderOption, file_of, files_of_heights,
     keep_apart, load, load_apart, note, options, refuse, warn,
@@ -13,7 +13,7 @@ use super::{
 use geometry::mesh::Moment;
 use geometry::progress::Progress;
 use gpu::Given;
-use inspect::engine::{ClipFinding, Engine, Loaded, Preparation, worst_moment};
+use inspect::engine::{self, ClipFinding, Engine, Loaded, worst_moment};
 use inspect::gates::{Gate, GateKind};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::environment::Environment;
@@ -22,7 +22,7 @@ use inspect::settings::{Choice, ColorSource, Lighting, Settings};
 use inspect::shot::{AT_REST, FactorsFile, Shot, ShotError, ShotView, Subject};
 use load::environment_file::EnvironmentFile;
 use load::panorama::Panorama;
-use load::{Source, load_matcap};
+use load::{MorphWeights, Source, load_matcap};
 
 #[derive(Clone, Debug, Default, clap::Args)]
 pub struct ShotOptions {
@@ -47,6 +47,10 @@ pub struct ShotOptions {
     /// Another mesh for the left of the split, such as the high-poly original: a mesh file, or a shape
     #[arg(long, value_name = "FILE", value_parser = options::source())]
     pub split_with: Option<Source>,
+    /// Give a morph target this weight left of the split, as --morph does; may be given several times. Others weigh there as on
+    /// the right, or with --split-with as its file says
+    #[arg(long, value_name = "NAME=WEIGHT", requires = "split", value_parser = morph, allow_hyphen_values = true)]
+    pub split_morph: Vec<(String, f32)>,
     /// Show the mesh left of the split in a pose of this animation, or at `rest`
     #[arg(long, value_name = "NAME", requires = "split", allow_hyphen_values = true)]
     pub split_animation: Option<String>,
@@ -148,8 +152,14 @@ impl ShotOptions {
         let surface_shader = self.user_surface.read(&self.surface.weld.parts)?;
         let matcap = self.matcap_image.as_ref().map(|path| load_matcap(path, &limits)).transpose()?;
         let given = self.given.read(&loaded.mesh, &loaded.topology, &self.surface)?;
-        let import = Preparation { import: self.surface.weld.import.0, limits, ..Preparation::default() };
-        let left = self.split_with.as_ref().map(|source| load(source, &import)).transpose()?;
+        let morphs: MorphWeights = self.split_morph.iter().cloned().collect();
+        let preparation = loaded.preparation.of_left(self.split_with.is_some(), &morphs);
+        let left = match &self.split_with {
+            Some(source) => Some(load(source, &preparation)?),
+            None if morphs.is_empty() => None,
+            // What is said of it was said of the right one.
+            None => Some(engine::load(&loaded.source, &preparation, &Progress::new())?),
+        };
         let has_bones = left.iter().chain([&loaded]).any(|own| !own.mesh.bones.is_empty());
         if self.shows(|own| own.overlays.bones) && !has_bones {
             note("--overlay bones has no effect: no skin moves the mesh");

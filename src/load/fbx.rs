@@ -80,7 +80,8 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let holds = left_out::holds(&scene, &placed);
     let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
     let (joints, own) = (nodes::joints(&scene, &drawn), &placed.scene);
-    let bones = bones(joints, &own.order, &own.parents, &placed.global, binder.as_ref());
+    let of_node = |node: usize| Some(&*scene.nodes[node].element.name).filter(|name| !name.is_empty());
+    let bones = bones(joints, of_node, &own.order, &own.parents, &placed.global, binder.as_ref());
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64 + meshes.memory);
     let morph_targets = morphs::file_weights(&scene);

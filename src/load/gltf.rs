@@ -164,7 +164,8 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let joints = rig_nodes::joints(document, &placed);
-    let bones = bones(joints, &placed.order, &placed.parents, &placed.global, binder.as_ref());
+    let of_node = |node| document.nodes().nth(node)?.name();
+    let bones = bones(joints, of_node, &placed.order, &placed.parents, &placed.global, binder.as_ref());
     let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
     let parts = parsed.parts.list.finish(&mut mesh, notes);
     mesh.bones = bones;

@@ -168,7 +168,7 @@ pub(super) fn check_selected(path: &Path, selected: Selection, known: &Contents)
         }
         if let Some(name) = morphs.keys().find(|name| !known.morph_targets.contains_key(*name)) {
             let known = known.morph_targets.keys().cloned().collect();
-            return absent("morph target", name, known, "it has no morph targets, so omit --morph");
+            return absent("morph target", name, known, "it has no morph targets, so give no weights");
         }
     }
     if let Some(variant) = selected.variant.filter(|variant| known.variants.iter().all(|known| known != variant)) {

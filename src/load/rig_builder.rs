@@ -17,6 +17,7 @@ use geometry::mesh::normals::GivenNormal;
 use geometry::mesh::rig::{Binding, Clip, Delta, Joint, Morph, Placement, Property, Reach, Rig};
 use geometry::mesh::subdivision::Refinement;
 use geometry::mesh::{Bone, Budget, CornerDetail, CornerDetails, Mesh};
+use geometry::names::shown;
 use geometry::progress::{Cancelled, Progress};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
@@ -351,9 +352,10 @@ impl RigBuilder {
 }
 
 /// Returns these joints as bones, each once: parents before children, as `order` has all nodes. What no clip moves is where `global`
-/// has it.
-pub(super) fn bones(
+/// has it. `name` gives a node's name, if it has one.
+pub(super) fn bones<'a>(
     joints: impl Iterator<Item = usize>,
+    name: impl Fn(usize) -> Option<&'a str>,
     order: &[usize],
     parents: &[Option<usize>],
     global: &[DMat4],
@@ -368,9 +370,10 @@ pub(super) fn bones(
         let parent = parents[node].and_then(|parent| nearest[parent]);
         nearest[node] = if is_joint[node] { Some(to_u32(bones.len())) } else { parent };
         if is_joint[node] {
+            let name = name(node).map_or_else(|| format!("node {node}"), shown).into();
             let still = || Joint { offset: global[node], ..Joint::default() };
             let Joint { node, offset, .. } = binder.map_or_else(still, |binder| binder.mount(node));
-            bones.push(Bone { node, place: offset.w_axis.truncate().as_vec3(), parent });
+            bones.push(Bone { name, node, place: offset.w_axis.truncate().as_vec3(), parent });
         }
     }
     bones

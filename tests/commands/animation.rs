@@ -141,6 +141,43 @@ fn chosen_weights_of_morph_targets_give_the_shape_of_a_clip_that_has_them() {
 }
 
 #[test]
+fn the_left_half_of_a_split_may_have_weights_of_its_own() {
+    let folder = Folder::new();
+    let (file, out) = (file(&folder), folder.path("picture.png"));
+    let draw = |options: &[&str]| {
+        let view = ["--camera", "30,20,3", "--target", "0,0,0", "--size", "160x120", "--factor", "3", "-o", &*out];
+        output(&[&["render", &*file], &view[..], options].concat());
+        image::open(&out).expect("a picture").to_rgba8()
+    };
+    // Leaning, the beam stays within the bounds that it has otherwise, so that one camera sees both alike.
+    let (upright, leaning) = (["--morph", "Swell=0"], ["--morph", "Swell=0", "--morph", "Lean=1"]);
+    let [left, right] = [draw(&leaning), draw(&upright)];
+    let split = [&upright[..], &["--split", "0.5", "--split-left", "pn-aen", "--split-morph", "Lean=1"]].concat();
+    let both = draw(&split);
+    assert!(left != right);
+    // But for the last column: the software driver lets a sample of the right half in there.
+    for (x, y, pixel) in both.enumerate_pixels().filter(|(x, ..)| *x != 79) {
+        let expected = if x < 80 { left.get_pixel(x, y) } else { right.get_pixel(x, y) };
+        assert_eq!(pixel, expected, "{x}, {y}");
+    }
+    let halves = crate::stats(&[&[&*file], &split[..]].concat());
+    let triangles = |of: &Value| of["triangles_in"].as_u64().expect("a count");
+    assert_eq!((halves["left"]["mesh"].as_str(), triangles(&halves["left"])), (Some(&*file), triangles(&halves)));
+    // Another file's weights are those of that file.
+    let with = ["shape:torus", "--split", "0.5", "--split-with", &*file];
+    let other = crate::stats(&[&with[..], &["--split-morph", "Lean=1"]].concat());
+    assert_eq!((triangles(&other["left"]), &other["left"]["parts"]), (triangles(&halves), &json!([])));
+    let alone = ["render", &*file, "-o", &*out];
+    let said = failure(&[&alone[..], &["--split-morph", "Lean=1"]].concat(), 2);
+    assert!(said.contains("--split <"), "{said}");
+    let unknown = [&alone[..], &["--split", "0.5", "--split-morph", "Smile=1"]].concat();
+    let said = failure(&unknown, 1);
+    assert!(said.contains("no morph target Smile") && said.contains("choose one of Lean, Swell"), "{said}");
+    let none = ["render", "shape:torus", "-o", &*out, "--split", "0.5", "--split-morph", "Smile=1"];
+    assert!(failure(&none, 1).contains("it has no morph targets"));
+}
+
+#[test]
 fn morph_targets_are_listed_and_others_are_answered_with_them() {
     let folder = Folder::new();
     let file = file(&folder);

@@ -72,6 +72,10 @@ fn parts_have_normals_and_crease_angles_of_their_own() {
     assert_eq!(number(&stats, "/cracks/different_bits"), 0.0, "{stats}");
     assert_eq!(number(&stats, "/edges/split"), 1.0, "{stats}");
     assert_eq!(stats["parts"], serde_json::json!(["wall:normals=made,crease=180", "material:blue:surface=flat"]));
+    let split = [&[&*bent][..], &smooth[..], &["--split", "0.5", "--split-left", "flat"]].concat();
+    assert_eq!(crate::stats(&split)["left"]["parts"], stats["parts"], "the left half has the same parts");
+    let other = crate::stats(&[&split[..], &["--split-with", "shape:torus"]].concat());
+    assert_eq!((&other["left"]["parts"], &other["parts"]), (&serde_json::json!([]), &stats["parts"]));
     for text in ["wall:normals=smooth", "wall:normals", "wall:crease=nan", "wall:crease=-1", "wall:crease=181"] {
         let errors = failure(&["info", &bent, "--part", text], 2);
         assert!(errors.contains("choose one of file, made") || errors.contains("from 0 to 180"), "{errors}");

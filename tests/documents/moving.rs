@@ -51,7 +51,7 @@ pub fn moving() -> Vec<u8> {
         "nodes": [
             { "mesh": 0, "skin": 0, "weights": [0.25, 0.0] },
             { "children": [2] },
-            { "translation": [0.0, 2.0, 0.0] },
+            { "name": "Tip", "translation": [0.0, 2.0, 0.0] },
             { "children": [4] },
             { "mesh": 1, "translation": [3.0, 1.0, 0.0], "scale": [1.0, 2.0, 0.5] },
         ],

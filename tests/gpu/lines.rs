@@ -182,7 +182,7 @@ fn bones_of_a_pose_are_drawn_where_its_joints_are_seen_and_nowhere_else() {
     let (moving, _) = crate::deforming::scene();
     let mut mesh = Mesh::clone(&moving.mesh);
     // The joints only turn about themselves, so that another one hangs on the second.
-    let hung = Bone { node: mesh.bones[1].node, place: 2.0 * Vec3::Y, parent: Some(1) };
+    let hung = Bone { node: mesh.bones[1].node, place: 2.0 * Vec3::Y, parent: Some(1), ..Bone::default() };
     mesh.bones.push(hung);
     let mut scene = engine().scene(&loaded_mesh(moving.source, mesh), ARENA_BYTES).expect("a small mesh");
     let target = Target::new(&engine().gpu, [320, 240]).expect("a small picture");

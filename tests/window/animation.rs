@@ -5,6 +5,8 @@ use egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::{Moment, Shape};
+use geometry::view::project;
+use glam::Vec3;
 use load::Source;
 use pnaen::app::App;
 use tempfile::TempDir;
@@ -325,4 +327,35 @@ fn bones_follow_the_clip_and_a_mesh_without_a_skin_has_none() {
     click(&mut harness, "Overlays");
     press_with(&mut harness, Modifiers::SHIFT, Key::B);
     assert!(!harness.state().settings().overlays.bones, "there is nothing to show");
+}
+
+#[test]
+fn the_joint_under_the_resting_pointer_is_named() {
+    let (mut harness, _folder) = moving_window();
+    let place = |harness: &Harness<App>, joint: Vec3| {
+        let rect = harness.get_by_role_and_label(Role::Image, "Viewport").rect();
+        let (app, viewport) = (harness.state(), glam::vec2(rect.width(), rect.height()));
+        let bounds = app.loaded().expect("a mesh").mesh.bounds();
+        let seen = project(app.camera().clip_from_object(viewport, &bounds), viewport, joint);
+        let seen = seen.expect("in front of the eye");
+        rect.min + egui::vec2(seen.x, seen.y)
+    };
+    let rest_at = |harness: &mut Harness<App>, place: egui::Pos2| {
+        harness.hover_at(place);
+        settle(harness);
+    };
+    let [root, tip] = [Vec3::ZERO, 2.0 * Vec3::Y].map(|joint| place(&harness, joint));
+    rest_at(&mut harness, tip);
+    assert!(harness.query_by_label("Joint Tip").is_none(), "bones aren't shown");
+    press_with(&mut harness, Modifiers::SHIFT, Key::B);
+    rest_at(&mut harness, tip + egui::vec2(2.0, -2.0));
+    harness.get_by_label("Joint Tip");
+    rest_at(&mut harness, root);
+    harness.get_by_label("Joint node 1");
+    rest_at(&mut harness, tip + egui::vec2(40.0, 0.0));
+    assert!(harness.query_by_label_contains("Joint ").is_none(), "there is none");
+    // A joint comes before the number of the colours.
+    choose(&mut harness, "Colours", "Factors");
+    rest_at(&mut harness, tip);
+    harness.get_by_label("Joint Tip");
 }

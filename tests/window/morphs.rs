@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use documents::moving::moving;
+use egui::Key;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -10,7 +11,8 @@ use load::Source;
 use pnaen::app::App;
 
 use crate::driver::PATIENCE;
-use crate::{click, scroll_to, settle, uniform, uniform_of, vase};
+use crate::editing::{assert_draws, copied};
+use crate::{click, press, scroll_to, settle, uniform, uniform_of, vase};
 
 /// The least x of the mesh: the beam's upper end, which is 1 wide, swells by 0.8 of that at a weight of 1.
 fn least(harness: &Harness<App>) -> f32 {
@@ -45,6 +47,54 @@ fn morph_targets_are_weighed_undone_and_reset() {
     assert!(near(least(&harness), -0.9));
     click(&mut harness, "Reset morph targets");
     assert!(near(least(&harness), -0.6) && chosen(&harness).is_empty() && weight(&harness) == Some(0.25));
+}
+
+#[test]
+fn the_left_half_has_weights_of_its_own_which_are_undone_and_copied() {
+    let (_folder, mut harness) = uniform_of("moving.glb", moving());
+    press(&mut harness, Key::S);
+    click(&mut harness, "Edit left (A)");
+    scroll_to(&mut harness, "Reset morph targets");
+    assert_eq!(weight(&harness), Some(0.25), "as on the right");
+    let unweighed = "Left: untessellated\n";
+    harness.get_by_label_contains(unweighed);
+    harness.get_by_role_and_label(Role::Slider, "Swell").set_value_accesskit(1.0);
+    settle(&mut harness);
+    assert!((least(&harness) + 0.6).abs() < 1e-5 && chosen(&harness).is_empty(), "the right half stays");
+    assert_eq!(weight(&harness), Some(1.0));
+    let weighed = "Left: Swell 1, untessellated\n";
+    harness.get_by_label_contains(weighed);
+    harness.get_by_label_contains("Right: PN-AEN\n");
+    let command = copied(&mut harness);
+    assert!(command.contains(" --split-morph Swell=1"), "{command}");
+    assert_draws(&harness, &command, "moving-view");
+    let context = harness.ctx.clone();
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    harness.get_by_label_contains(unweighed);
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    harness.get_by_label_contains(weighed);
+    // What it doesn't have of its own it has from the right half.
+    scroll_to(&mut harness, "Edit right (B)");
+    click(&mut harness, "Edit right (B)");
+    scroll_to(&mut harness, "Reset morph targets");
+    assert_eq!(weight(&harness), Some(0.25));
+    harness.get_by_role_and_label(Role::Slider, "Lean").set_value_accesskit(0.5);
+    settle(&mut harness);
+    harness.get_by_label_contains(weighed);
+    assert_eq!(chosen(&harness), [("Lean".to_owned(), 0.5)]);
+    let command = copied(&mut harness);
+    assert!(command.contains(" --morph Lean=0.5") && command.contains(" --split-morph Swell=1"), "{command}");
+    assert_draws(&harness, &command, "moving-view");
+    scroll_to(&mut harness, "Edit left (A)");
+    click(&mut harness, "Edit left (A)");
+    scroll_to(&mut harness, "Reset morph targets");
+    click(&mut harness, "Reset morph targets");
+    harness.get_by_label_contains(unweighed);
+    let lean = harness.get_by_role_and_label(Role::Slider, "Lean").accesskit_node().numeric_value();
+    assert_eq!((weight(&harness), lean), (Some(0.25), Some(0.5)));
+    assert!(!copied(&mut harness).contains("--split-morph"));
 }
 
 #[test]

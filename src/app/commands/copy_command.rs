@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::app::App;
 use crate::app::jobs::companion_files::absolute_path;
+use crate::app::jobs::job_list::LeftChoice;
 use crate::app::jobs::picture_job::PictureChoices;
 use inspect::render::{Camera, LeftPose};
 use inspect::settings::{Settings, SplitSide};
@@ -54,7 +55,10 @@ impl App {
         let animation = document.scene.clip_and_time();
         let source = absolute_source(&document.loaded.source);
         let reference_shape = self.reference_shape().map(absolute_source);
-        let left_mesh = self.left_mesh.as_ref().and_then(|left| left.from.as_ref()).map(absolute_source);
+        let (left_mesh, left_morphs) = match self.left_mesh.as_ref().map(|left| &left.from) {
+            Some(LeftChoice::Read(from, morphs)) => (from.as_ref().map(absolute_source), Some(morphs)),
+            Some(LeftChoice::Before) | None => (None, None),
+        };
         let mut preparation = document.loaded.preparation.clone();
         if preparation.heights.is_none() && self.has_heights() {
             preparation.heights = Some(HeightSource::Model);
@@ -76,6 +80,7 @@ impl App {
             reference_shape: reference_shape.as_ref(),
             reference_subdivide: self.has_own_limit().then(|| self.own_scheme()),
             left_mesh: left_mesh.as_ref(),
+            left_morphs,
             factors: self.factors_file(),
             lod_shader: self.lod_shader_file().filter(|_| self.uses_lod_shader()),
             surface_shader: self.surface_shader_file(),

@@ -8,7 +8,7 @@ use super::Document;
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
 use crate::app::jobs::file_watch::{Stamped, sources};
-use crate::app::jobs::job_list::{Load, Work};
+use crate::app::jobs::job_list::{LeftChoice, Load, Work};
 use crate::app::jobs::scenes::scene_of;
 use crate::commands::CompanionFile;
 use geometry::progress::{Progress, Stage};
@@ -217,10 +217,13 @@ impl App {
             self.follow_reference_shape(context, is_turned);
         }
         if keep_view && is_turned {
-            // The mesh of another file is turned and scaled as this one is.
-            let left = self.left_mesh.as_ref().and_then(|left| left.from.clone());
-            left.into_iter().for_each(|source| self.open_left_mesh(context, source));
             self.forget_before();
+        }
+        if let Some(LeftChoice::Read(from, morphs)) = self.left_choice()
+            && (from.is_none() || is_turned)
+        {
+            // It is prepared as this one is, and the mesh of another file turned and scaled.
+            self.read_left(context, from, morphs);
         }
         let is_first = before.is_none();
         if !is_first {

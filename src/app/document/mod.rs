@@ -179,10 +179,7 @@ impl Document {
 
     /// Bytes on the device: topology and output, of both halves of a split view.
     pub(crate) fn bytes(&self) -> u64 {
-        let of = |scene: &Scene| {
-            let tessellator = &scene.tessellator;
-            tessellator.buffers().bytes() + scene.work_bytes() + tessellator.arena_bytes()
-        };
+        let of = |own: &Scene| own.tessellator.buffers().bytes() + own.work_bytes() + own.tessellator.arena_bytes();
         SplitSide::BOTH.into_iter().filter_map(|half| self.scene.half(half)).map(of).sum()
     }
 }

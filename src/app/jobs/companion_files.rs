@@ -5,21 +5,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::job_list::Work;
+use super::job_list::{LeftChoice, Work};
 use crate::app::App;
 use crate::app::text::file_name;
 use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use gpu::{LodShader, SurfaceShader};
-use inspect::engine::{self, Loaded, Preparation};
+use inspect::engine::{self, Loaded};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::LeftPose;
 use inspect::render::environment::Environment;
 use inspect::settings::{Colors, Lighting};
 use load::environment_file::EnvironmentFile;
 use load::import::Subdivide;
-use load::{Source, load_matcap};
+use load::{MorphWeights, Source, load_matcap};
 
 /// What is open, and what it was read from.
 pub(crate) struct Opened<S, T> {
@@ -35,8 +35,8 @@ pub(crate) type OpenFile<T> = Opened<PathBuf, T>;
 /// The reference surface that was chosen for the mesh: that of a source, or without one the limit of the mesh's own cage.
 pub(crate) type ChosenReferenceShape = Opened<Option<Source>, Arc<ReferenceShape>>;
 
-/// A mesh left of the split in place of the one that is open: that of a source, or without one the mesh before its file changed on disk.
-pub(crate) type LeftMesh = Opened<Option<Source>, Loaded>;
+/// A mesh left of the split in place of the one that is open.
+pub(crate) type LeftMesh = Opened<LeftChoice, Loaded>;
 
 pub(crate) struct Light {
     /// What was repaired, in sentences.
@@ -59,7 +59,8 @@ impl<T> OpenFile<T> {
 
 impl LeftMesh {
     pub(crate) fn title(&self) -> String {
-        self.from.as_ref().map_or_else(|| "before the change".to_owned(), Source::title)
+        let is_before = self.from == LeftChoice::Before;
+        if is_before { "before the change".to_owned() } else { self.content.source.title() }
     }
 }
 
@@ -99,11 +100,11 @@ impl App {
         });
     }
 
-    /// What is open, or being opened, beside the mesh.
+    /// What is open, or being opened, beside the mesh. What is left of the split is more than a source.
     pub(in crate::app) fn companion(&self, companion: CompanionFile) -> Option<Source> {
         let path = match companion {
             CompanionFile::ReferenceShape => return self.reference_shape().cloned(),
-            CompanionFile::LeftMesh => return self.left_mesh.as_ref().and_then(|left| left.from.clone()),
+            CompanionFile::LeftMesh => None,
             CompanionFile::Factors => self.factors_file(),
             CompanionFile::LodShader => self.open_shader_file::<LodShader>(),
             CompanionFile::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
@@ -135,7 +136,7 @@ impl App {
     pub(in crate::app) fn open_companion(&mut self, context: &egui::Context, companion: CompanionFile, source: Source) {
         match (companion, source) {
             (CompanionFile::ReferenceShape, source) => self.open_reference_shape(context, source),
-            (CompanionFile::LeftMesh, source) => self.open_left_mesh(context, source),
+            (CompanionFile::LeftMesh, source) => self.read_left(context, Some(source), MorphWeights::new()),
             (CompanionFile::Factors, Source::File(path)) => self.open_factors(context, path),
             (CompanionFile::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
             (CompanionFile::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),
@@ -228,16 +229,28 @@ impl App {
 
 /// The mesh left of the split.
 impl App {
-    /// Starts to load the mesh of another file for the left half. Until it is loaded, what is there stays.
-    pub(in crate::app) fn open_left_mesh(&mut self, context: &egui::Context, source: Source) {
-        let import = self.preparation().import;
-        let preparation = Preparation { import, limits: self.jobs.limits, ..Preparation::default() };
-        let wanted = source.clone();
+    /// What is left of the split in place of the mesh, or is being read for it.
+    pub(in crate::app) fn left_choice(&self) -> Option<LeftChoice> {
+        let is_read = self.jobs.has(Work::Companion(CompanionFile::LeftMesh));
+        let read = self.jobs.left.as_ref().filter(|_| is_read);
+        read.or(self.left_mesh.as_ref().map(|left| &left.from)).cloned()
+    }
+
+    /// Starts to load the mesh of a source for the left half, or without one the same mesh, with these weights of morph targets in place
+    /// of its own. Until it is loaded, what is there stays.
+    pub(in crate::app) fn read_left(&mut self, context: &egui::Context, from: Option<Source>, morphs: MorphWeights) {
+        if from.is_none() && morphs.is_empty() {
+            return self.close_companion(CompanionFile::LeftMesh);
+        }
+        let Some(source) = from.clone().or_else(|| self.source().cloned()) else { return };
+        let preparation = self.preparation().of_left(from.is_some(), &morphs);
+        let (choice, what) = (LeftChoice::Read(from, morphs), source.title());
+        self.jobs.left = Some(choice.clone());
         let load =
-            move |progress: &Progress| engine::load(&wanted, &preparation, progress).map_err(|error| error.to_string());
-        let title = format!("Loading {} for the left half", source.title());
-        self.read_companion(context, CompanionFile::LeftMesh, title, source.title(), load, |app, loaded| {
-            app.left_mesh = Some(Opened::new(Some(source), loaded));
+            move |progress: &Progress| engine::load(&source, &preparation, progress).map_err(|error| error.to_string());
+        let title = format!("Loading {what} for the left half");
+        self.read_companion(context, CompanionFile::LeftMesh, title, what, load, |app, loaded| {
+            app.left_mesh = Some(Opened::new(choice, loaded));
         });
     }
 
@@ -247,7 +260,7 @@ impl App {
         if self.shows_before() {
             self.close_companion(CompanionFile::LeftMesh);
         }
-        self.history.change_all(|step| step.is_with_before = false);
+        self.history.change_all(|step| _ = step.left.take_if(|left| *left == LeftChoice::Before));
     }
 
     /// Shows the mesh as it was before its file changed, tessellated as the new one is.
@@ -255,12 +268,12 @@ impl App {
         let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
         self.close_companion(CompanionFile::LeftMesh);
         self.settings.keep_on_left(self.viewport.last_split);
-        self.left_mesh = Some(Opened::new(None, before));
+        self.left_mesh = Some(Opened::new(LeftChoice::Before, before));
     }
 
     /// Whether the left half is for the mesh as it was before its file changed.
     pub(in crate::app) fn shows_before(&self) -> bool {
-        self.left_mesh.as_ref().is_some_and(|left| left.from.is_none())
+        self.left_mesh.as_ref().is_some_and(|left| left.from == LeftChoice::Before)
     }
 }
 

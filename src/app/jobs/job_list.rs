@@ -11,8 +11,8 @@ use crate::commands::CompanionFile;
 use geometry::progress::Progress;
 use inspect::engine::Preparation;
 use inspect::settings::Settings;
-use load::Source;
 use load::files::Limits;
+use load::{MorphWeights, Source};
 
 /// What a job is for. There is one job for each at most: a new one takes the place of the one before it, which is stopped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -93,6 +93,15 @@ pub(crate) struct Load {
     pub has_changed: bool,
 }
 
+/// What is left of the split in place of the mesh that is open.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum LeftChoice {
+    /// The mesh as it was before its file changed on disk.
+    Before,
+    /// The mesh of a source, or without one the same mesh, with these weights of morph targets.
+    Read(Option<Source>, MorphWeights),
+}
+
 #[derive(Default)]
 pub(crate) struct Jobs {
     jobs: Vec<Job>,
@@ -106,6 +115,8 @@ pub(crate) struct Jobs {
     /// The source of the reference surface that is being read, or was read last; none for the limit of the mesh's own cage. Then
     /// whether deviation is shown once it is read.
     pub reference: (Option<Source>, bool),
+    /// What is being read for the left half, or was read last.
+    pub left: Option<LeftChoice>,
 }
 
 impl Jobs {

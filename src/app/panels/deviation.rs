@@ -23,10 +23,7 @@ impl App {
     }
 
     fn deviation_of(&self, half: SplitSide) -> Option<DeviationBasis> {
-        if self.lacks_reference() {
-            return None;
-        }
-        let document = self.document.as_ref()?;
+        let document = self.document.as_ref().filter(|_| !self.lacks_reference())?;
         let tessellation = document.scene.half(half)?.tessellator.generation();
         let (reference_shape, limit) = (self.yardstick().0, self.settings.tessellation.surface);
         Some(DeviationBasis { tessellation, reference_shape, limit })
@@ -90,10 +87,8 @@ impl App {
             let is_posed = document.moment == self.viewport.playback.moment();
             let scene = document.scene.half_mut(half).filter(|scene| is_posed && scene.tessellator.is_counted());
             let Some(scene) = scene else { continue };
-            let target = || {
-                reference_shape
-                    .map_or_else(|| DeviationTarget::Limit(Box::new(*inputs)), DeviationTarget::ReferenceShape)
-            };
+            let limit = || DeviationTarget::Limit(Box::new(*inputs));
+            let target = || reference_shape.map_or_else(limit, DeviationTarget::ReferenceShape);
             document.halves[half as usize].deviation.go_on(&self.engine.gpu, scene, of, target)?;
         }
         let (Some(scale), Some(document)) = (self.deviation_scale(), self.document.as_mut()) else { return Ok(()) };

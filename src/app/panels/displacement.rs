@@ -74,9 +74,7 @@ impl App {
                 self.ask_for(ui.ctx(), Purpose::Heights);
             }
         });
-        if let Some(chosen) = chosen.filter(|chosen| *chosen != heights) {
-            self.displace(ui.ctx(), chosen);
-        }
+        chosen.into_iter().for_each(|chosen| self.displace(ui.ctx(), chosen));
         self.displacement_rows(ui);
     }
 

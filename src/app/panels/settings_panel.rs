@@ -24,12 +24,12 @@ impl App {
             ui.spacing_mut().combo_width = controls;
             ui.spacing_mut().slider_width = controls - gap - ui.spacing().interact_size.x;
             self.halves_row(ui);
-            self.of_half(|app| {
+            self.of_half(|app, is_left| {
                 app.section(ui, Section::Surface, Self::surface_rows);
                 app.section(ui, Section::LevelOfDetail, Self::lod_rows);
                 app.section(ui, Section::Displacement, Self::height_rows);
                 app.parts_section(ui);
-                app.morphs_section(ui);
+                app.morphs_section(ui, is_left);
                 app.section(ui, Section::Look, Self::look_rows);
                 app.section(ui, Section::Import, Self::import_rows);
                 app.section(ui, Section::Advanced, Self::advanced_rows);
@@ -63,13 +63,13 @@ impl App {
         ui.add_enabled_ui(has_left, |ui| ui.horizontal_wrapped(row));
     }
 
-    /// Shows rows whose settings are those of the half that is edited.
-    pub(super) fn of_half(&mut self, show: impl FnOnce(&mut Self)) {
+    /// Shows rows whose settings are those of the half that is edited. They get whether that is the left one.
+    pub(super) fn of_half(&mut self, show: impl FnOnce(&mut Self, bool)) {
         let is_left = self.panels.edited == SplitSide::Left && self.settings.split.is_some();
         if is_left {
             self.settings.swap_halves();
         }
-        show(self);
+        show(self, is_left);
         if is_left {
             self.settings.swap_halves();
         }
@@ -223,21 +223,18 @@ impl App {
 
     /// A choice of material variants, which is there only if the file has some. Another variant loads the mesh again.
     fn variant_row(&mut self, ui: &mut egui::Ui) {
-        let contents = self.contents();
-        let Some(document) = self.document.as_ref().filter(|_| !contents.variants.is_empty()) else { return };
-        let own = document.loaded.preparation.variant.as_deref();
-        let mut chosen = own;
-        let names = contents.variants.iter().map(String::as_str);
-        let choices: Vec<_> = [(None, "File's own", "Each primitive has its own material.")]
-            .into_iter()
-            .chain(names.map(|name| (Some(name), name, "Primitives have the materials of this variant.")))
-            .collect();
-        let hover = "Material variant to show (--variant).";
-        chooser(ui, "Variant", hover, &mut chosen, &choices);
-        if chosen != own {
-            let chosen = chosen.map(str::to_owned);
-            self.prepare(ui.ctx(), |preparation| preparation.variant = chosen);
+        let (contents, own) = (self.contents(), self.preparation().variant);
+        if contents.variants.is_empty() {
+            return;
         }
+        let mut chosen = own.as_deref();
+        let hover = "Primitives have the materials of this variant.";
+        let named = contents.variants.iter().map(|name| (Some(name.as_str()), name.as_str(), hover));
+        let own = (None, "File's own", "Each primitive has its own material.");
+        let choices: Vec<_> = std::iter::once(own).chain(named).collect();
+        chooser(ui, "Variant", "Material variant to show (--variant).", &mut chosen, &choices);
+        let chosen = chosen.map(str::to_owned);
+        self.prepare(ui.ctx(), |preparation| preparation.variant = chosen);
     }
 
     /// A choice of scenes, which is there only if the file has several. Another scene loads the mesh again.
@@ -264,7 +261,7 @@ impl App {
     /// The row for the weld tolerance. Its list says what each tolerance would join. A new one loads the mesh again.
     fn weld_row(&mut self, ui: &mut egui::Ui) {
         let Some(document) = &self.document else { return };
-        let weld = document.loaded.preparation.weld;
+        let weld = self.preparation().weld;
         let mut chosen = weld;
         let hover = "Positions closer together than this become one point, which joins open edges that nearly meet. Tolerances \
                      are relative to the bounding diagonal. The list says how many edges each would join.";
@@ -285,9 +282,7 @@ impl App {
                 None => drop(ui.weak("not tried")),
             }
         });
-        if chosen != weld {
-            self.prepare(ui.ctx(), |preparation| preparation.weld = chosen);
-        }
+        self.prepare(ui.ctx(), |preparation| preparation.weld = chosen);
     }
 
     fn look_rows(&mut self, ui: &mut egui::Ui) {

@@ -35,7 +35,7 @@ impl App {
                 let action = Action::Setting(Change::Overlay(overlay));
                 self.command_button(ui, &commands, &now, &action, [overlay.label(); 2]);
             }
-            self.of_half(|app| {
+            self.of_half(|app, _| {
                 app.overlays_list(ui, why_not);
                 app.colors_list(ui, why_not);
             });

@@ -10,7 +10,7 @@ use gpu::GpuError;
 use inspect::measure::Measured;
 use inspect::render::Scene;
 use inspect::settings::SplitSide;
-use inspect::shot::{HalfFacts, half_title, surface_title};
+use inspect::shot::{HalfFacts, half_title, mesh_title, surface_title};
 
 impl App {
     /// Makes the left half's scene or drops it, as the settings want it. Waits until no picture is under way.
@@ -79,10 +79,13 @@ impl App {
     /// the halves, and what was counted.
     pub(in crate::app) fn half_title(&self, half: SplitSide) -> String {
         let open = self.document.as_ref();
-        let titles = self.left_mesh.as_ref().zip(open).map(|(left, open)| [left.title(), open.loaded.source.title()]);
+        let meshes = self.left_mesh.as_ref().zip(open).map(|(left, open)| {
+            let names = [left.title(), open.loaded.source.title()];
+            mesh_title(half, [&left.content, &open.loaded], names)
+        });
         let scene = open.and_then(|document| document.scene.half(half));
         let facts = HalfFacts {
-            mesh: titles.map(|titles| titles[half as usize].clone()),
+            mesh: meshes.unwrap_or_default(),
             pose: open.and_then(|document| document.scene.pose_title(half)),
             shader: self.shader_title(half),
             largest: self.largest_text(half),

@@ -1,14 +1,15 @@
-//! What the surface's colours stand for under the pointer, in numbers, while it rests.
+//! What the surface's colours stand for under the pointer, in numbers, while it rests, and the names of joints.
 
 use std::time::{Duration, Instant};
 
 use egui::{PopupAnchor, Response};
-use glam::{Mat4, Vec2, Vec3, vec2};
+use glam::{Mat4, Vec2, Vec3};
 
 use crate::app::App;
 use crate::app::text::{factor, short};
+use geometry::mesh::Bone;
 use geometry::tessellate::{CurvatureKind, FIXED_ONE, LodView, Vertex, factor_side, patch_curvature, patch_net};
-use geometry::view::{ScreenView, seen_on_plane};
+use geometry::view::{ScreenView, project, seen_on_plane};
 use gpu::GpuError;
 use inspect::measure::size_px;
 use inspect::render::{Picked, Picking, Pixel, texel_density};
@@ -16,6 +17,9 @@ use inspect::settings::{Colors, SplitSide, SurfaceUnit};
 
 /// How long the pointer rests before the place under it is looked up.
 const REST: Duration = Duration::from_millis(120);
+
+/// How close to a joint the pointer names it, in px.
+const NEAR: f32 = 8.0;
 
 /// A place where the pointer rests, and what is known of it.
 pub(crate) struct PointerValue {
@@ -34,7 +38,7 @@ enum Search {
 }
 
 impl App {
-    /// Looks up what the colours stand for under the pointer, and shows it there.
+    /// Looks up what the colours stand for under the pointer, or the joint that is there, and shows it.
     ///
     /// # Errors
     /// The device was lost.
@@ -66,7 +70,7 @@ impl App {
         Ok(())
     }
 
-    /// The place under the pointer of a picture whose colours have numbers; none while anything moves.
+    /// The place under the pointer of a picture whose colours have numbers or that has bones; none while anything moves.
     fn place_under(&self, response: &Response) -> Option<PointerValue> {
         let pointer = response.hover_pos().filter(|_| !self.is_playing() && !response.is_pointer_button_down_on())?;
         let document = self.document.as_ref().filter(|_| !self.viewport.picture.is_busy())?;
@@ -74,21 +78,19 @@ impl App {
         let (half, pixel) =
             self.viewport.picture.pixel(&document.scene, [at.x.max(0.0) as u32, at.y.max(0.0) as u32])?;
         let picture = self.viewport.picture.pictures;
-        let has_numbers = matches!(
-            self.settings.half(half)?.overlays.colors,
-            Colors::Factors
-                | Colors::LowFactors
-                | Colors::TriangleSize
-                | Colors::Deviation
-                | Colors::Curvature
-                | Colors::TexelDensity
-        );
-        has_numbers.then(|| PointerValue { half, pixel, picture, since: Instant::now(), search: Search::Waiting })
+        let overlays = self.settings.half(half)?.overlays;
+        let is_looked_up = has_numbers(overlays.colors) || overlays.bones;
+        is_looked_up.then(|| PointerValue { half, pixel, picture, since: Instant::now(), search: Search::Waiting })
     }
 
     fn start_search(&mut self, place: &PointerValue, response: &Response) -> Result<Search, GpuError> {
         if place.since.elapsed() < REST {
             return Ok(Search::Waiting);
+        }
+        let joint = self.joint_at(place);
+        let has_numbers = self.settings.half(place.half).is_some_and(|own| has_numbers(own.overlays.colors));
+        if joint.is_some() || !has_numbers {
+            return Ok(Search::Done(joint));
         }
         let scene = self.document.as_mut().and_then(|document| document.scene.half_mut(place.half));
         let Some(scene) = scene else { return Ok(Search::Done(None)) };
@@ -100,14 +102,23 @@ impl App {
         Ok(Search::UnderWay(self.engine.picker.start(&self.engine.gpu, scene, &place.pixel)?))
     }
 
+    /// The name of the joint that is next to a place, if its half shows bones.
+    fn joint_at(&self, place: &PointerValue) -> Option<String> {
+        self.settings.half(place.half).filter(|own| own.overlays.bones)?;
+        let tessellator = &self.document.as_ref()?.scene.half(place.half)?.tessellator;
+        let bones = tessellator.mesh().bones_in(tessellator.posed().pose());
+        let (view, middle) = place.pixel.seen();
+        let away = |bone: &Bone| Some(project(view.clip_from_object, view.viewport, bone.place)?.distance(middle));
+        let near = bones.iter().filter_map(|bone| Some((away(bone).filter(|px| *px <= NEAR)?, bone)));
+        near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, bone)| format!("Joint {}", bone.name))
+    }
+
     /// What the colours stand for at a place where this was found.
     fn value_at(&self, place: &PointerValue, found: &Picked) -> Option<String> {
-        let Pixel { clip_from_object, size, at, .. } = place.pixel;
-        let view = ScreenView { clip_from_object, viewport: vec2(size[0] as f32, size[1] as f32) };
+        let (view, middle) = place.pixel.seen();
         let vertices = found.triangle?.vertices;
         let corners = vertices.map(|vertex| Vec3::from(vertex.position));
-        let middle = vec2(at[0] as f32 + 0.5, at[1] as f32 + 0.5);
-        let settings = self.settings.half(place.half)?;
+        let (settings, scene) = (self.settings.half(place.half)?, self.document.as_ref()?.scene.half(place.half)?);
         match settings.overlays.colors {
             Colors::TriangleSize => {
                 let size = size_px(corners.map(|corner| view.clip_from_object * corner.extend(1.0)), view.viewport)?;
@@ -118,7 +129,7 @@ impl App {
                 let point = seen_on_plane(&view, middle, corners)?;
                 let distance = reference.closest(point.as_dvec3()).distance;
                 let px_where_w_is_1 = self.viewport.picture.drawn?.camera.px_where_w_is_1(view.viewport.y);
-                let px = f64::from(px_where_w_is_1 / (clip_from_object * point.extend(1.0)).w);
+                let px = f64::from(px_where_w_is_1 / (view.clip_from_object * point.extend(1.0)).w);
                 Some(match settings.deviation_in {
                     SurfaceUnit::Units => format!("{} units", short(distance)),
                     SurfaceUnit::Px => format!("{} px", short(distance * px)),
@@ -129,7 +140,6 @@ impl App {
                 self.curvature_at(place.half, found.patch, mean_at(&view, middle, &vertices, domain)?)
             }
             Colors::TexelDensity => {
-                let scene = self.document.as_ref()?.scene.half(place.half)?;
                 let material = scene.tessellator.topology().material_of(found.patch);
                 let material = &scene.tessellator.mesh().materials[material];
                 let (density, unit) = match settings.texel_density_per {
@@ -143,7 +153,6 @@ impl App {
                 Some(format!("{} texels / {unit}", short(density?.into())))
             }
             _ => {
-                let scene = self.document.as_ref()?.scene.half(place.half)?;
                 let sides = self.found(place.half)?.outlines.patch(scene.tessellator.topology(), found.patch)?;
                 let of_edge = |i| sides[factor_side(scene.tessellator.convention(), i) as usize].factor;
                 let factors = [0, 1, 2].map(|i| factor(f64::from(of_edge(i)), 2));
@@ -151,6 +160,12 @@ impl App {
             }
         }
     }
+}
+
+/// Whether colours stand for numbers at each place.
+fn has_numbers(colors: Colors) -> bool {
+    use Colors::{Curvature, Deviation, Factors, LowFactors, TexelDensity, TriangleSize};
+    matches!(colors, Factors | LowFactors | TriangleSize | Deviation | Curvature | TexelDensity)
 }
 
 /// The mean of something that a triangle's vertices have, as it is at the place of its plane that is seen at `px` of the picture.

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::app::App;
 use crate::app::text::short;
-use geometry::view::{ScreenView, seen_on_plane};
+use geometry::view::seen_on_plane;
 use inspect::render::{LineSegment, Picked, Pixel, outlined};
 use inspect::settings::SplitSide;
 
@@ -59,10 +59,8 @@ impl App {
             Some(triangle) => triangle.vertices.map(|vertex| Vec3::from(vertex.position)),
             None => document.patch_positions(half, picked.patch),
         });
-        let viewport = glam::vec2(pixel.size[0] as f32, pixel.size[1] as f32);
-        let view = ScreenView { clip_from_object: pixel.clip_from_object, viewport };
-        let [x, y] = pixel.at.map(|at| at as f32 + 0.5);
-        let place = corners.and_then(|corners| seen_on_plane(&view, glam::vec2(x, y), corners));
+        let (view, middle) = pixel.seen();
+        let place = corners.and_then(|corners| seen_on_plane(&view, middle, corners));
         place.into_iter().for_each(|place| ruler.take(place));
         true
     }

@@ -87,7 +87,7 @@ impl FromStr for CameraOption {
 }
 
 /// Parses the name of a morph target, which may have equals signs, and its weight.
-pub(super) fn morph(text: &str) -> Result<(String, f32), String> {
+pub(crate) fn morph(text: &str) -> Result<(String, f32), String> {
     let (name, weight) = text.rsplit_once('=').unwrap_or_default();
     let weight = number(weight, |weight: &f32| weight.is_finite(), "NAME=WEIGHT, such as Smile=0.7")?;
     Ok((name.to_owned(), weight))

@@ -156,7 +156,8 @@ impl Mesh {
         let [corners, triangles] = [self.corners.capacity() * 32, self.triangles.capacity() * 12];
         let details = self.details.as_ref().map_or(0, |details| size_of_val(&details[..]));
         let parts = self.part_ranges.capacity() * size_of::<PartRange>() + size_of_val(&self.bones[..]);
-        (corners + triangles + parts + textures + materials + rig + details) as u64 + heights
+        let names: usize = self.bones.iter().map(|bone| bone.name.len()).sum();
+        (corners + triangles + parts + names + textures + materials + rig + details) as u64 + heights
     }
 
     /// Returns the lights of the file in a pose. One without a finite place there stays where it is at rest.
@@ -187,7 +188,7 @@ impl Mesh {
             Some(global) => global.transform_point3(bone.place.as_dvec3()).as_vec3(),
             None => bone.place,
         };
-        self.bones.iter().map(|bone| Bone { node: None, place: placed(bone), ..*bone }).collect()
+        self.bones.iter().map(|bone| Bone { node: None, place: placed(bone), ..bone.clone() }).collect()
     }
 
     /// Returns the cameras of the file at a moment of one of its clips; without one, where they are at rest.

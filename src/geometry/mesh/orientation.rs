@@ -142,7 +142,7 @@ mod tests {
         let place = DVec3::new(0.0, 2.0, 4.0);
         let still = Joint { offset: DMat4::from_translation(place), ..Joint::default() };
         let rig = Rig { joints: vec![still], lights: vec![still], cameras: vec![still], ..Rig::default() };
-        let bone = |node| Bone { node, place: place.as_vec3(), parent: None };
+        let bone = |node| Bone { node, place: place.as_vec3(), ..Bone::default() };
         let bones = vec![bone(None), bone(Some(0))];
         let mut mesh = Mesh { rig: Some(Arc::new(rig)), bones, ..Mesh::default() };
         reorient(&mut mesh, UpAxis::Z, 0.5);

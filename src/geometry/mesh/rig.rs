@@ -12,6 +12,7 @@ pub mod clip;
 use crate::casts::to_f32;
 use crate::numbers::counted;
 use std::fmt;
+use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 use glam::{DMat4, Vec3};
@@ -120,8 +121,10 @@ pub struct Joint {
 }
 
 /// A joint of a skin, to be shown.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bone {
+    /// Its name, fit for display.
+    pub name: Arc<str>,
     /// The animated node that moves it, if any.
     pub node: Option<u32>,
     /// In the space of that node; in object space without one.

@@ -83,6 +83,15 @@ impl Preparation {
             import: self.import,
         }
     }
+
+    /// That of the mesh left of a split, which has these weights of morph targets: of the same mesh, or of another one, which is
+    /// taken as this one is.
+    pub fn of_left(&self, is_other: bool, morphs: &load::MorphWeights) -> Self {
+        let plain = Self { import: self.import, limits: self.limits, ..Self::default() };
+        let mut left = if is_other { plain } else { self.clone() };
+        left.parts.morphs.extend(morphs.clone());
+        left
+    }
 }
 
 /// Loads the surface that a mesh is compared with: that of another source, at the mesh's place, or without one that of the mesh's

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
-use glam::{DMat4, DVec4, Mat4, dvec2};
+use glam::{DMat4, DVec4, Mat4, Vec2, dvec2};
 
 use super::Scene;
 use super::layout::{FOUND_EMITTED, Pick};
 use super::render_pipeline::{PipelineParts, depth_state};
 use super::target::{DEPTH_FORMAT, color_attachment, depth_attachment};
+use geometry::view::ScreenView;
 use gpu::layout::Vertex;
 use gpu::{
     ComputePipeline, Gpu, GpuError, Lazy, Readback, RecordPasses, Recorder, ShaderModule, empty, flat_texture,
@@ -27,6 +28,14 @@ pub struct Pixel {
     pub at: [u32; 2],
     /// Whether the mesh's own triangles are looked at in place of those that are emitted, which takes less time.
     pub has_input: bool,
+}
+
+impl Pixel {
+    /// The view, and where the pixel's middle is in it.
+    pub fn seen(&self) -> (ScreenView, Vec2) {
+        let [viewport, middle] = [self.size.map(|side| side as f32), self.at.map(|at| at as f32 + 0.5)].map(Vec2::from);
+        (ScreenView { clip_from_object: self.clip_from_object, viewport }, middle)
+    }
 }
 
 /// What is in front at a pixel's centre.

@@ -13,7 +13,7 @@ use crate::settings::{Choice, ColorSource, Declaration, Lighting, Settings, Valu
 use geometry::tessellate::{Displacement, Tessellation};
 use load::files::Limits;
 use load::import::Subdivide;
-use load::{HeightSource, Source};
+use load::{HeightSource, MorphWeights, Source};
 
 /// What stands for the pose without a clip where a clip is named.
 pub const AT_REST: &str = "rest";
@@ -35,6 +35,8 @@ pub struct CopiedCommand<'a> {
     pub reference_subdivide: Option<Subdivide>,
     /// The mesh left of the split, if it is another one.
     pub left_mesh: Option<&'a Source>,
+    /// The weights of morph targets that the left half has otherwise than the right one, or has of another mesh.
+    pub left_morphs: Option<&'a MorphWeights>,
     /// The file whose factors take the place of those of LOD.
     pub factors: Option<&'a Path>,
     /// The file whose functions take the place of LOD.
@@ -177,21 +179,21 @@ impl CopiedCommand<'_> {
         for (name, path) in files.into_iter().filter_map(|(name, path)| Some((name, path?))) {
             line.option(name, named(&Source::File(path.to_owned())));
         }
-        if let Some(left) = self.left_mesh.filter(|_| self.settings.split.is_some()) {
-            line.option("--split-with", named(left));
+        if self.settings.split.is_some() {
+            self.left_mesh.iter().for_each(|left| line.option("--split-with", named(left)));
+            for (name, weight) in self.left_morphs.into_iter().flatten() {
+                line.option("--split-morph", format!("{name}={weight}"));
+            }
         }
         if self.animation.is_none() && self.left_animation.is_none() {
             self.reference_shape.iter().for_each(|own| line.option("--reference-surface", named(own)));
             self.reference_subdivide.iter().for_each(|own| line.option("--reference-subdivide", own.name()));
         }
         self.triangle.into_iter().for_each(|triangle| line.option("--select", triangle));
-        if let Some((name, time)) = self.animation {
-            line.option("--animation", name);
-            line.changed("--time", &time, &0.0);
-        }
-        if let Some((name, time)) = self.left_animation {
-            line.option("--split-animation", name);
-            line.changed("--split-time", &time, &0.0);
+        let animations = [("", self.animation), ("split-", self.left_animation)];
+        for (prefix, (name, time)) in animations.into_iter().filter_map(|(prefix, own)| Some((prefix, own?))) {
+            line.option(&format!("--{prefix}animation"), name);
+            line.changed(&format!("--{prefix}time"), &time, &0.0);
         }
         line.switch("--transparent", self.view.transparent);
         line.switch("--legend", self.view.legend);

@@ -33,7 +33,7 @@ pub(crate) use picture_comparison::DIFFERENCE_FLOOR;
 pub use picture_comparison::{CompareError, Comparison, compare};
 pub use picture_file::{png_bytes, write_drawn, write_picture};
 pub use reference::{BETWEEN_DRIVERS, Judged, Reference};
-pub use split_titles::{HalfFacts, half_title, surface_title};
+pub use split_titles::{HalfFacts, half_title, mesh_title, surface_title};
 pub use stats::Stats;
 pub use turn::{FPS, FRAMES, Turn, frame_name};
 pub use user_shader_report::{not_numbers_said, report_user_lod, report_user_surface, straight_sides_said};
@@ -295,7 +295,7 @@ impl Shot {
         let meshes = self.subject.left.as_ref().map(|left| [left, &self.subject.loaded]);
         let measured = self.results(half).and_then(|results| results.survey.as_ref());
         let facts = HalfFacts {
-            mesh: meshes.map(|meshes| meshes[half as usize].source.title()),
+            mesh: meshes.map_or_else(Vec::new, |own| mesh_title(half, own, own.map(|own| own.source.title()))),
             pose: self.scene.pose_title(half),
             triangles: self.scene.half(half).map(|own| own.tessellator.totals().1),
             cracked_edges: measured.map(|measured| measured.cracks.cracked().len() as u64),
@@ -349,17 +349,14 @@ impl Shot {
             let own = self.inputs(half).zip(self.subject.settings.half(half));
             let Some(((inputs, settings), scene)) = own.as_ref().zip(self.scene.half_mut(half)) else { continue };
             let is_shown = settings.overlays.colors.source() == ColorSource::ReferenceSurface;
+            // The CPU doesn't know the surface of a shader.
+            let has_error = scene.tessellator.surface_shader().is_none() && stats.is_some_and(|stats| stats.error);
+            let compared = reference_surface.filter(|_| stats.is_some());
             let wanted = Measurements {
                 survey: settings.overlays.cracks || self.subject.selected.is_some() || stats.is_some(),
-                // The CPU doesn't know the surface of a shader.
-                screen_error: stats
-                    .filter(|_| scene.tessellator.surface_shader().is_none())
-                    .is_some_and(|stats| stats.error)
-                    .then_some(inputs),
+                screen_error: has_error.then_some(inputs),
                 deviation: target.as_ref().filter(|_| is_shown),
-                accuracy: reference_surface
-                    .filter(|_| stats.is_some())
-                    .map(|reference_shape| (&**reference_shape, &inputs.view, AccuracyOptions::default())),
+                accuracy: compared.map(|own| (&**own, &inputs.view, AccuracyOptions::default())),
                 sizes: stats.is_some().then_some(view),
             };
             self.results[half as usize] = Some(self.engine.measure_watched(scene, &wanted, progress)?);
@@ -383,11 +380,8 @@ impl Shot {
 
     /// Colours both halves by their deviation, on one scale that covers the larger of the two.
     fn show_deviation(&mut self) {
-        let fields = || self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
-        let largest = fields().filter_map(DeviationField::worst).map(|worst| worst.value).fold(0.0, f64::max);
-        if fields().next().is_none() {
-            return;
-        }
+        let fields = self.results.iter().flatten().filter_map(|results| results.deviation.as_ref());
+        let largest = fields.filter_map(DeviationField::worst).map(|worst| worst.value).fold(0.0, f64::max);
         self.scale = deviation_scale(largest, self.scene.ulp);
         for (half, results) in SplitSide::BOTH.into_iter().zip(&self.results) {
             let field = results.as_ref().and_then(|results| results.deviation.as_ref());
@@ -419,10 +413,8 @@ impl Shot {
         let topology = other.unwrap_or(&self.posed.topology);
         let results = self.results(half);
         let measured = results.and_then(|results| results.survey.as_ref());
-        let mut lines = match measured {
-            Some(measured) if settings.overlays.cracks => crack_lines(measured, topology),
-            _ => Vec::new(),
-        };
+        let cracked = measured.filter(|_| settings.overlays.cracks);
+        let mut lines = cracked.map_or_else(Vec::new, |measured| crack_lines(measured, topology));
         if settings.overlays.t_junctions && is_same {
             let junctions = t_junctions(&self.subject.loaded.topology, progress)?;
             lines.extend(t_junction_lines(topology, &junctions));

@@ -3,8 +3,10 @@
 use image::RgbaImage;
 
 use super::legend::plate_of_lines;
+use crate::engine::Loaded;
 use crate::plot::ChartError;
 use crate::settings::{Choice, Declaration, Settings, SplitSide, options};
+use geometry::names::shown;
 
 /// The colour of the divider.
 const DIVIDER: image::Rgba<u8> = image::Rgba([190, 190, 190, 255]);
@@ -12,8 +14,8 @@ const DIVIDER: image::Rgba<u8> = image::Rgba([190, 190, 190, 255]);
 /// What is known of a half beside its settings.
 #[derive(Clone, Debug, Default)]
 pub struct HalfFacts {
-    /// The mesh's name, if the halves show different ones.
-    pub mesh: Option<String>,
+    /// What the mesh is called, if the halves show different ones: see [`mesh_title`].
+    pub mesh: Vec<String>,
     /// Its pose, if they have different ones.
     pub pose: Option<String>,
     /// The name of a shader in place of the surface.
@@ -31,6 +33,17 @@ pub fn surface_title(settings: &Settings, half: SplitSide) -> &'static str {
         SplitSide::Left => settings.left_surface().map_or("untessellated", |surface| surface.label()),
         SplitSide::Right => settings.tessellation.surface.label(),
     }
+}
+
+/// What the mesh of a half is called beside that of the other one: by its name and the weights that were chosen for its morph
+/// targets, as far as these differ. The left one is the first of the meshes and of their names.
+pub fn mesh_title(half: SplitSide, meshes: [&Loaded; 2], names: [String; 2]) -> Vec<String> {
+    let [own, other] = [half as usize, 1 - half as usize].map(|of| &meshes[of].preparation.parts.morphs);
+    let unlike = own.iter().filter(|(name, weight)| other.get(*name) != Some(*weight));
+    let weights: Vec<_> = unlike.map(|(name, weight)| format!("{name} {weight}")).collect();
+    let name = if names[0] == names[1] { "" } else { &names[half as usize] };
+    let words = [name.to_owned(), shown(&weights.join(", "))];
+    words.into_iter().filter(|text| !text.is_empty()).collect()
 }
 
 /// The title of a half: the mesh and the surface, what else differs between the halves, and what was counted.
@@ -81,4 +94,28 @@ pub(super) fn draw_titles(picture: &mut RgbaImage, split: Option<f32>, titles: &
         image::imageops::replace(picture, &plate, left, margin.into());
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::Preparation;
+    use load::ShownParts;
+
+    #[test]
+    fn meshes_are_called_by_what_differs() {
+        let weighed = |morphs: &[(&str, f32)]| {
+            let morphs = morphs.iter().map(|(name, weight)| ((*name).to_owned(), *weight)).collect();
+            let parts = ShownParts { morphs, ..ShownParts::default() };
+            Loaded { preparation: Preparation { parts, ..Preparation::default() }, ..Loaded::default() }
+        };
+        let [left, right] = [weighed(&[("Blink", 1.0), ("Smile", 0.7)]), weighed(&[("Blink", 1.0), ("Frown", 0.5)])];
+        let called = |names: [&str; 2]| {
+            SplitSide::BOTH.map(|half| mesh_title(half, [&left, &right], names.map(str::to_owned)).join(", "))
+        };
+        assert_eq!(called(["a", "a"]), ["Smile 0.7", "Frown 0.5"]);
+        assert_eq!(called(["a", "b"]), ["a, Smile 0.7", "b, Frown 0.5"]);
+        let same = mesh_title(SplitSide::Left, [&left, &left], ["a", "a"].map(str::to_owned));
+        assert!(same.is_empty(), "{same:?}");
+    }
 }

@@ -30,8 +30,6 @@ pub struct Stats {
     adapter: String,
     #[serde(flatten)]
     right: HalfStats,
-    /// What parts and materials have in place of settings, as `--part` has it.
-    parts: Vec<String>,
     points: u64,
     corners: u64,
     edges: EdgeCounts,
@@ -236,6 +234,8 @@ struct HalfStats {
     #[serde(skip_serializing_if = "Option::is_none")]
     mesh: Option<String>,
     settings: SettingsStats,
+    /// What parts and materials have in place of settings, as `--part` has it.
+    parts: Vec<String>,
     #[serde(flatten)]
     numbers: Numbers,
     /// Patches that are left out for any reason.
@@ -307,7 +307,6 @@ impl Shot {
             factors_file: None,
             adapter: engine.gpu.info.name.clone(),
             right,
-            parts: self.posed.preparation.parts.style_texts().collect(),
             points: topology.points.len() as u64,
             corners: mesh.corners.len() as u64,
             edges: topology.edge_counts(),
@@ -334,9 +333,11 @@ impl Shot {
         let is_right = half == SplitSide::Right;
         let judged = if is_right { &self.judged[..] } else { &[] };
         let topology = if is_right { &self.posed.topology } else { tessellator.topology() };
+        let other = self.subject.left.as_ref().filter(|_| !is_right);
         Some(HalfStats {
-            mesh: self.subject.left.as_ref().filter(|_| !is_right).map(|left| left.source.to_string()),
+            mesh: other.map(|left| left.source.to_string()),
             settings: SettingsStats::new(&settings, tessellator.surface_shader().is_some(), judged),
+            parts: other.unwrap_or(&self.posed).preparation.parts.style_texts().collect(),
             numbers: Numbers::new(scene),
             patches_culled: measured.culled.total(),
             patches_out_of_view: measured.culled.out_of_view,

@@ -55,8 +55,9 @@ fn bones_are_the_joints_of_the_skin() {
         loaded.bones_in(pose.as_ref())
     };
     for time in [None, Some(0.0), Some(0.7)] {
-        let [root, tip] = bones(time)[..] else { panic!("{:?}", bones(time)) };
+        let [root, tip] = &bones(time)[..] else { panic!("{:?}", bones(time)) };
         assert_eq!((root.parent, tip.parent), (None, Some(0)));
+        assert_eq!([&*root.name, &*tip.name], ["root", "tip"]);
         // The tip turns about itself.
         assert_near(root.place, Vec3::ZERO, "the root");
         assert_near(tip.place, 2.0 * Vec3::X, "the tip");

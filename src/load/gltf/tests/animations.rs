@@ -113,6 +113,10 @@ fn bones_are_the_joints_of_skins_in_any_pose_and_without_clips() {
     nodes[1] = json!({ "children": [3] });
     nodes.push(json!({ "translation": [0, 0, 5], "children": [2] }));
     assert_eq!(bones(&draft.read().unwrap(), None), [([0.0; 3], None), ([1.0, 0.0, 5.0], Some(0))]);
+    let (long, mut named) = ("Hip\n".repeat(100), skinned());
+    named.root["nodes"][1]["name"] = json!(long);
+    let names: Vec<_> = named.read().unwrap().bones.iter().map(|bone| bone.name.to_string()).collect();
+    assert_eq!(names, [geometry::names::shown(&long), "node 2".to_owned()]);
     let mut moving = triangle();
     moving.move_node(0);
     assert_eq!(bones(&moving.read().unwrap(), None), [], "a node that a clip moves is no joint");
