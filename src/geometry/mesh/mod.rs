@@ -7,7 +7,6 @@ mod alike_corners;
 pub mod bounds;
 pub mod build_limits;
 mod cell_chains;
-mod cell_grid;
 pub mod chunked_vec;
 pub mod corner_details;
 pub mod crease_band;

@@ -10,8 +10,7 @@ use glam::{Vec2, Vec3};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
-use super::cell_chains::CellChains;
-use super::cell_grid::{CellGrid, spread};
+use super::cell_chains::{CellChains, spread};
 use crate::casts::to_u32;
 use crate::cores::{fill, in_ranges};
 
@@ -153,7 +152,7 @@ struct Apart {
 impl Apart {
     fn new(tolerance: f64) -> Self {
         // Cells that are as narrow as a search allows: in wider ones there are more points to compare.
-        let points = CellChains::with_capacity(CellGrid::LEAST_WIDTH * tolerance, 0);
+        let points = CellChains::with_capacity(CellChains::LEAST_WIDTH * tolerance, 0);
         Self { tolerance, points, latest: 0 }
     }
 
