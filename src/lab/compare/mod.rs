@@ -11,7 +11,6 @@ mod domain_points;
 mod explanations;
 mod findings;
 mod foreign;
-mod half_floats;
 mod locator;
 mod matching;
 mod net_mistakes;
@@ -117,7 +116,7 @@ pub fn compare(ours: &OurTessellation, theirs: &ForeignMesh, exactness: Toleranc
         return empty;
     }
     let asked = exactness.within;
-    let halves = half_floats::resolution(theirs, ours);
+    let halves = theirs.resolution_of_halves(ours);
     let mut exactness = exactness.rounded(halves);
     let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
     let apart = apart(asked, empty.ulp);
