@@ -16,7 +16,6 @@ mod dominance;
 mod file_camera;
 pub(crate) mod generate_normals;
 pub mod heights;
-pub mod interner;
 mod light;
 pub mod material;
 pub mod mesh_builder;
