@@ -240,7 +240,8 @@ impl MeshBuilder {
     pub fn corner(&mut self, corner: InputCorner, binding: u32) -> StoredCorner {
         let (corner, repairs) = repaired(corner);
         self.offered += 1;
-        StoredCorner { id: self.distinct.id(corner, binding), repairs }
+        let hash = self.distinct.hash(&corner, binding);
+        StoredCorner { id: self.distinct.id_of(hash, corner, binding), repairs }
     }
 
     /// Stores corners with their bindings as [`corner`](Self::corner) does, and appends what is stored to `stored`. Many are looked up on all
