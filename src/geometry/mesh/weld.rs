@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use bytemuck::zeroed_vec;
 use foldhash::fast::RandomState;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
@@ -181,11 +181,6 @@ fn nearer((square, point): (f64, u32), other: (f64, u32)) -> (f64, u32) {
 pub(super) fn plus_zero3(v: Vec3) -> Vec3 {
     // By IEEE 754, -0 + +0 is +0, and adding +0 changes nothing else.
     v + Vec3::ZERO
-}
-
-/// Replaces -0 by +0 in texture coordinates.
-pub(super) fn plus_zero2(v: Vec2) -> Vec2 {
-    v + Vec2::ZERO
 }
 
 #[cfg(test)]
