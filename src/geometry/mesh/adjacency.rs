@@ -94,15 +94,7 @@ impl Layout {
 /// on the point of corner 1, and so on. On an edge with one side, or with three or more, the pair holds the patch's own
 /// corners.
 ///
-/// # Panics
-/// If `patch` isn't an index into [`Topology::patches`].
-pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
-    let mut nine = [0; 9];
-    nine.copy_from_slice(&eighteen(topology, patch)[..9]);
-    nine
-}
-
-/// Returns the nine indices of `nine`, followed by the dominant corners on the points of corners 0, 1 and 2, and by the
+/// These nine indices are followed by the dominant corners on the points of corners 0, 1 and 2, and by the
 /// corners of the dominant sides of the edges 0-1, 1-2 and 2-0, in the patch's own direction. A point's dominant corner is
 /// the lowest one on it, and an edge's dominant side the first one, so that all patches around them agree.
 ///
@@ -111,9 +103,9 @@ pub fn nine(topology: &Topology, patch: u32) -> [u32; 9] {
 pub fn eighteen(topology: &Topology, patch: u32) -> [u32; 18] {
     let patch = &topology.patches[patch as usize];
     let mut indices = alone(topology, patch);
-    for (k, &own) in patch.sides.iter().enumerate() {
-        if let Some(across) = neighbour(topology, own) {
-            indices[pair(k)].copy_from_slice(&across);
+    for (k, own) in patch.sides.map(|own| &topology.sides[own as usize]).into_iter().enumerate() {
+        if let [a, b] = topology.edge_sides(&topology.edges[own.edge as usize]) {
+            indices[pair(k)].copy_from_slice(&across(topology, own, if a == own { b } else { a }));
         }
     }
     indices
@@ -138,18 +130,6 @@ fn alone(topology: &Topology, patch: &Patch) -> [u32; 18] {
 /// Returns the place among the indices of the neighbour's corners along side k.
 fn pair(k: usize) -> Range<usize> {
     3 + 2 * k..5 + 2 * k
-}
-
-/// Returns the other patch's corners along a side (an index into [`Topology::sides`]), in the side's own direction.
-/// Returns none unless its edge has exactly two sides.
-fn neighbour(topology: &Topology, own: u32) -> Option<[u32; 2]> {
-    let side = &topology.sides[own as usize];
-    let range = topology.side_range(&topology.edges[side.edge as usize]);
-    if range.len() != 2 {
-        return None;
-    }
-    let other = if own == range.start { range.start + 1 } else { range.start };
-    Some(across(topology, side, &topology.sides[other as usize]))
 }
 
 /// Returns the corners of `other` in the direction of `own`.
@@ -190,8 +170,8 @@ mod tests {
     #[test]
     fn neighbours_lie_opposite_and_boundaries_repeat() {
         let topology = topology(&square());
-        assert_eq!(nine(&topology, 0), [0, 1, 2, 0, 1, 1, 2, 4, 3]);
-        assert_eq!(nine(&topology, 1), [3, 4, 5, 0, 2, 4, 5, 5, 3]);
+        assert_eq!(eighteen(&topology, 0)[..9], [0, 1, 2, 0, 1, 1, 2, 4, 3]);
+        assert_eq!(eighteen(&topology, 1)[..9], [3, 4, 5, 0, 2, 4, 5, 5, 3]);
         assert_eq!(Layout::Six.indices(&topology)[6..], [0, 2, 4, 5, 5, 3], "without the corners");
         assert_eq!(eighteen(&topology, 1)[9..12], [0, 2, 5]);
         assert_eq!(eighteen(&topology, 1)[12..], [0, 2, 4, 5, 5, 3], "the first patch speaks for the edge");
@@ -203,14 +183,14 @@ mod tests {
         let mut mesh = square();
         mesh.corners.push(Corner { position: Vec3::Z, normal: Vec3::Z, uv: Vec2::ZERO });
         Arc::make_mut(&mut mesh.triangles).push([0, 2, 6]);
-        assert_eq!(nine(&topology(&mesh), 0)[7..], [2, 0]);
+        assert_eq!(eighteen(&topology(&mesh), 0)[7..9], [2, 0]);
     }
 
     #[test]
     fn neighbours_wound_the_same_way_are_neighbours() {
         let mut mesh = square();
         Arc::make_mut(&mut mesh.triangles)[1] = [4, 3, 5];
-        assert_eq!(nine(&topology(&mesh), 0)[7..], [4, 3]);
+        assert_eq!(eighteen(&topology(&mesh), 0)[7..9], [4, 3]);
     }
 
     #[test]

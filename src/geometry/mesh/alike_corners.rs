@@ -1,37 +1,29 @@
 //! Corners that differ in nothing but their details.
 
-use super::interner::Interner;
+use rayon::prelude::*;
+
 use super::rig::Binding;
 use super::{Corner, Mesh};
 use crate::casts::to_u32;
 
 /// The most corners that are found to be alike, so that work for each of them with all triangles of all of them is limited.
-const MOST: u32 = 64;
+const MOST: usize = 64;
 
 impl Mesh {
     /// Returns for each corner the first one that differs from it in its [`details`](Self::details) alone, or the corner itself.
     /// Where very many corners are alike, each is returned itself.
     pub fn alike_corners(&self) -> Vec<u32> {
-        let own = 0..to_u32(self.corners.len());
+        let mut firsts: Vec<u32> = (0..to_u32(self.corners.len())).collect();
         if self.details.is_none() {
-            return own.collect();
+            return firsts;
         }
-        let mut ids = Interner::default();
-        let mut firsts: Vec<(u32, u32)> = Vec::new();
-        let mut numbers = Vec::with_capacity(self.corners.len());
-        for corner in own.clone() {
-            let (number, is_new) = ids.number(self.key(corner), |id| self.key(firsts[id as usize].0));
-            if is_new {
-                firsts.push((corner, 0));
-            }
-            firsts[number as usize].1 += 1;
-            numbers.push(number);
+        let mut sorted = firsts.clone();
+        sorted.par_sort_by_key(|corner| self.key(*corner));
+        let groups = sorted.chunk_by(|a, b| self.key(*a) == self.key(*b));
+        for alike in groups.filter(|alike| alike.len() <= MOST) {
+            alike.iter().for_each(|corner| firsts[*corner as usize] = alike[0]);
         }
-        let first = |(corner, number): (u32, u32)| {
-            let (first, count) = firsts[number as usize];
-            if count <= MOST { first } else { corner }
-        };
-        own.zip(numbers).map(first).collect()
+        firsts
     }
 
     fn key(&self, corner: u32) -> ([u32; 8], Option<[u32; 16]>) {

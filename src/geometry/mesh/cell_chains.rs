@@ -1,21 +1,34 @@
 //! Finds the items near a position without looking at all of them: items in the cells of a grid.
 
+use std::hash::BuildHasher;
 use std::ops::ControlFlow;
 
+use foldhash::fast::RandomState;
 use glam::{DVec3, Vec3};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
-use super::cell_grid::{CellGrid, spread};
 use crate::casts::to_u32;
+
+/// From here on, counted in cells from the origin, different f32 coordinates are at least 2^16 cells apart.
+const FAR: f64 = (1_u64 << 40) as f64;
+
+/// Room for rounding, in cells: below `FAR`, coordinates in cells are off by up to 2^-12.
+const ROOM: f64 = 1e-3;
 
 /// The number that ends a chain.
 const NONE: u32 = u32::MAX;
 
 /// Items with a position and a number each. Items are numbered from 0 on, in the order in which they are added. An item takes 26 to
 /// 41 bytes at most, and less where cells have several.
+///
+/// Positions must have f32 coordinates. Then no coordinate overflows, however large positions are compared with the width of a
+/// cell. The hash of a cell is another one in every run, so that no file can give all its points the same one; what is found must
+/// not depend on it.
 pub(super) struct CellChains {
-    grid: CellGrid,
+    /// 1 / the width of a cell.
+    inverse: f64,
+    hasher: RandomState,
     /// For each cell that has items, the last one. Cells with the same hash count as one.
     cells: HashTable<Chain>,
     items: Vec<Item>,
@@ -37,10 +50,14 @@ struct Item {
 }
 
 impl CellChains {
+    /// The least width of a cell, in reaches of a search.
+    pub(super) const LEAST_WIDTH: f64 = 2.01;
+
     /// Makes an empty grid of cells with a width above 0, in object units, and room for so many items.
     pub(super) fn with_capacity(width: f64, items: usize) -> Self {
         Self {
-            grid: CellGrid::new(width),
+            inverse: width.recip(),
+            hasher: RandomState::default(),
             cells: HashTable::with_capacity(items),
             items: Vec::with_capacity(items),
             numbers: Vec::new(),
@@ -54,7 +71,8 @@ impl CellChains {
             self.numbers.resize(self.items.len(), 0);
             self.numbers.push(number);
         }
-        let cell = self.grid.at(position, number);
+        let [x, y, z] = (position.as_dvec3() * self.inverse).to_array().map(cell);
+        let cell = self.hash(x, y, z, number);
         let before = match self.cells.entry(spread(cell), |chain| chain.cell == cell, |chain| spread(chain.cell)) {
             Entry::Occupied(mut there) => std::mem::replace(&mut there.get_mut().last, item),
             Entry::Vacant(free) => {
@@ -64,6 +82,22 @@ impl CellChains {
         };
         self.items.push(Item { position, before });
         item
+    }
+
+    /// Returns the hash of a cell. Cells of different numbers are different ones.
+    fn hash(&self, x: u64, y: u64, z: u64, number: u32) -> u32 {
+        (self.hasher.hash_one((x, y, z, number)) >> 32) as u32
+    }
+
+    /// Returns the cells of a number that may have positions near a position, each as its hash after the square of its distance, in
+    /// cells. The cell of the position comes first.
+    #[inline(always)] // A call costs more than what the array holds.
+    fn cells_near(&self, position: Vec3, number: u32) -> [(f64, u32); 8] {
+        let [x, y, z] = (position.as_dvec3() * self.inverse).to_array().map(beside);
+        std::array::from_fn(|i| {
+            let [(away_x, x), (away_y, y), (away_z, z)] = [x[i & 1], y[i >> 1 & 1], z[i >> 2]];
+            (away_x + away_y + away_z, self.hash(x, y, z, number))
+        })
     }
 
     /// Returns the last item of a cell.
@@ -84,7 +118,7 @@ impl CellChains {
 
     /// Calls `visit` with all items of this number that may lie within `reach` of a position, until it breaks; and with some
     /// others. They come with the square of their distance. `visit` may lessen the reach for the items that follow, which are then in
-    /// nearby cells mostly. Cells are at least [`CellGrid::LEAST_WIDTH`] reaches wide.
+    /// nearby cells mostly. Cells are at least [`Self::LEAST_WIDTH`] reaches wide.
     pub(super) fn near(
         &self,
         position: Vec3,
@@ -92,14 +126,16 @@ impl CellChains {
         mut reach: f64,
         mut visit: impl FnMut(u32, f64, &mut f64) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
-        let (place, mut most) = (position.as_dvec3(), self.grid.most(reach));
-        for (away, cell) in self.grid.near(position, number) {
+        // The greatest squared distance, in cells, of a cell that may have positions within reach.
+        let within = |reach: f64| (reach * self.inverse + ROOM).powi(2);
+        let (place, mut most) = (position.as_dvec3(), within(reach));
+        for (away, cell) in self.cells_near(position, number) {
             let mut next = if away > most { NONE } else { self.last(cell) };
             while next != NONE {
                 let item = &self.items[next as usize];
                 if self.number(next) == number {
                     visit(next, item.position.as_dvec3().distance_squared(place), &mut reach)?;
-                    most = self.grid.most(reach);
+                    most = within(reach);
                 }
                 next = item.before;
             }
@@ -112,6 +148,37 @@ impl CellChains {
         self.items.into_iter().map(|item| item.position).collect()
     }
 }
+
+/// Makes a hash for tables of 32 bits of one, which tables keep to save memory: they need the highest and the lowest bits of 64.
+pub(super) fn spread(hash: u32) -> u64 {
+    // 2^64 / the golden ratio.
+    u64::from(hash).wrapping_mul(0x9e37_79b9_7f4a_7c15)
+}
+
+/// Returns the cell of a coordinate, which is in cells.
+fn cell(at: f64) -> u64 {
+    let [(_, cell), _] = beside(at);
+    cell
+}
+
+/// Returns the cell of a coordinate, which is in cells, and the nearer one beside it; the other one is out of reach. Each comes after
+/// the square of its distance.
+#[inline]
+fn beside(at: f64) -> [(f64, u64); 2] {
+    if at.abs() >= FAR {
+        // Within reach there is no other coordinate.
+        return [(0.0, at.to_bits()), (f64::INFINITY, at.to_bits())];
+    }
+    // The sum has no room for fractions: its lowest bits are those of the boundary between the two cells, a whole number.
+    let sum = at + NO_FRACTION;
+    let (boundary, above) = (sum - NO_FRACTION, sum.to_bits().wrapping_sub(NO_FRACTION.to_bits()));
+    let is_below = u64::from(at < boundary);
+    let away = at - boundary;
+    [(0.0, above.wrapping_sub(is_below)), (away * away, above.wrapping_sub(1 - is_below))]
+}
+
+/// Around this number f64 numbers are 1 apart, for 2^51 to either side.
+const NO_FRACTION: f64 = (3_u64 << 51) as f64;
 
 #[cfg(test)]
 mod tests {
@@ -139,10 +206,29 @@ mod tests {
     }
 
     #[test]
+    fn a_coordinate_lies_between_two_cells() {
+        let mut random = fastrand::Rng::with_seed(1);
+        let far = (0..20_000).map(|_| (random.f64() - 0.5) * f64::from(random.i32(-20..42)).exp2());
+        let near = [0.0, -0.0, 0.5, -0.5, 1.0, 1.5, 2.5, -1.0, -2.5, 5e-324, -5e-324, 1.0 - f64::EPSILON, FAR - 0.5];
+        for at in far.chain(near) {
+            let within = at - at.floor();
+            let (to, away) = if within < 0.5 { (-1, within) } else { (1, 1.0 - within) };
+            let [(none, own), (square, next)] = beside(at);
+            assert_eq!((none, own as i64, cell(at)), (0.0, at.floor() as i64, own), "{at}");
+            // In the middle of a cell, one beside it is as good as the other.
+            assert!(next as i64 == own as i64 + to || within == 0.5, "{at}: {next}");
+            assert!((square - away * away).abs() < 1e-15, "{at}: {square}");
+        }
+        for at in [FAR, -FAR, 1e300] {
+            assert_eq!(beside(at), [(0.0, at.to_bits()), (f64::INFINITY, at.to_bits())]);
+        }
+    }
+
+    #[test]
     fn no_cell_overflows() {
         for (place, reach) in [(0.0, 1.0), (-0.0, 1e-30), (1e30, 1e-30), (-3e38, 1e-45), (1e-45, 3e38), (5.0, 1.0)] {
             let places = [Vec3::splat(place)];
-            let chains = put(&places, CellGrid::LEAST_WIDTH * reach);
+            let chains = put(&places, CellChains::LEAST_WIDTH * reach);
             assert_eq!(found(&chains, places[0], reach), [0], "{place} within {reach}");
         }
         assert_eq!(found(&put(&[Vec3::ONE], f64::INFINITY), Vec3::ZERO, f64::INFINITY), [0]);
@@ -209,7 +295,7 @@ mod tests {
             let far = |i: usize| if far && i.is_multiple_of(3) { 1e20_f32 } else { 1.0 };
             let place = |(i, p): (usize, &[i32; 3])| (DVec3::from(p.map(f64::from)) * scale).as_vec3() * far(i);
             let places = places.iter().enumerate().map(place).collect::<Vec<_>>();
-            let chains = put(&places, CellGrid::LEAST_WIDTH * f64::from(wider) * reach);
+            let chains = put(&places, CellChains::LEAST_WIDTH * f64::from(wider) * reach);
             for &place in &places {
                 // A reach that shrinks to the nearest other item finds that one.
                 let away = |other: &Vec3| other.as_dvec3().distance(place.as_dvec3());

@@ -15,22 +15,22 @@
 //! (`cuts`). What lies inside a triangle is computed by the triangle (`pieces`).
 
 mod cuts;
-mod details;
 mod fans;
 mod pieces;
 
 use std::sync::Arc;
 
+use glam::DVec3;
 use serde::Serialize;
 
 use super::build_limits::{Budget, BuildError, MAX_TRIANGLES};
 use super::detail_table::DetailTable;
 use super::mesh_builder::{InputCorner, MeshBuilder, StoredCorner};
-use super::{Corner, Mesh, Topology};
+use super::{Corner, CornerDetail, CornerDetails, Mesh, Topology};
+use crate::casts::to_f32;
 use crate::progress::Progress;
 
-use cuts::{Cuts, EdgeCuts, width_in_units};
-use details::detail_in;
+use cuts::{Cuts, EdgeCuts};
 use fans::Fans;
 use pieces::Cutter;
 
@@ -78,11 +78,10 @@ pub fn with_crease_band(
     take(PER_PATCH * topology.patches.len() + size_of::<EdgeCuts>() * topology.edges.len())?;
     let fans = Fans::new(mesh, topology);
     progress.check()?;
-    let units = width_in_units(mesh, topology, width);
-    let cuts = Cuts::new(mesh, topology, &fans, units);
+    let cuts = Cuts::new(&fans, width);
     progress.check()?;
-    let mut cutter = Cutter::new(mesh, topology, &fans, &cuts, units);
-    let cut = rebuilt(mesh, topology, budget, progress, |patch, add| cutter.pieces(patch, add))?;
+    let mut cutter = Cutter::new(&cuts);
+    let cut = rebuilt(&fans, budget, progress, |patch, add| cutter.pieces(patch, add))?;
     let band = CreaseBand { width, creases: cuts.creases(), narrowed: cuts.narrowed + cutter.narrowed };
     let (made, topology) = agreed(cut, budget, progress)?;
     Ok((made, topology, band))
@@ -97,7 +96,7 @@ fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topo
     if fans.normals.iter().all(Option::is_none) {
         return Ok((cut, topology));
     }
-    let agreed = rebuilt(&cut, &topology, budget, progress, |patch, add| {
+    let agreed = rebuilt(&fans, budget, progress, |patch, add| {
         let corners = topology.patch_corners(patch).map(|corner| cut.corners[corner as usize]);
         add([0, 1, 2].map(|k| Corner { normal: fans.normal(patch, k).unwrap_or(corners[k].normal), ..corners[k] }));
     })?;
@@ -108,12 +107,12 @@ fn agreed(cut: Mesh, budget: &Budget, progress: &Progress) -> Result<(Mesh, Topo
 /// Returns a mesh in which each patch is replaced by the triangles that `pieces` calls its argument with. Degenerate
 /// triangles stay, with their corners moved to their points.
 fn rebuilt(
-    mesh: &Mesh,
-    topology: &Topology,
+    fans: &Fans,
     budget: &Budget,
     progress: &Progress,
     mut pieces: impl FnMut(u32, &mut dyn FnMut([Corner; 3])),
 ) -> Result<Mesh, BuildError> {
+    let Fans { mesh, topology, .. } = *fans;
     let (mut builder, mut made) = (MeshBuilder::new(), Vec::new());
     let mut details = mesh.details.as_ref().map(|details| (details, DetailTable::default()));
     for material in &mesh.materials {
@@ -123,7 +122,7 @@ fn rebuilt(
             builder.enter_part(mesh.part_of(triangle));
             match topology.patch_of(triangle) {
                 Some(patch) => pieces(patch, &mut |corners| made.push(corners)),
-                None => made.push(mesh.triangles[triangle as usize].map(|corner| on_point(mesh, topology, corner))),
+                None => made.push(mesh.triangles[triangle as usize].map(|corner| fans.on_point(corner))),
             }
             let room = builder.make_room_for_triangles(index, made.len(), budget);
             room.and_then(|()| builder.make_room(3 * made.len(), budget))?;
@@ -132,7 +131,7 @@ fn rebuilt(
                 for (corner, kept) in corners.into_iter().zip(&mut kept) {
                     let number = match &mut details {
                         Some((details, table)) => {
-                            table.number(detail_in(mesh, details, topology, triangle, &corner), 0, budget)?
+                            table.number(detail_in(fans, details, triangle, &corner), 0, budget)?
                         }
                         None => 0,
                     };
@@ -158,10 +157,26 @@ fn rebuilt(
     })
 }
 
-/// Returns a corner of the mesh, moved to its point.
-fn on_point(mesh: &Mesh, topology: &Topology, corner: u32) -> Corner {
-    let point = topology.corner_points[corner as usize];
-    Corner { position: topology.points[point as usize], ..mesh.corners[corner as usize] }
+/// Returns the details of a corner that lies in a triangle of the mesh: those of the triangle's own corner if it is at its
+/// position, otherwise linear between all three.
+fn detail_in(fans: &Fans, details: &CornerDetails, triangle: u32, corner: &Corner) -> CornerDetail {
+    let corners = fans.mesh.triangles[triangle as usize];
+    let own = corners.map(|corner| details[corner as usize]);
+    let positions = corners.map(|corner| fans.on_point(corner).position);
+    if let Some(k) = (0..3).find(|&k| positions[k] == corner.position) {
+        return own[k];
+    }
+    let weights = weights(positions.map(|position| position.as_dvec3()), corner.position.as_dvec3());
+    CornerDetail::blended(own.each_ref(), weights.map(to_f32))
+}
+
+/// Returns how much each of three points counts at a position between them. They add up to 1.
+fn weights([a, b, c]: [DVec3; 3], at: DVec3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let part = |from: DVec3, to: DVec3| normal.dot((to - from).cross(at - from)).max(0.0);
+    let parts = [part(b, c), part(c, a), part(a, b)];
+    let sum: f64 = parts.iter().sum();
+    if sum > 0.0 && sum.is_finite() { parts.map(|part| part / sum) } else { [1.0, 0.0, 0.0] }
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ pub enum Sharing {
     /// shaders without adjacency compute it.
     None,
     /// No sides share one, but each side averages its control points with those of its one neighbour, as the shader in
-    /// the PN-AEN white paper does with a patch's nine indices (`nine` in `adjacency.rs`).
+    /// the PN-AEN white paper does with a patch's nine indices (the first of `eighteen` in `adjacency.rs`).
     NoneAveraged,
 }
 
@@ -284,7 +284,7 @@ mod tests {
                 (topology.sides.len(), topology.sides.len())
             );
             for (index, patch) in topology.patches.iter().enumerate() {
-                let nine = adjacency::nine(&topology, index as u32);
+                let nine = adjacency::eighteen(&topology, index as u32);
                 for k in 0..3 {
                     let curve = curves.curves[curves.side_curves[patch.sides[k] as usize] as usize];
                     let asked = &curves.sides[curve.first_side as usize..][..curve.side_count as usize];

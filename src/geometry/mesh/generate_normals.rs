@@ -71,7 +71,8 @@ pub(crate) fn generate_normals(
     Ok(())
 }
 
-/// Does the same for points that aren't done yet, with lists of the faces around them. `done` is empty if that is no point.
+/// Does the same for points that aren't done yet, with lists of the faces around them. `done` says for each
+/// point whether it is, and is empty if that is none.
 fn with_fans(
     mesh: &mut UnfinishedMesh,
     points: &CornerPoints,
@@ -80,8 +81,9 @@ fn with_fans(
     budget: &Budget,
     progress: &Progress,
 ) -> Result<(), BuildError> {
-    let points = UndonePoints { points, done };
-    let mut around = CornersByPoint::new(mesh, &points, budget)?;
+    // The point of a corner, unless it is done.
+    let undone = |corner: u32| Some(points.at(corner)).filter(|point| done.get(*point) != Some(&true));
+    let mut around = CornersByPoint::new(mesh, points.count(mesh), undone, budget)?;
     let mut added = AddedCorners { made: ChunkedVec::default(), first: to_u32(mesh.corners.len()), budget };
     let (mut fan, mut next) = (Fan::default(), 0);
     while next < around.ends.len() {
@@ -99,25 +101,9 @@ fn with_fans(
             }
         }
     }
-    around.hand_out(mesh, &points);
+    around.hand_out(mesh, undone);
     drop(around);
     added.append_to(mesh)
-}
-
-/// The points whose corners may still lack normals.
-struct UndonePoints<'a> {
-    points: &'a CornerPoints,
-    /// For each point, whether nothing is left to be done there; empty if that holds for none.
-    done: &'a [bool],
-}
-
-impl UndonePoints<'_> {
-    /// Returns the point of a corner, unless it is done.
-    fn at(&self, corner: u32) -> Option<usize> {
-        let point = self.points.at(corner);
-        let is_done = self.done.get(point).is_some_and(|done| *done);
-        (!is_done).then_some(point)
-    }
 }
 
 /// The corners of triangles (3 * triangle + k) on points that aren't done, sorted by point, then by number.
@@ -128,12 +114,17 @@ struct CornersByPoint {
 }
 
 impl CornersByPoint {
-    fn new(mesh: &UnfinishedMesh, points: &UndonePoints, budget: &Budget) -> Result<Self, BuildError> {
-        let count = points.points.count(mesh);
+    /// Of so many points. `undone` tells the point of a corner, unless it is done.
+    fn new(
+        mesh: &UnfinishedMesh,
+        count: usize,
+        undone: impl Fn(u32) -> Option<usize>,
+        budget: &Budget,
+    ) -> Result<Self, BuildError> {
         let corners = mesh.triangles.as_flattened();
         budget.borrow(4 * count as u64)?;
         let mut ends = vec![0_u32; count];
-        corners.iter().filter_map(|&corner| points.at(corner)).for_each(|point| ends[point] += 1);
+        corners.iter().filter_map(|&corner| undone(corner)).for_each(|point| ends[point] += 1);
         let largest = ends.iter().copied().max().unwrap_or_default();
         let listed = ends.iter().map(|&count| count as usize).sum::<usize>();
         budget
@@ -144,7 +135,7 @@ impl CornersByPoint {
         }
         let mut list = vec![0; listed];
         for (i, &corner) in (0..).zip(corners) {
-            let Some(point) = points.at(corner) else { continue };
+            let Some(point) = undone(corner) else { continue };
             let end = &mut ends[point];
             list[*end as usize] = i;
             *end += 1;
@@ -168,9 +159,9 @@ impl CornersByPoint {
     }
 
     /// Replaces the corners of triangles by those that the list now has in the places of their numbers.
-    fn hand_out(&mut self, mesh: &mut UnfinishedMesh, points: &UndonePoints) {
+    fn hand_out(&mut self, mesh: &mut UnfinishedMesh, undone: impl Fn(u32) -> Option<usize>) {
         for corner in mesh.triangles.as_flattened_mut().iter_mut().rev() {
-            let Some(point) = points.at(*corner) else { continue };
+            let Some(point) = undone(*corner) else { continue };
             // Goes backwards, so that the end of each point's part is where its next corner is.
             let end = &mut self.ends[point];
             *end -= 1;

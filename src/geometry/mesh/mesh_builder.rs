@@ -13,7 +13,7 @@ use super::build_limits::{Borrowed, Budget, BuildError, MemoryRefused, borrowing
 use super::generate_normals::{CreaseAngles, generate_normals};
 use super::normals::{CREASE_ANGLE, GivenNormal};
 use super::unfinished_mesh::UnfinishedMesh;
-use super::weld::{plus_zero2, plus_zero3};
+use super::weld::plus_zero3;
 use super::{Corner, Material, Mesh, PartRange, PartStyle, Repairs};
 use crate::casts::to_u32;
 use crate::cores::{in_ranges, ranges};
@@ -240,7 +240,8 @@ impl MeshBuilder {
     pub fn corner(&mut self, corner: InputCorner, binding: u32) -> StoredCorner {
         let (corner, repairs) = repaired(corner);
         self.offered += 1;
-        StoredCorner { id: self.distinct.id(corner, binding), repairs }
+        let hash = self.distinct.hash(&corner, binding);
+        StoredCorner { id: self.distinct.id_of(hash, corner, binding), repairs }
     }
 
     /// Stores corners with their bindings as [`corner`](Self::corner) does, and appends what is stored to `stored`. Many are looked up on all
@@ -542,7 +543,7 @@ fn repaired(corner: InputCorner) -> (Corner, CornerRepairs) {
         Some(GivenNormal::Unit(_)) => 0,
     };
     let normal = given.and_then(GivenNormal::unit).map_or(Vec3::NAN, plus_zero3);
-    (Corner { position: plus_zero3(position), normal, uv: plus_zero2(corner.uv) }, CornerRepairs(repairs))
+    (Corner { position: plus_zero3(position), normal, uv: corner.uv + Vec2::ZERO }, CornerRepairs(repairs))
 }
 
 #[cfg(test)]

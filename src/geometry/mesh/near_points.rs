@@ -40,13 +40,11 @@ impl NearPoints {
         let Some((furthest, search)) = searches.enumerate().rev().find(|(_, search)| search.leaves_out_most()) else {
             return Self { first: vec![0; points.len()] };
         };
-        let tolerances = &tolerances[..=furthest];
         // No search goes further.
-        let beyond = furthest as u8 + 1;
-        let first_of = |point: usize| match search.nearest(to_u32(point)) {
-            Nearest::At(distance) => tolerances.partition_point(|tolerance| *tolerance < distance) as u8,
-            Nearest::Beyond => beyond,
-            Nearest::Unknown => 0,
+        let tolerances = &tolerances[..=furthest];
+        let first_of = |point: usize| {
+            let distance = search.nearest(to_u32(point));
+            tolerances.partition_point(|tolerance| *tolerance < distance) as u8
         };
         let first = in_ranges(points.len(), LEAST, |range| range.map(first_of).collect::<Vec<_>>()).concat();
         Self { first }
@@ -62,16 +60,6 @@ impl NearPoints {
     pub(super) fn all_within(&self, tolerance: usize) -> bool {
         self.first.iter().all(|first| usize::from(*first) <= tolerance)
     }
-}
-
-/// The nearest other point.
-enum Nearest {
-    /// At a distance that is no more than the reach, in object units.
-    At(f64),
-    /// Beyond the reach.
-    Beyond,
-    /// It wasn't searched for, since too many points are nearby.
-    Unknown,
 }
 
 /// Searches for the nearest other point.
@@ -103,8 +91,9 @@ impl<'a> NearestPoint<'a> {
         self.numbers.get(point as usize).copied().unwrap_or_default()
     }
 
-    /// Returns the nearest other point with the same number.
-    fn nearest(&self, point: u32) -> Nearest {
+    /// Returns the distance of the nearest other point with the same number, in object units: more than the reach if none is within it,
+    /// and 0 if it wasn't searched for, since too many points are nearby.
+    fn nearest(&self, point: u32) -> f64 {
         let (position, number) = (self.points[point as usize], self.number(point));
         let (mut least, mut count) = (f64::INFINITY, 0);
         let tried = self.chains.near(position, number, self.reach * ROOM, |item, square, reach| {
@@ -120,18 +109,14 @@ impl<'a> NearestPoint<'a> {
             }
             Continue(())
         });
-        match least.sqrt() {
-            _ if tried.is_break() => Nearest::Unknown,
-            distance if distance <= self.reach => Nearest::At(distance),
-            _ => Nearest::Beyond,
-        }
+        if tried.is_break() { 0.0 } else { least.sqrt() }
     }
 
     /// Returns whether most points have no other one within reach, by an estimate. Only then is a search for all worth its time.
     fn leaves_out_most(&self) -> bool {
         let step = (self.points.len() / SAMPLES).max(1);
         let samples = (0..to_u32(self.points.len())).step_by(step);
-        let is_beyond = |point: &u32| matches!(self.nearest(*point), Nearest::Beyond);
+        let is_beyond = |point: &u32| self.nearest(*point) > self.reach;
         2 * samples.clone().filter(is_beyond).count() >= samples.len()
     }
 }

@@ -98,34 +98,18 @@ impl Face {
     /// Makes a triangle the face around its corner k. Computed in f64, where products of differences of f32 numbers
     /// neither overflow nor underflow.
     pub fn new(triangle: [Vec3; 3], k: usize) -> Self {
-        let p = triangle.map(Vec3::as_dvec3);
-        let cross = cross(p);
-        Self { normal: facing(cross), angle: angle(p, k, cross.length()) }
+        let (normal, angle) = faces_of(triangle);
+        Self { normal, angle: angle(k) }
     }
 }
 
-/// Returns the surface normal of the faces that a triangle is around its corners, and their angles: see [`Face`].
-pub(super) fn faces_of(triangle: [Vec3; 3]) -> (DVec3, [f64; 3]) {
+/// Returns the surface normal of the faces that a triangle is around its corners, and what gives their angles: see [`Face`].
+pub(super) fn faces_of(triangle: [Vec3; 3]) -> (DVec3, impl Fn(usize) -> f64) {
     let p = triangle.map(Vec3::as_dvec3);
-    let cross = cross(p);
+    let cross = (p[1] - p[0]).cross(p[2] - p[0]);
     let length = cross.length();
-    (facing(cross), [0, 1, 2].map(|k| angle(p, k, length)))
-}
-
-/// The cross product of two sides of a triangle.
-fn cross(p: [DVec3; 3]) -> DVec3 {
-    (p[1] - p[0]).cross(p[2] - p[0])
-}
-
-/// The unit normal of a triangle with this cross product; zero if it has no area.
-fn facing(cross: DVec3) -> DVec3 {
-    cross.try_normalize().unwrap_or(DVec3::ZERO)
-}
-
-/// The angle of a triangle at its corner k, in radians. `length` is that of its cross product.
-fn angle(p: [DVec3; 3], k: usize, length: f64) -> f64 {
-    let (a, b) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
-    length.atan2(a.dot(b))
+    let angle = move |k: usize| length.atan2((p[(k + 1) % 3] - p[k]).dot(p[(k + 2) % 3] - p[k]));
+    (cross.try_normalize().unwrap_or(DVec3::ZERO), angle)
 }
 
 /// The cosine of a crease angle in degrees.

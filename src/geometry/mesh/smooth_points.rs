@@ -87,8 +87,11 @@ pub(super) fn give_normals(
     for block in mesh.triangles.chunks(BLOCK) {
         progress.check()?;
         let faces = in_ranges(block.len(), LEAST, |range| {
-            let corners = block[range].iter().map(|corners| corners.map(|id| mesh.corners[id as usize].position));
-            corners.map(faces_of).collect::<Vec<_>>()
+            let faces = |corners: &[u32; 3]| {
+                let (normal, angle) = faces_of(corners.map(|id| mesh.corners[id as usize].position));
+                (normal, [0, 1, 2].map(angle))
+            };
+            block[range].iter().map(faces).collect::<Vec<_>>()
         });
         split(&mut sums, parts.iter().map(Range::len)).into_par_iter().zip(&parts).for_each(|(sums, part)| {
             // Each core looks at all faces, so that those around a point are added in their order.

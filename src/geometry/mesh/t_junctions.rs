@@ -2,9 +2,9 @@
 //! edge is divided.
 
 mod chains;
-mod line_segment;
 mod points_on_edges;
 
+use glam::DVec3;
 use serde::Serialize;
 
 use super::topology::{Edge, EdgeKind, Topology};
@@ -12,7 +12,6 @@ use crate::casts::to_f32;
 use crate::progress::{Cancelled, Progress};
 
 use chains::ChainSearch;
-use line_segment::LineSegment;
 use points_on_edges::PointsOnEdges;
 
 /// The greatest number of boundary edges at one point, and of boundary points in one place, that are tried. Trying all
@@ -107,6 +106,40 @@ fn list(topology: &Topology, edge: u32, of: &Edge, points: &mut Vec<u32>, all: &
     let junction =
         |((t, distance), point): ((f64, f64), u32)| TJunction { edge, point, t: to_f32(t), distance: to_f32(distance) };
     all.extend(places.into_iter().map(junction));
+}
+
+/// The straight line between an edge's ends, with a length above 0, in object units. In f64, since squares of very small or large lengths
+/// leave f32.
+#[derive(Clone, Copy, Debug)]
+struct LineSegment {
+    ends: [DVec3; 2],
+}
+
+impl LineSegment {
+    fn from_edge(topology: &Topology, edge: &Edge) -> Self {
+        Self { ends: topology.edge_points(edge).map(|point| topology.points[point as usize].as_dvec3()) }
+    }
+
+    fn way(&self) -> DVec3 {
+        self.ends[1] - self.ends[0]
+    }
+
+    fn length(&self) -> f64 {
+        self.way().length()
+    }
+
+    /// Returns where along the segment a position lies, 0 at its start and 1 at its end, and its distance from the
+    /// line.
+    fn project(&self, place: DVec3) -> (f64, f64) {
+        let t = (place - self.ends[0]).dot(self.way()) / self.way().length_squared();
+        (t, place.distance(self.ends[0] + t * self.way()))
+    }
+
+    /// Returns the vector from the line to a position, at right angles to the line.
+    fn across(&self, place: DVec3) -> DVec3 {
+        let (t, _) = self.project(place);
+        place - (self.ends[0] + t * self.way())
+    }
 }
 
 /// Returns the points of a boundary edge's one triangle.

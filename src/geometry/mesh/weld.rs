@@ -6,12 +6,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use bytemuck::zeroed_vec;
 use foldhash::fast::RandomState;
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 
-use super::cell_chains::CellChains;
-use super::cell_grid::{CellGrid, spread};
+use super::cell_chains::{CellChains, spread};
 use crate::casts::to_u32;
 use crate::cores::{fill, in_ranges};
 
@@ -133,51 +132,38 @@ pub fn weld_alike(count: usize, place: impl Fn(usize) -> (Vec3, u32) + Sync, tol
 
 /// Joins distinct positions as [`weld_alike`] does, within a tolerance above 0.
 pub(super) fn merge_within(distinct: impl Iterator<Item = (Vec3, u32)>, tolerance: f64) -> (Vec<Vec3>, Vec<u32>) {
-    let mut apart = Apart::new(tolerance);
-    let merged = distinct.map(|(position, number)| apart.joined(position, number)).collect();
-    (apart.points.into_positions(), merged)
+    // Cells that are as narrow as a search allows: in wider ones there are more points to compare.
+    let mut points = CellChains::with_capacity(CellChains::LEAST_WIDTH * tolerance, 0);
+    let mut latest = 0;
+    let joined = |(position, number): (Vec3, u32)| {
+        let found = nearest(&points, latest, (position, number), tolerance);
+        latest = found.unwrap_or_else(|| points.push(position, number));
+        latest
+    };
+    let merged = distinct.map(joined).collect();
+    (points.into_positions(), merged)
 }
 
 /// Within this part of the tolerance there is no more than one point, with room for rounding: points are more than one tolerance
 /// apart.
 const HALF: f64 = 0.5 - 1e-6;
 
-/// Points that are more than one tolerance apart, or have different numbers.
-struct Apart {
-    tolerance: f64,
-    points: CellChains,
-    /// The point that was found last. It is tried first, since most positions lie near the one before.
-    latest: u32,
-}
-
-impl Apart {
-    fn new(tolerance: f64) -> Self {
-        // Cells that are as narrow as a search allows: in wider ones there are more points to compare.
-        let points = CellChains::with_capacity(CellGrid::LEAST_WIDTH * tolerance, 0);
-        Self { tolerance, points, latest: 0 }
+/// Returns the nearest of points that are more than one tolerance apart, if it is within the tolerance of a position; of several at the
+/// same distance, the lowest. `latest` is the point that was found last.
+fn nearest(points: &CellChains, latest: u32, (position, number): (Vec3, u32), tolerance: f64) -> Option<u32> {
+    let (none, half) = ((tolerance, u32::MAX), HALF * tolerance.min(f64::MAX));
+    // Most positions lie near the one before.
+    let of_latest = points.square(latest, position.as_dvec3(), number);
+    let mut nearest = of_latest.map_or(none, |square| nearer((square, latest), none));
+    if nearest.0 > half {
+        // What a search finds is the same whether it breaks or not.
+        let _ = points.near(position, number, nearest.0, |point, square, reach| {
+            nearest = nearer((square, point), nearest);
+            *reach = nearest.0;
+            if nearest.0 > half { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        });
     }
-
-    /// Returns the point that a position becomes part of: the nearest one within the tolerance, or else a new one.
-    fn joined(&mut self, position: Vec3, number: u32) -> u32 {
-        self.latest = self.nearest(position, number).unwrap_or_else(|| self.points.push(position, number));
-        self.latest
-    }
-
-    /// Returns the nearest point within the tolerance; of several at the same distance, the lowest.
-    fn nearest(&self, position: Vec3, number: u32) -> Option<u32> {
-        let (none, half) = ((self.tolerance, u32::MAX), HALF * self.tolerance.min(f64::MAX));
-        let of_latest = self.points.square(self.latest, position.as_dvec3(), number);
-        let mut nearest = of_latest.map_or(none, |square| nearer((square, self.latest), none));
-        if nearest.0 > half {
-            // What a search finds is the same whether it breaks or not.
-            let _ = self.points.near(position, number, nearest.0, |point, square, reach| {
-                nearest = nearer((square, point), nearest);
-                *reach = nearest.0;
-                if nearest.0 > half { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-            });
-        }
-        (nearest != none).then_some(nearest.1)
-    }
+    (nearest != none).then_some(nearest.1)
 }
 
 /// Returns the nearer one of two points, each after its distance, or the lower one of two at the same distance. That of the first is
@@ -195,11 +181,6 @@ fn nearer((square, point): (f64, u32), other: (f64, u32)) -> (f64, u32) {
 pub(super) fn plus_zero3(v: Vec3) -> Vec3 {
     // By IEEE 754, -0 + +0 is +0, and adding +0 changes nothing else.
     v + Vec3::ZERO
-}
-
-/// Replaces -0 by +0 in texture coordinates.
-pub(super) fn plus_zero2(v: Vec2) -> Vec2 {
-    v + Vec2::ZERO
 }
 
 #[cfg(test)]

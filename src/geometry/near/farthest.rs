@@ -134,9 +134,7 @@ fn for_blocks<T: Sync>(
     });
     for (best, found) in done.collect::<Result<Vec<_>, Cancelled>>()? {
         state.best.raise(best);
-        state.searches += found.searches;
-        state.closed = state.closed.max(found.closed);
-        state.open.extend(found.pieces);
+        state.found.add(found);
     }
     Ok(())
 }
@@ -203,33 +201,30 @@ impl Found {
 #[derive(Default)]
 struct State {
     best: Best,
-    open: Vec<Piece>,
-    searches: u64,
-    /// The largest bound of what isn't cut any more.
-    closed: f64,
+    found: Found,
 }
 
 impl State {
     /// The pieces to cut next: those with the largest bounds. `None` once none has to be cut, or the work was enough.
     fn next_round(&mut self, search: &Search) -> Option<Vec<Piece>> {
         let enough = search.enough(self.best.distance);
-        let closed = &mut self.closed;
-        self.open.retain(|piece| {
+        let Found { searches, pieces, closed } = &mut self.found;
+        pieces.retain(|piece| {
             let is_open = piece.bound > enough && piece.depth < DEEPEST;
             if !is_open {
                 *closed = closed.max(piece.bound);
             }
             is_open
         });
-        if self.open.is_empty() || self.searches >= search.goal.searches {
+        if pieces.is_empty() || *searches >= search.goal.searches {
             return None;
         }
-        let count = self.open.len().div_ceil(2).max(ROUND).min(self.open.len());
-        if count < self.open.len() {
+        let count = pieces.len().div_ceil(2).max(ROUND).min(pieces.len());
+        if count < pieces.len() {
             let key = |piece: &Piece| Reverse(piece.bound.to_bits());
-            self.open.select_nth_unstable_by_key(count, |piece| (key(piece), piece.triangle, piece.depth));
+            pieces.select_nth_unstable_by_key(count, |piece| (key(piece), piece.triangle, piece.depth));
         }
-        Some(self.open.drain(..count).collect())
+        Some(pieces.drain(..count).collect())
     }
 
     fn result(&self, search: &Search, from: Soup) -> Farthest {
@@ -237,7 +232,8 @@ impl State {
         let size = from.triangles.iter().flatten().map(|corner| from.positions[*corner as usize].abs().max_element());
         let largest = (f64::from(size.fold(0.0, f32::max)) * to.scale).max(to.largest_coordinate());
         let margin = ROUNDING * largest;
-        let bound = self.open.iter().map(|piece| piece.bound).fold(self.closed.max(best.distance), f64::max);
+        let bound =
+            self.found.pieces.iter().map(|piece| piece.bound).fold(self.found.closed.max(best.distance), f64::max);
         let nearest = to.nearest(best.point, 0, 0.0);
         let at_least = to.proven_distance(best.point, nearest.distance) - margin;
         Farthest {

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::time::Duration;
 
 use foldhash::fast::RandomState;
-use glam::{DVec3, Vec3, Vec3A};
+use glam::{DVec3, Vec3, Vec3A, Vec3Swizzles};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
@@ -310,22 +310,14 @@ pub fn closest_on_triangle([a, b, c]: [DVec3; 3], p: DVec3) -> ([f64; 3], DVec3)
     nearer(nearer(sides[0], sides[1]), sides[2])
 }
 
-/// Returns whether a segment has a point in a box.
+/// Returns whether a segment has a point in a box: whether no axis separates them, of the box's and those across it and the segment
+/// (Ericson 2005, "Real-Time Collision Detection", section 5.3.3).
 fn crosses([a, b]: [DVec3; 2], min: DVec3, max: DVec3) -> bool {
-    let (mut from, mut to) = (0.0_f64, 1.0_f64);
-    for axis in 0..3 {
-        let (start, way) = (a[axis], b[axis] - a[axis]);
-        if way == 0.0 {
-            if start < min[axis] || start > max[axis] {
-                return false;
-            }
-        } else {
-            let (x, y) = ((min[axis] - start) / way, (max[axis] - start) / way);
-            from = from.max(x.min(y));
-            to = to.min(x.max(y));
-        }
-    }
-    from <= to
+    // All lengths twice.
+    let (way, size, apart) = (b - a, max - min, a + b - min - max);
+    let along = way.abs();
+    let beside = size.yzx() * along.zxy() + size.zxy() * along.yzx();
+    apart.abs().cmple(size + along).all() && apart.cross(way).abs().cmple(beside).all()
 }
 
 #[cfg(test)]

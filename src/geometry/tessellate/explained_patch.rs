@@ -8,7 +8,7 @@ use super::factors::{
 };
 use super::least_factors::{BEYOND_LAST, ChosenFactors, SearchGoal};
 use super::lod::point_distance_factor;
-use super::mesh_displacement::{MeshDisplacement, displacing_heights};
+use super::mesh_displacement::displacing_heights;
 use super::mesh_factors::MeshLod;
 use super::mesh_tessellation::seen_with_reach;
 use super::piece_error::{SeenPatch, may_slide, piece_error};
@@ -167,8 +167,7 @@ pub fn explain_patch(
     } else {
         ControlNets::from_edges(mesh, topology, searched, edges_around(topology, patch).into_iter())
     };
-    let displacement = MeshDisplacement::new(&nets, searched);
-    let lod = MeshLod { nets: &nets, inputs: searched, displacement: displacement.as_ref() };
+    let lod = MeshLod::from_nets(nets, searched);
     let seen = lod.seen_patch(patch);
     let own = lod.minimum_factors(patch, &seen);
     let by_error = inputs.tessellation.lod.is_by_error();
@@ -203,7 +202,7 @@ pub fn explain_patch(
         edges: by_error.then(|| {
             [0, 1, 2].map(|k| lod.explain_edge(patch, k, used_factor(inputs.tessellation.convention, used, k)))
         }),
-        formulas: (!by_error).then(|| [0, 1, 2].map(|side| edge_formula(&nets, inputs, patch, side))),
+        formulas: (!by_error).then(|| [0, 1, 2].map(|side| edge_formula(&lod.nets, inputs, patch, side))),
         is_flat,
         errors,
         minimum,
@@ -242,13 +241,10 @@ fn edge_formula(nets: &ControlNets, inputs: &Inputs, patch: u32, side: usize) ->
 
 /// Returns the minimum triangle count of every patch.
 pub fn minimum_triangles(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<u32> {
-    let searched = &minimum_inputs(&seen_with_reach(mesh, inputs));
-    let nets = ControlNets::new(mesh, topology, searched);
-    let displacement = MeshDisplacement::new(&nets, searched);
-    let lod = MeshLod { nets: &nets, inputs: searched, displacement: displacement.as_ref() };
+    let lod = MeshLod::new(mesh, topology, &minimum_inputs(&seen_with_reach(mesh, inputs)));
     let own = |patch| lod.minimum_factors(patch, &lod.seen_patch(patch));
     let patches = 0..topology.patches.len() as u32;
-    patches.map(|patch| minimum(searched.tessellation.partitioning, own(patch)).triangles).collect()
+    patches.map(|patch| minimum(lod.inputs.tessellation.partitioning, own(patch)).triangles).collect()
 }
 
 /// Returns the edges of a patch and of all patches that share an edge with it, in ascending order.
@@ -266,7 +262,7 @@ impl MeshLod<'_> {
     /// Returns what was asked of the edge of a patch's side. A factor that no other patch shares, as published, is asked
     /// for by this one alone.
     fn explain_edge(&self, patch: u32, side: usize, used: f32) -> ExplainedEdge {
-        let (nets, topology) = (self.nets, self.nets.topology);
+        let (nets, topology) = (&self.nets, self.nets.topology);
         let factor = nets.patch_factor(patch, side);
         let requested = |patch: u32, side: usize| {
             let seen = self.seen_patch(patch);

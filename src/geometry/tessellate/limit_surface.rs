@@ -2,34 +2,28 @@
 
 use glam::{DMat2, DVec2, DVec3, Vec3};
 
-use super::control_nets::ControlNets;
-use super::mesh_displacement::MeshDisplacement;
 use super::mesh_factors::MeshLod;
 use super::piece_error::{SeenPatch, may_slide};
-use super::{ControlNet, Inputs};
+use super::{ControlNet, Inputs, Tessellation};
 use crate::mesh::{Mesh, Topology};
 
 /// The surface that a tessellation approximates, evaluated in f64 at any point.
-pub struct LimitSurface<'a> {
-    nets: ControlNets<'a>,
-    displacement: Option<MeshDisplacement<'a>>,
-}
+pub struct LimitSurface<'a>(MeshLod<'a>);
 
 impl<'a> LimitSurface<'a> {
     /// Builds the surface of a mesh.
     pub fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
-        let nets = ControlNets::new(mesh, topology, inputs);
-        Self { displacement: MeshDisplacement::new(&nets, inputs), nets }
+        Self(MeshLod::new(mesh, topology, inputs))
     }
 
     /// Returns a patch's control net, which [`Self::position`] needs.
     pub fn net(&self, patch: u32) -> ControlNet {
-        self.nets.patch(patch)
+        self.0.nets.patch(patch)
     }
 
     /// Returns how many times as fine as others LOD makes a patch.
     pub fn detail(&self, patch: u32) -> f32 {
-        self.nets.topology.detail_of(self.nets.mesh, patch)
+        self.0.nets.topology.detail_of(self.0.nets.mesh, patch)
     }
 
     /// Returns the point of a patch at weights `u` and `v` (w is the rest of 1), in object units. `net` is the patch's
@@ -38,21 +32,20 @@ impl<'a> LimitSurface<'a> {
     /// Heights are read at the patch's own texture coordinates from mip level 0. So at a seam the sides of an edge may
     /// have different limits.
     pub fn position(&self, patch: u32, net: &ControlNet, u: f64, v: f64) -> DVec3 {
-        let moved =
-            self.displacement.as_ref().map(|displacement| displacement.exact_displacement(patch, [u, v, 1.0 - u - v]));
+        let moved = self.0.displacement.as_ref().map(|own| own.exact_displacement(patch, [u, v, 1.0 - u - v]));
         self.surface(net, u, v) + moved.unwrap_or_default()
     }
 
     /// Returns a patch as it is seen.
-    pub fn seen_patch(&self, inputs: &Inputs, patch: u32) -> SeenPatch {
-        MeshLod { nets: &self.nets, inputs, displacement: self.displacement.as_ref() }.seen_patch(patch)
+    pub fn seen_patch(&self, patch: u32) -> SeenPatch {
+        self.0.seen_patch(patch)
     }
 
     /// Returns whether LOD by error allows points of a patch to slide along its surface, which is flat: see `flat_patch.rs`.
     /// The distance that counts there is the one to the nearest point.
-    pub fn slides(&self, inputs: &Inputs, patch: u32) -> bool {
-        inputs.tessellation.lod.is_by_error()
-            && may_slide(&self.seen_patch(inputs, patch), inputs.tessellation.tolerance)
+    pub fn slides(&self, patch: u32) -> bool {
+        let Tessellation { lod, tolerance, .. } = self.0.inputs.tessellation;
+        lod.is_by_error() && may_slide(&self.seen_patch(patch), tolerance)
     }
 
     /// Returns the point of a patch that is nearest to `target` as `on_screen` shows both, without displacement: by Newton's
@@ -81,7 +74,7 @@ impl<'a> LimitSurface<'a> {
     fn surface(&self, net: &ControlNet, u: f64, v: f64) -> DVec3 {
         let weights = [u, v, 1.0 - u - v];
         let [a, b, c] = net.corners.map(Vec3::as_dvec3);
-        if self.nets.surface.is_flat() {
+        if self.0.nets.surface.is_flat() {
             return a * weights[0] + b * weights[1] + c * weights[2];
         }
         let [x, y, z] = weights;

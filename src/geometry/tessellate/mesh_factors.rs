@@ -18,6 +18,7 @@ use super::{
     HullFactors, Inputs, Lod, Tessellation, distance_factor, edge_length_factor, last_factor, paper_edge_factor,
     process, triangle_count,
 };
+use crate::mesh::{Mesh, Topology};
 
 /// The factors that LOD gives to a mesh.
 pub(super) struct MeshFactors {
@@ -34,14 +35,21 @@ pub fn rounds(has_rows: bool) -> u32 {
 }
 
 /// What LOD computes a mesh's factors from: its control nets, and what displaces it with these inputs.
-#[derive(Clone, Copy)]
 pub(super) struct MeshLod<'a> {
-    pub nets: &'a ControlNets<'a>,
-    pub inputs: &'a Inputs,
-    pub displacement: Option<&'a MeshDisplacement<'a>>,
+    pub nets: ControlNets<'a>,
+    pub inputs: Inputs,
+    pub displacement: Option<MeshDisplacement<'a>>,
 }
 
-impl MeshLod<'_> {
+impl<'a> MeshLod<'a> {
+    pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology, inputs: &Inputs) -> Self {
+        Self::from_nets(ControlNets::new(mesh, topology, inputs), inputs)
+    }
+
+    pub(super) fn from_nets(nets: ControlNets<'a>, inputs: &Inputs) -> Self {
+        Self { displacement: MeshDisplacement::new(&nets, inputs), nets, inputs: *inputs }
+    }
+
     /// Returns the factors that LOD gives: to each edge the largest that any of its curves needs, or under LOD by error that
     /// any of its patches requests. With edges as published, each curve has its own factor.
     pub(super) fn mesh_factors(&self) -> MeshFactors {
@@ -174,7 +182,9 @@ impl MeshLod<'_> {
             seen.off_plane = plane_error(view, &net);
             seen.off_line = line_error(view, &net);
         }
-        if let Some((directions, scale, relief)) = self.displacement.map(|displacement| displacement.relief(patch)) {
+        if let Some((directions, scale, relief)) =
+            self.displacement.as_ref().map(|displacement| displacement.relief(patch))
+        {
             seen.relief = seen_relief(view, seen.scale, directions, scale, relief);
         }
         seen
@@ -248,14 +258,12 @@ impl MeshLod<'_> {
         };
         whole_segments(partitioning, (curves[0]..curves[1]).map(own).fold(1.0, f32::max))
     }
-}
 
-impl ControlNets<'_> {
     /// Returns the factors that the hull shader writes for a patch. The sides' factors are in the order of the
     /// convention. The inside factor is the largest of the three, or that of LOD by error. Under rows it is that of the base.
-    pub(super) fn hull_factors(&self, inputs: &Inputs, factors: &MeshFactors, patch: u32) -> HullFactors {
-        let sides = [0, 1, 2].map(|side| factors.edges[self.patch_factor(patch, side) as usize]);
-        let Tessellation { convention, partitioning, .. } = inputs.tessellation;
+    pub(super) fn hull_factors(&self, factors: &MeshFactors, patch: u32) -> HullFactors {
+        let sides = [0, 1, 2].map(|side| factors.edges[self.nets.patch_factor(patch, side) as usize]);
+        let Tessellation { convention, partitioning, .. } = self.inputs.tessellation;
         let written = HullFactors::from_sides(convention, sides, sides[0].max(sides[1]).max(sides[2]));
         let found = factors.insides.get(patch as usize).copied();
         let inside = match (partitioning.has_rows(), found) {
@@ -265,7 +273,9 @@ impl ControlNets<'_> {
         };
         HullFactors { inside, ..written }
     }
+}
 
+impl ControlNets<'_> {
     /// Returns the four control points of a curve, in object units.
     pub(super) fn curve_points(&self, curve: u32) -> [Vec3; 4] {
         let [a, b] = self.curves.curves[curve as usize].points.map(|p| self.topology.points[p as usize]);
@@ -295,7 +305,7 @@ mod tests {
     use glam::{Mat4, Vec2};
 
     use super::*;
-    use crate::mesh::{Shape, Topology};
+    use crate::mesh::Shape;
     use crate::tessellate::{LodView, Partitioning};
 
     #[test]
@@ -310,8 +320,7 @@ mod tests {
             ..Tessellation::default()
         };
         let inputs = Inputs::new(&own, LodView::new(seen, Vec2::splat(300.0)));
-        let nets = ControlNets::new(&mesh, &topology, &inputs);
-        let lod = MeshLod { nets: &nets, inputs: &inputs, displacement: None };
+        let lod = MeshLod::new(&mesh, &topology, &inputs);
         let given = |factor| MeshFactors {
             edges: vec![factor; topology.edges.len()],
             insides: vec![factor; topology.patches.len()],

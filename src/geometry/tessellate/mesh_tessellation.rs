@@ -4,7 +4,7 @@ use bytemuck::Zeroable;
 use glam::{Vec2, Vec3};
 
 use super::control_nets::ControlNets;
-use super::mesh_displacement::{MeshDisplacement, displacement_reach};
+use super::mesh_displacement::displacement_reach;
 use super::mesh_factors::MeshLod;
 use super::vertex::{Vertex, pack_key};
 use super::{
@@ -43,16 +43,11 @@ impl Tessellated {
 /// # Panics
 /// If `factors` are fewer than that.
 pub fn tessellate(mesh: &Mesh, topology: &Topology, inputs: &Inputs, factors: Option<&[f32]>) -> Tessellated {
-    let inputs = &seen_with_reach(mesh, inputs);
-    let nets = ControlNets::new(mesh, topology, inputs);
-    let displacement = MeshDisplacement::new(&nets, inputs);
-    let culls_back = culls_back(mesh, topology, inputs);
-    let lod = MeshLod { nets: &nets, inputs, displacement: displacement.as_ref() };
+    let mut lod = MeshLod::new(mesh, topology, &seen_with_reach(mesh, inputs));
     let made = factors.map_or_else(|| lod.mesh_factors(), |edges| lod.factors_beside(edges));
-    let displacement =
-        displacement.map(|displacement| displacement.with_levels(&made.edges, inputs.tessellation.lod.is_by_error()));
-    let written = |patch| nets.hull_factors(inputs, &made, patch);
-    let out = nets.emit(inputs, displacement.as_ref(), culls_back, written);
+    let by_error = inputs.tessellation.lod.is_by_error();
+    lod.displacement = lod.displacement.map(|displacement| displacement.with_levels(&made.edges, by_error));
+    let out = lod.emit(culls_back(mesh, topology, &lod.inputs), |patch| lod.hull_factors(&made, patch));
     Tessellated { edge_factors: made.edges, ..out }
 }
 
@@ -70,27 +65,23 @@ fn culls_back(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> bool {
 /// Tessellates the mesh with the factors that a hull shader wrote for each patch, instead of LOD's. Patches that show
 /// only their backs are drawn, since given factors may crack any edge.
 pub fn tessellate_given(mesh: &Mesh, topology: &Topology, inputs: &Inputs, given: &[HullFactors]) -> Tessellated {
-    let inputs = &seen_with_reach(mesh, inputs);
-    let nets = ControlNets::new(mesh, topology, inputs);
-    let displacement = MeshDisplacement::new(&nets, inputs).map(|displacement| {
+    let mut lod = MeshLod::new(mesh, topology, &seen_with_reach(mesh, inputs));
+    lod.displacement = lod.displacement.map(|displacement| {
         let factors = displacement.given_factors(inputs.tessellation.convention, given);
         displacement.with_levels(&factors, false)
     });
-    let written = |patch: u32| given[patch as usize].rounded(inputs.tessellation.partitioning);
-    nets.emit(inputs, displacement.as_ref(), false, written)
+    lod.emit(false, |patch| given[patch as usize].rounded(inputs.tessellation.partitioning))
 }
 
 /// Returns the factors that the hull shader writes for each patch under LOD; zeros for patches that are left out.
 pub fn hull_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<HullFactors> {
-    let inputs = &seen_with_reach(mesh, inputs);
-    let nets = ControlNets::new(mesh, topology, inputs);
-    let displacement = MeshDisplacement::new(&nets, inputs);
-    let culls_back = culls_back(mesh, topology, inputs);
-    let factors = MeshLod { nets: &nets, inputs, displacement: displacement.as_ref() }.mesh_factors();
+    let lod = MeshLod::new(mesh, topology, &seen_with_reach(mesh, inputs));
+    let culls_back = culls_back(mesh, topology, &lod.inputs);
+    let factors = lod.mesh_factors();
     let written = |patch| {
-        let net = nets.patch(patch);
-        match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
-            NOT_CULLED => nets.hull_factors(inputs, &factors, patch),
+        let net = lod.nets.patch(patch);
+        match cull_reason(inputs.tessellation.clip, culls_back, &lod.inputs.view, &net) {
+            NOT_CULLED => lod.hull_factors(&factors, patch),
             _ => HullFactors::default(),
         }
     };
@@ -113,40 +104,33 @@ pub fn given_totals(given: &[HullFactors], inputs: &Inputs) -> (u64, u64) {
 
 /// Returns the factors that LOD gives: one for each edge, or with edges as published one for each curve.
 pub fn edge_factors(mesh: &Mesh, topology: &Topology, inputs: &Inputs) -> Vec<f32> {
-    let inputs = &seen_with_reach(mesh, inputs);
-    let nets = ControlNets::new(mesh, topology, inputs);
-    let displacement = MeshDisplacement::new(&nets, inputs);
-    MeshLod { nets: &nets, inputs, displacement: displacement.as_ref() }.mesh_factors().edges
+    MeshLod::new(mesh, topology, &seen_with_reach(mesh, inputs)).mesh_factors().edges
 }
 
-impl ControlNets<'_> {
+impl MeshLod<'_> {
     /// Emits all patches. `written` returns the factors that the hull shader writes for a patch.
-    fn emit(
-        &self,
-        inputs: &Inputs,
-        displacement: Option<&MeshDisplacement>,
-        culls_back: bool,
-        written: impl Fn(u32) -> HullFactors,
-    ) -> Tessellated {
+    fn emit(&self, culls_back: bool, written: impl Fn(u32) -> HullFactors) -> Tessellated {
+        let Self { nets, inputs: Inputs { tessellation, view }, displacement } = self;
         let mut out = Tessellated::default();
-        for patch in 0..self.topology.patches.len() as u32 {
-            let net = self.patch(patch);
-            let factors = match cull_reason(inputs.tessellation.clip, culls_back, &inputs.view, &net) {
-                NOT_CULLED => written(patch).process(inputs.tessellation.partitioning),
+        for patch in 0..nets.topology.patches.len() as u32 {
+            let net = nets.patch(patch);
+            let factors = match cull_reason(tessellation.clip, culls_back, view, &net) {
+                NOT_CULLED => written(patch).process(tessellation.partitioning),
                 why => PatchFactors { inside: why, ..PatchFactors::zeroed() },
             };
             let vertex = |point| {
-                let own = self.vertex(patch, &net, corner_weights(inputs.tessellation.convention, point));
-                displacement.map_or(own, |displacement| displacement.displaced(self, factors, own))
+                let own = nets.vertex(patch, &net, corner_weights(tessellation.convention, point));
+                displacement.as_ref().map_or(own, |displacement| displacement.displaced(nets, factors, own))
             };
-            let base = out.vertices.len() as u32;
-            out.vertices.extend(factors.points().into_iter().map(vertex));
-            out.triangles.extend(factors.triangles().into_iter().map(|corners| corners.map(|i| base + i)));
+            let vertices: Vec<Vertex> = factors.points().into_iter().map(vertex).collect();
+            out.append(&vertices, &factors.triangles());
             out.patch_factors.push(factors);
         }
         out
     }
+}
 
+impl ControlNets<'_> {
     /// Returns the vertex of a patch at the weights `uv` of corners 0 and 1, before displacement.
     fn vertex(&self, patch: u32, net: &ControlNet, uv: [u32; 2]) -> Vertex {
         let [u, v] = uv;

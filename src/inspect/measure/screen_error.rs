@@ -13,7 +13,6 @@ use geometry::tessellate::{ControlNet, Inputs, LimitSurface, LodView, Vertex};
 /// patches whose points may slide, the nearest point of the surface is taken, as LOD by error does.
 pub struct ScreenErrorMeasurement<'a> {
     limit: LimitSurface<'a>,
-    inputs: Inputs,
     patches: u32,
     screen: Screen,
     /// The number of segments that each edge of a triangle is divided into for sampling.
@@ -82,8 +81,8 @@ impl<'a> ScreenErrorMeasurement<'a> {
         };
         let limit = LimitSurface::new(mesh, topology, inputs);
         let patches = topology.patches.len() as u32;
-        let (inputs, screen, tolerance_px) = (*inputs, Screen::new(&inputs.view), f64::INFINITY);
-        Self { limit, inputs, patches, screen, steps, worst: None, tolerance_px, above: 0, last_above: None }
+        let (screen, tolerance_px) = (Screen::new(&inputs.view), f64::INFINITY);
+        Self { limit, patches, screen, steps, worst: None, tolerance_px, above: 0, last_above: None }
     }
 
     /// Counts the patches whose distance is above a tolerance, too.
@@ -103,7 +102,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
 
     /// The number of patches whose points may slide.
     pub fn flat_patches(&self) -> u64 {
-        (0..self.patches).filter(|&patch| self.limit.slides(&self.inputs, patch)).count() as u64
+        (0..self.patches).filter(|&patch| self.limit.slides(patch)).count() as u64
     }
 
     /// The worst place on some triangles, and the patches of these that are above the tolerance, in order.
@@ -114,7 +113,7 @@ impl<'a> ScreenErrorMeasurement<'a> {
             let corners = triangle.map(|i| &vertices[i as usize]);
             // Triangles come patch after patch.
             let patch = corners[0].patch();
-            let found = || (patch, self.limit.net(patch), self.limit.slides(&self.inputs, patch));
+            let found = || (patch, self.limit.net(patch), self.limit.slides(patch));
             let (_, net, slides) = known.take().filter(|(of, ..)| *of == patch).unwrap_or_else(found);
             let worst = self.worst_on(corners, &net, slides);
             known = Some((patch, net, slides));

@@ -104,7 +104,7 @@ fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[S
     pen.text(&facts, [after, top + 21.0], TEXT, LEFT)?;
     let across = (f64::from(WIDTH) - LEFT_MARGIN - RIGHT_MARGIN - BETWEEN) / 2.0;
     for (cost, left, margin) in [(Cost::Ms, 0.0, LEFT_MARGIN), (Cost::Triangles, LEFT_MARGIN + across, BETWEEN)] {
-        Panel { subject, cost }.draw(pen, [left, top + HEAD], [margin, across])?;
+        draw_diagram((subject, cost), pen, [left, top + HEAD], [margin, across])?;
     }
     let mut y = top + HEAD + PANEL_HEIGHT + FOOT + LINE / 2.0;
     for line in lines {
@@ -117,86 +117,83 @@ fn draw_subject<DB: DrawingBackend>(pen: &Pen<DB>, subject: &Subject, lines: &[S
 /// The error over one cost.
 type Diagram<'a, DB> = ChartContext<'a, DB, Cartesian2d<Axis, Axis>>;
 
-/// One diagram.
-struct Panel<'a> {
-    subject: &'a Subject,
-    cost: Cost,
+/// Draws the axes, from a corner on. `margin` is the space to the left of the diagram, and `across` its width, in px; the first one
+/// has the names of errors there.
+fn axes<'d, DB: DrawingBackend>(
+    (subject, cost): (&Subject, Cost),
+    pen: &Pen<'d, DB>,
+    [left, top]: [f64; 2],
+    [margin, across]: [f64; 2],
+) -> Result<Diagram<'d, DB>, DrawingAreaErrorKind<DB::ErrorType>> {
+    let known = || subject.rows.iter().filter_map(|row| Some((row, subject.error(&row.probe)?)));
+    let unit = subject.unit();
+    let x = Axis::around(known().map(|(row, _)| cost.of(&row.probe)), 0.0);
+    let y = Axis::around(known().map(|(_, error)| error * unit), subject.floor() * unit);
+    let area = pen.0.clone().shrink(px([left, top]), px([margin + across, PANEL_HEIGHT + FOOT]));
+    let mut chart = ChartBuilder::on(&area)
+        .margin_left(width(DESCRIBED))
+        .margin_bottom(width(DESCRIBED))
+        .x_label_area_size(width(FOOT - DESCRIBED))
+        .y_label_area_size(width(margin - DESCRIBED))
+        .build_cartesian_2d(x, y)?;
+    let is_first = left == 0.0;
+    chart
+        .configure_mesh()
+        .x_desc(cost.name())
+        .y_desc(if is_first { subject.error_name() } else { "" })
+        .axis_desc_style(font(TEXT))
+        .label_style(font(TEXT))
+        .x_label_formatter(&|value| x.text(x.place(*value)))
+        .y_label_formatter(&|value| if is_first { y.text(y.place(*value)) } else { String::new() })
+        .set_all_tick_mark_size(width(5.0))
+        .bold_line_style(GRID.stroke_width(DENSITY))
+        .light_line_style(FINE_GRID.stroke_width(DENSITY))
+        .axis_style(INK.stroke_width(DENSITY))
+        .draw()?;
+    Ok(chart)
 }
 
-impl Panel<'_> {
-    /// Draws the axes, from a corner on. `margin` is the space to the left of the diagram, and `across` its width, in px; the first one
-    /// has the names of errors there.
-    fn axes<'d, DB: DrawingBackend>(
-        &self,
-        pen: &Pen<'d, DB>,
-        [left, top]: [f64; 2],
-        [margin, across]: [f64; 2],
-    ) -> Result<Diagram<'d, DB>, DrawingAreaErrorKind<DB::ErrorType>> {
-        let known = || self.subject.rows.iter().filter_map(|row| Some((row, self.subject.error(&row.probe)?)));
-        let unit = self.subject.unit();
-        let x = Axis::around(known().map(|(row, _)| self.cost.of(&row.probe)), 0.0);
-        let y = Axis::around(known().map(|(_, error)| error * unit), self.subject.floor() * unit);
-        let area = pen.0.clone().shrink(px([left, top]), px([margin + across, PANEL_HEIGHT + FOOT]));
-        let mut chart = ChartBuilder::on(&area)
-            .margin_left(width(DESCRIBED))
-            .margin_bottom(width(DESCRIBED))
-            .x_label_area_size(width(FOOT - DESCRIBED))
-            .y_label_area_size(width(margin - DESCRIBED))
-            .build_cartesian_2d(x, y)?;
-        let is_first = left == 0.0;
-        chart
-            .configure_mesh()
-            .x_desc(self.cost.name())
-            .y_desc(if is_first { self.subject.error_name() } else { "" })
-            .axis_desc_style(font(TEXT))
-            .label_style(font(TEXT))
-            .x_label_formatter(&|value| x.text(x.place(*value)))
-            .y_label_formatter(&|value| if is_first { y.text(y.place(*value)) } else { String::new() })
-            .set_all_tick_mark_size(width(5.0))
-            .bold_line_style(GRID.stroke_width(DENSITY))
-            .light_line_style(FINE_GRID.stroke_width(DENSITY))
-            .axis_style(INK.stroke_width(DENSITY))
-            .draw()?;
-        Ok(chart)
+/// Draws a diagram, as [`axes`] draws its axes.
+fn draw_diagram<DB: DrawingBackend>(
+    shown: (&Subject, Cost),
+    pen: &Pen<DB>,
+    corner: [f64; 2],
+    across: [f64; 2],
+) -> Drawn<DB> {
+    let (subject, cost) = shown;
+    let chart = axes(shown, pen, corner, across)?;
+    let point = |row: &Row, error: f64| place_of(chart.backend_coord(&(cost.of(&row.probe), error * subject.unit())));
+    let races = subject.races();
+    let fronts: Vec<_> = races.iter().map(|race| race.front(|row| cost.of(&row.probe))).collect();
+    for front in &fronts {
+        let points: Vec<_> = front.iter().map(|(row, error)| point(row, *error)).collect();
+        pen.line(&points, FRONT, 9.0, None)?;
+        // Discs, because a front of one point has no line.
+        points.iter().try_for_each(|at| pen.shape(*at, Shape::Disc, 4.5, FRONT.filled()))?;
     }
-
-    fn draw<DB: DrawingBackend>(&self, pen: &Pen<DB>, corner: [f64; 2], across: [f64; 2]) -> Drawn<DB> {
-        let chart = self.axes(pen, corner, across)?;
-        let point = |row: &Row, error: f64| {
-            place_of(chart.backend_coord(&(self.cost.of(&row.probe), error * self.subject.unit())))
-        };
-        let races = self.subject.races();
-        let fronts: Vec<_> = races.iter().map(|race| race.front(|row| self.cost.of(&row.probe))).collect();
-        for front in &fronts {
-            let points: Vec<_> = front.iter().map(|(row, error)| point(row, *error)).collect();
-            pen.line(&points, FRONT, 9.0, None)?;
-            // Discs, because a front of one point has no line.
-            points.iter().try_for_each(|at| pen.shape(*at, Shape::Disc, 4.5, FRONT.filled()))?;
-        }
-        let methods = method_styles(self.subject);
-        let rows = |method: Method| {
-            let own = self.subject.rows.iter().filter(move |row| row.setting.method == method);
-            own.filter_map(|row| Some((row, self.subject.error(&row.probe)?)))
-        };
-        let mut all: Vec<(&Row, [f64; 2])> = Vec::new();
-        let mut lines = Vec::new();
-        for (method, style) in &methods {
-            let points: Vec<_> = rows(*method).map(|(row, error)| (row, point(row, error))).collect();
-            let path: Vec<_> = points.iter().map(|(_, point)| *point).collect();
-            pen.line(&path, style.color, 1.4, style.dash)?;
-            lines.extend(path.windows(2).map(|ends| [ends[0], ends[1]]));
-            all.extend(points);
-        }
-        for (method, style) in &methods {
-            rows(*method).try_for_each(|(row, error)| pen.marker(point(row, error), style))?;
-        }
-        // Points on the front get their labels first.
-        let is_front = |row: &Row| fronts.iter().flatten().any(|(other, _)| std::ptr::eq(*other, row));
-        all.sort_by_key(|(row, _)| !is_front(row));
-        let (across, down) = chart.plotting_area().get_pixel_range();
-        let frame = Rect { min: place_of((across.start, down.start)), max: place_of((across.end, down.end)) };
-        draw_labels(pen, &all, &lines, frame)
+    let methods = method_styles(subject);
+    let rows = |method: Method| {
+        let own = subject.rows.iter().filter(move |row| row.setting.method == method);
+        own.filter_map(|row| Some((row, subject.error(&row.probe)?)))
+    };
+    let mut all: Vec<(&Row, [f64; 2])> = Vec::new();
+    let mut lines = Vec::new();
+    for (method, style) in &methods {
+        let points: Vec<_> = rows(*method).map(|(row, error)| (row, point(row, error))).collect();
+        let path: Vec<_> = points.iter().map(|(_, point)| *point).collect();
+        pen.line(&path, style.color, 1.4, style.dash)?;
+        lines.extend(path.windows(2).map(|ends| [ends[0], ends[1]]));
+        all.extend(points);
     }
+    for (method, style) in &methods {
+        rows(*method).try_for_each(|(row, error)| pen.marker(point(row, error), style))?;
+    }
+    // Points on the front get their labels first.
+    let is_front = |row: &Row| fronts.iter().flatten().any(|(other, _)| std::ptr::eq(*other, row));
+    all.sort_by_key(|(row, _)| !is_front(row));
+    let (across, down) = chart.plotting_area().get_pixel_range();
+    let frame = Rect { min: place_of((across.start, down.start)), max: place_of((across.end, down.end)) };
+    draw_labels(pen, &all, &lines, frame)
 }
 
 fn draw_labels<DB: DrawingBackend>(

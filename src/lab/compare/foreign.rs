@@ -1,7 +1,9 @@
 //! A tessellated mesh that another program emitted: positions and triangles alone.
 
 use glam::Vec3;
+use half::f16;
 
+use super::OurTessellation;
 use super::our_mesh::is_thin;
 use geometry::mesh::weld::weld;
 use geometry::mesh::{Bounds, Mesh};
@@ -58,6 +60,22 @@ impl ForeignMesh {
         Bounds::new(self.positions.iter().copied())
     }
 
+    /// Half a unit in the last place of the largest coordinate as a number of 16 bits, as vertex buffers of engines often have them, in
+    /// our object units. `None` if some coordinates have more bits, or if all of ours have as few.
+    pub(super) fn resolution_of_halves(&self, ours: &OurTessellation) -> Option<f64> {
+        let is_rounded = |position: &Vec3| position.to_array().into_iter().all(has_16_bits);
+        let emitted = ours.emitted_positions();
+        if !self.positions.iter().all(is_rounded) || emitted.iter().all(is_rounded) {
+            return None;
+        }
+        let [own, bounds] = [Bounds::new(emitted.into_iter()), self.bounds()];
+        let largest = bounds.min.abs().max(bounds.max.abs()).max_element();
+        let unit = f64::from(largest.max(f16::MIN_POSITIVE.to_f32())).log2().floor().exp2() / 1024.0;
+        // Their units may be others than ours.
+        let scale = f64::from(own.diagonal()) / f64::from(bounds.diagonal());
+        Some(0.5 * unit * scale).filter(|resolution| resolution.is_finite())
+    }
+
     /// Up to `most` of its vertices, spread evenly over the list.
     pub(super) fn sample(&self, most: usize) -> impl Iterator<Item = u32> + Clone + use<> {
         spread(self.positions.len(), most).map(|index| index as u32)
@@ -68,6 +86,11 @@ impl ForeignMesh {
 pub(super) fn spread(count: usize, most: usize) -> impl Iterator<Item = usize> + Clone {
     let taken = count.min(most);
     (0..taken).map(move |index| index * count / taken)
+}
+
+/// Whether a number is one of 16 bits (IEEE 754-2019, binary16).
+fn has_16_bits(number: f32) -> bool {
+    number.is_finite() && f16::from_f32(number).to_f32() == number
 }
 
 #[cfg(test)]
@@ -90,5 +113,15 @@ mod tests {
         assert_eq!(spread(10, 5).collect::<Vec<_>>(), [0, 2, 4, 6, 8]);
         assert_eq!(spread(3, 5).collect::<Vec<_>>(), [0, 1, 2]);
         assert_eq!(spread(0, 5).count(), 0);
+    }
+
+    #[test]
+    fn numbers_of_16_bits_are_told_from_others() {
+        for number in [0.0, -0.0, 1.0, 0.333_251_95, -65504.0, 6.1035156e-5, 5.9604645e-8, 1.7881393e-7, 2049.0 - 1.0] {
+            assert!(has_16_bits(number), "{number}");
+        }
+        for number in [0.333_333_34, 65505.0, 1e6, 5.9e-8, 9e-8, 2049.0, f32::INFINITY, f32::NAN] {
+            assert!(!has_16_bits(number), "{number}");
+        }
     }
 }

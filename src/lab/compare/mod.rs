@@ -11,7 +11,6 @@ mod domain_points;
 mod explanations;
 mod findings;
 mod foreign;
-mod half_floats;
 mod locator;
 mod matching;
 mod net_mistakes;
@@ -117,7 +116,7 @@ pub fn compare(ours: &OurTessellation, theirs: &ForeignMesh, exactness: Toleranc
         return empty;
     }
     let asked = exactness.within;
-    let halves = half_floats::resolution(theirs, ours);
+    let halves = theirs.resolution_of_halves(ours);
     let mut exactness = exactness.rounded(halves);
     let fit = (FIT * empty.diagonal).max(exactness.within).max(2.0 * exactness.resolution);
     let apart = apart(asked, empty.ulp);
@@ -155,7 +154,7 @@ pub fn compare(ours: &OurTessellation, theirs: &ForeignMesh, exactness: Toleranc
     match laid.other_mesh(found.diagonal).filter(|_| !outcomes.are_mostly_the_same()) {
         Some(other_mesh) => found.findings.push(other_mesh),
         None => {
-            found.name_differences(&laid, &outcomes, frame.as_ref(), exactness);
+            found.name_differences(&laid, &outcomes, frame.as_ref());
             found.findings.extend(halves.and_then(|_| found.rounded_to_halves(&laid, asked)));
         }
     }
@@ -271,13 +270,7 @@ impl Comparison {
     }
 
     /// Names what differs, where theirs is a tessellation of our mesh.
-    fn name_differences(
-        &mut self,
-        laid: &Registered,
-        outcomes: &Outcomes,
-        frame: Option<&Space>,
-        exactness: Tolerances,
-    ) {
+    fn name_differences(&mut self, laid: &Registered, outcomes: &Outcomes, frame: Option<&Space>) {
         self.findings.extend(laid.other_surface(outcomes.ours));
         if laid.is_fitted {
             self.findings.extend(outcomes.moved(&laid.strays()));
@@ -289,8 +282,8 @@ impl Comparison {
         if let Some(sides) = explained {
             (self.sides, self.different) = (sides, outcomes.different_at_all());
         }
-        self.leave_to_factors(outcomes, exactness);
-        self.judge_distances(outcomes, exactness);
+        self.leave_to_factors(outcomes);
+        self.judge_distances(outcomes);
     }
 
     /// Says that their coordinates, which are numbers of 16 bits, are farther from ours than the distance that was asked for. Where
@@ -303,13 +296,13 @@ impl Comparison {
     }
 
     /// Where another convention gives all of their points, it also explains a few that seem to be moved, and their triangles.
-    fn leave_to_factors(&mut self, outcomes: &Outcomes, exactness: Tolerances) {
+    fn leave_to_factors(&mut self, outcomes: &Outcomes) {
         let is_known = self.findings.iter().any(|finding| matches!(finding, Finding::Factors { .. }));
         if !is_known || !self.findings.iter().any(Finding::is_about_few_points) {
             return;
         }
         let is_same = |turned: &Outcomes| turned.different_at_all().is_empty();
-        if outcomes.other_convention(exactness, |_| true, is_same).is_none() {
+        if outcomes.other_convention(|_| true, is_same).is_none() {
             return;
         }
         self.findings.retain(|finding| !finding.is_about_few_points());
@@ -321,8 +314,8 @@ impl Comparison {
     }
 
     /// Says what distances between the same vertices mean, where nothing else was found but how coordinates are meant.
-    fn judge_distances(&mut self, outcomes: &Outcomes, exactness: Tolerances) {
-        let Tolerances { within, .. } = exactness;
+    fn judge_distances(&mut self, outcomes: &Outcomes) {
+        let within = outcomes.exactness.within;
         let Some(farthest) = self.farthest.filter(|farthest| farthest.distance > within) else { return };
         if !self.findings.iter().all(|finding| matches!(finding, Finding::Aligned(_))) {
             return;
@@ -332,9 +325,9 @@ impl Comparison {
         let is_valid = |other: &Convention| own.is_consistent() && other.is_consistent();
         let is_near = |turned: &Outcomes| turned.farthest().is_some_and(|far| far.distance <= within);
         let triangle = outcomes.triangle(farthest.patch);
-        self.findings.push(match outcomes.other_convention(exactness, is_valid, is_near) {
+        self.findings.push(match outcomes.other_convention(is_valid, is_near) {
             Some(theirs) => Finding::Convention { ours: own, theirs },
-            None if outcomes.are_within(within) => return,
+            None if outcomes.are_within() => return,
             None => Finding::Rounding { farthest, ulps: farthest.distance / self.ulp, triangle },
         });
     }
@@ -344,18 +337,17 @@ impl Outcomes<'_> {
     /// Finds the convention among some of the others under which what we emit passes `suits`, which gets our outcomes under it.
     fn other_convention(
         &self,
-        exactness: Tolerances,
         among: impl Fn(&Convention) -> bool,
         suits: impl Fn(&Outcomes) -> bool,
     ) -> Option<Convention> {
-        let Self { ours, assignment, .. } = self;
+        let Self { ours, assignment, exactness, .. } = self;
         let own = ours.inputs.tessellation;
         let is_suited = |theirs: &Convention| {
             let inputs = Inputs { tessellation: Tessellation { convention: *theirs, ..own }, ..*ours.inputs };
             let tessellated = tessellate(ours.mesh, ours.topology, &inputs, None);
             let turned = OurTessellation { inputs: &inputs, tessellated: &tessellated, ..**ours };
             let our_mesh = OurMesh::new(&tessellated, apart(exactness.within, ulp(ours.topology)));
-            suits(&Outcomes::new(&turned, &our_mesh, assignment, exactness))
+            suits(&Outcomes::new(&turned, &our_mesh, assignment, *exactness))
         };
         // Given factors are in the order of our convention.
         let others = Convention::ALL.into_iter().filter(|other| ours.given.is_none() && *other != own.convention);

@@ -21,6 +21,7 @@ pub(super) struct Outcomes<'a> {
     pub ours: &'a OurTessellation<'a>,
     our_mesh: &'a OurMesh<'a>,
     pub assignment: &'a Assignment<'a>,
+    pub exactness: Tolerances,
     reaches: Vec<Reach>,
     /// None for a patch for which only one of both emits triangles, or neither.
     all: Vec<Option<Outcome>>,
@@ -128,7 +129,7 @@ impl<'a> Outcomes<'a> {
         });
         let missing = patches.clone().filter(|patch| emitted(patch) && !theirs(patch)).collect();
         let additional = patches.filter(|patch| theirs(patch) && !emitted(patch)).collect();
-        Self { ours, our_mesh, assignment, reaches, all, missing, additional }
+        Self { ours, our_mesh, assignment, exactness, reaches, all, missing, additional }
     }
 
     /// The number of patches that have triangles of theirs.
@@ -165,8 +166,9 @@ impl<'a> Outcomes<'a> {
         self.compared().filter_map(|(_, outcome)| outcome.farthest).reduce(Farthest::farther)
     }
 
-    /// Whether vertices are no farther from ours than `within` object units, and than the last bits of LOD's factors move points.
-    pub(super) fn are_within(&self, within: f64) -> bool {
+    /// Whether vertices are no farther from ours than is allowed, and than the last bits of LOD's factors move points.
+    pub(super) fn are_within(&self) -> bool {
+        let within = self.exactness.within;
         let is_within = |own: &Outcome| own.farthest.is_none_or(|far| far.distance <= within + own.slack);
         self.compared().all(|(_, outcome)| is_within(outcome))
     }

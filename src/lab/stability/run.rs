@@ -55,17 +55,6 @@ impl Worst {
             *worst = (measured, tried);
         }
     }
-
-    fn take_all(&mut self, measured: &Measured, tried: Tried) {
-        for (quantity, count) in [
-            (Quantity::Points, measured.cracks.different_bits),
-            (Quantity::Factors, measured.cracks.different_factors),
-            (Quantity::Normals, measured.cracks.different_normals),
-            (Quantity::NotFinite, measured.not_finite),
-        ] {
-            self.take(quantity, count as f64, Some(tried));
-        }
-    }
 }
 
 /// A tessellation that is to be tried, and further cameras that leaks are counted from, if factors and clipping don't depend on the
@@ -75,9 +64,12 @@ type Trial = (Tried, Vec<Camera>);
 /// A case that is being run: its mesh, and the same mesh on the device.
 struct Running<'a> {
     case: &'a Subject,
+    effort: &'a Effort,
     mesh: Arc<Mesh>,
     topology: Arc<Topology>,
     bounds: Bounds,
+    /// The one that the case's picture is taken with.
+    camera: Camera,
     device: Option<(&'a Engine, Scene, Target)>,
 }
 
@@ -96,11 +88,11 @@ pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<V
     let jobs: Vec<_> = effort.methods.iter().copied().flat_map(pairs).collect();
     let (next, done) = (AtomicUsize::new(0), Mutex::new(BTreeMap::new()));
     let work = || -> Result<(), GpuError> {
-        let mut running = Running::new(case, mesh.clone(), topology.clone(), engine)?;
+        let mut running = Running::new(case, effort, (mesh.clone(), topology.clone()), engine)?;
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
             let Some(&(method, partitioning)) = jobs.get(index) else { return Ok(()) };
-            let rows = running.job(method, partitioning, effort)?;
+            let rows = running.job(method, partitioning)?;
             done.lock().unwrap_or_else(PoisonError::into_inner).insert(index, rows);
         }
     };
@@ -117,8 +109,8 @@ pub fn run(case: &Subject, engine: Option<&Engine>, effort: &Effort) -> Result<V
 impl<'a> Running<'a> {
     fn new(
         case: &'a Subject,
-        mesh: Arc<Mesh>,
-        topology: Arc<Topology>,
+        effort: &'a Effort,
+        (mesh, topology): (Arc<Mesh>, Arc<Topology>),
         engine: Option<&'a Engine>,
     ) -> Result<Self, GpuError> {
         let on = |engine: &'a Engine| -> Result<_, GpuError> {
@@ -127,26 +119,27 @@ impl<'a> Running<'a> {
         };
         let device = engine.map(on).transpose()?;
         let bounds = bounds_through(&mesh, Some(0));
-        Ok(Self { case, mesh, topology, bounds, device })
+        let camera = views::camera(&bounds, &case.view, views::viewport());
+        Ok(Self { case, effort, mesh, topology, bounds, camera, device })
     }
 
     /// Runs one method with one partitioning, on every device.
-    fn job(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Vec<Row>, GpuError> {
+    fn job(&mut self, method: Method, partitioning: Partitioning) -> Result<Vec<Row>, GpuError> {
         let mut rows = Vec::new();
-        if effort.cpu {
-            let worst = self.on_cpu(method, partitioning, effort);
+        if self.effort.cpu {
+            let worst = self.on_cpu(method, partitioning);
             rows.extend(self.rows(method, partitioning, "cpu", &worst));
         }
         if let Some((engine, ..)) = self.device {
-            let worst = self.on_device(method, partitioning, effort)?;
+            let worst = self.on_device(method, partitioning)?;
             rows.extend(self.rows(method, partitioning, &engine.gpu.info.name, &worst));
         }
         Ok(rows)
     }
 
     /// The tessellations that a method is tried with: first uniform factors, then adaptive LOD.
-    fn trials(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Vec<Trial> {
-        let case_camera = views::camera(&self.bounds, &self.case.view, views::viewport());
+    fn trials(&self, method: Method, partitioning: Partitioning) -> Vec<Trial> {
+        let Self { effort, camera: case_camera, .. } = *self;
         let random = |index| views::random(&self.bounds, index);
         let seen = |settings, camera, also_from| (Tried { settings, camera, moment: None }, also_from);
         let uniform = effort.factors.iter().enumerate().map(|(turn, &factor)| {
@@ -183,9 +176,9 @@ impl<'a> Running<'a> {
         Some(Arc::new(rig.pose(moment?)))
     }
 
-    fn on_cpu(&self, method: Method, partitioning: Partitioning, effort: &Effort) -> Worst {
+    fn on_cpu(&self, method: Method, partitioning: Partitioning) -> Worst {
         let mut worst = Worst::default();
-        for (tried, _) in self.trials(method, partitioning, effort) {
+        for (tried, _) in self.trials(method, partitioning) {
             let Tried { settings, camera, moment } = tried;
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let pose = self.pose(moment);
@@ -194,12 +187,12 @@ impl<'a> Running<'a> {
             let own = settings.tessellation;
             let asked = RequestedFactors::new(own.edges, own.convention, out.edge_factors.clone());
             let measured = Measured::new(&mesh, &topology, asked, &out);
-            self.take(&mut worst, &measured, tried, &view, effort);
+            self.take(&mut worst, &measured, tried, &view);
         }
         if self.case.probe == Probe::Sweep {
             let view = LodView::new(glam::Mat4::IDENTITY, views::viewport());
             let inputs = method.settings(partitioning, 1.0).inputs(view);
-            let swept = sweep(&self.mesh, &self.topology, &inputs, 1.0..=effort.sweep_to, SWEEP_STEP);
+            let swept = sweep(&self.mesh, &self.topology, &inputs, 1.0..=self.effort.sweep_to, SWEEP_STEP);
             let largest = swept.largest().map_or(0.0, |step| step.jump);
             let quantity = if partitioning.is_fractional() { Quantity::Jump } else { Quantity::Pop };
             worst.take(quantity, largest / f64::from(self.bounds.diagonal()), None);
@@ -207,9 +200,9 @@ impl<'a> Running<'a> {
         worst
     }
 
-    fn on_device(&mut self, method: Method, partitioning: Partitioning, effort: &Effort) -> Result<Worst, GpuError> {
+    fn on_device(&mut self, method: Method, partitioning: Partitioning) -> Result<Worst, GpuError> {
         let mut worst = Worst::default();
-        for (tried, also_from) in self.trials(method, partitioning, effort) {
+        for (tried, also_from) in self.trials(method, partitioning) {
             let Tried { settings, camera, moment } = tried;
             let view = camera.lod_view(views::viewport(), &self.bounds);
             let pose = self.pose(moment);
@@ -222,7 +215,7 @@ impl<'a> Running<'a> {
                     worst.take(Quantity::Leaks, leaks as f64, Some(Tried { camera, ..tried }));
                 }
             }
-            self.take(&mut worst, &measured, tried, &view, effort);
+            self.take(&mut worst, &measured, tried, &view);
             if self.case.probe == Probe::View && settings.tessellation.clip != Clip::Off {
                 let missing = self.missing(&settings, &camera)?;
                 worst.take(Quantity::Missing, missing as f64, Some(tried));
@@ -231,19 +224,20 @@ impl<'a> Running<'a> {
         Ok(worst)
     }
 
-    fn take(&self, worst: &mut Worst, measured: &Measured, tried: Tried, view: &LodView, effort: &Effort) {
-        worst.take_all(measured, tried);
-        if effort.folds || self.case.probe == Probe::Folds {
-            worst.take(Quantity::Folds, measured.folds as f64, Some(tried));
-        }
+    fn take(&self, worst: &mut Worst, measured: &Measured, tried: Tried, view: &LodView) {
+        let has_folds = self.effort.folds || self.case.probe == Probe::Folds;
+        let counts = [
+            (Quantity::Points, measured.cracks.different_bits),
+            (Quantity::Factors, measured.cracks.different_factors),
+            (Quantity::Normals, measured.cracks.different_normals),
+            (Quantity::NotFinite, measured.not_finite),
+        ];
+        let folds = has_folds.then_some((Quantity::Folds, measured.folds));
+        counts.into_iter().chain(folds).for_each(|(what, count)| worst.take(what, count as f64, Some(tried)));
         // Clipped patches have no segments to measure, and a random camera may be anywhere.
-        let Tessellation { clip, .. } = tried.settings.tessellation;
-        let is_adaptive = tried.settings.tessellation.used_lod().follows_view();
-        if self.case.probe != Probe::View || !is_adaptive || clip != Clip::Off {
-            return;
-        }
-        let camera = views::camera(&self.bounds, &self.case.view, views::viewport());
-        if tried.camera == camera {
+        let own = tried.settings.tessellation;
+        let is_measured = own.used_lod().follows_view() && own.clip == Clip::Off && tried.camera == self.camera;
+        if self.case.probe == Probe::View && is_measured {
             let longest = longest_segment(&self.topology, measured, view) / f64::from(PIXELS);
             worst.take(Quantity::Segment, longest, Some(tried));
         }

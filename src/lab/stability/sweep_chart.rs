@@ -50,13 +50,19 @@ fn draw(picture: &Picture, sweeps: &[Sweep], diagonal: f64) -> Drawn {
     axes(&mut chart, sweeps)?;
     for sweep in sweeps {
         let points = parts(sweep, diagonal, decades.start);
-        let style = CurveStyle::new(sweep.partitioning);
         let name = sweep.partitioning.name();
         let text = match sweep.largest() {
             Some(step) if step.jump > 0.0 => format!("{name}, up to {:.1e}", step.jump / diagonal),
             _ => format!("{name}, no jump"),
         };
-        style.draw(&mut chart, &points, decades.start, text)?;
+        let (of, bottom) = (sweep.partitioning, decades.start);
+        let elements = if of.is_fractional() {
+            vec![path(of, highest_of_columns(&chart, &points))]
+        } else {
+            let pops = points.into_iter().filter(|(_, part)| *part > bottom);
+            pops.flat_map(|top @ (factor, _)| [path(of, vec![(factor, bottom), top]), marker(of, top)]).collect()
+        };
+        chart.draw_series(elements)?.label(text).legend(move |at| sample(of, at));
     }
     chart
         .configure_series_labels()
@@ -113,82 +119,42 @@ fn parts(sweep: &Sweep, diagonal: f64, bottom: f64) -> Vec<(f64, f64)> {
     sweep.steps.iter().map(point).collect()
 }
 
-/// The colour and shape that tell a partitioning from the others.
-#[derive(Clone, Copy)]
-struct CurveStyle {
-    color: RGBColor,
-    shape: Shape,
+/// The colour of a partitioning. Lines and markers tell it from the others, too.
+fn color(partitioning: Partitioning) -> RGBColor {
+    match partitioning {
+        Partitioning::Integer => VERMILION,
+        Partitioning::Pow2 => BLUE,
+        Partitioning::FractionalOdd => BLUISH_GREEN,
+        Partitioning::FractionalEven => BLACK,
+        Partitioning::Subtriangulation => REDDISH_PURPLE,
+        Partitioning::Rows => SKY_BLUE,
+    }
 }
 
-#[derive(Clone, Copy)]
-enum Shape {
-    /// Stems with filled circles.
-    Discs,
-    /// Stems with diagonal crosses.
-    Crosses,
-    /// Stems with filled triangles.
-    Triangles,
-    Line,
-    Dashes,
+/// A line along points, in px or in coordinates of the chart. Stems are thin and pale, so that lines stand out.
+fn path<'b, C: Clone + 'static>(of: Partitioning, points: Vec<C>) -> Element<'b, C> {
+    let thick = color(of).stroke_width(DENSITY * 2);
+    match of {
+        Partitioning::FractionalOdd => PathElement::new(points, thick).into_dyn(),
+        Partitioning::FractionalEven => DashedPathElement::new(points, px(7), px(4), thick).into_dyn(),
+        Partitioning::Integer | Partitioning::Pow2 | Partitioning::Subtriangulation | Partitioning::Rows => {
+            PathElement::new(points, color(of).mix(0.4).stroke_width(DENSITY)).into_dyn()
+        }
+    }
 }
 
-impl CurveStyle {
-    fn new(partitioning: Partitioning) -> Self {
-        let (color, shape) = match partitioning {
-            Partitioning::Integer => (VERMILION, Shape::Discs),
-            Partitioning::Pow2 => (BLUE, Shape::Crosses),
-            Partitioning::FractionalOdd => (BLUISH_GREEN, Shape::Line),
-            Partitioning::FractionalEven => (BLACK, Shape::Dashes),
-            Partitioning::Subtriangulation => (REDDISH_PURPLE, Shape::Triangles),
-            Partitioning::Rows => (SKY_BLUE, Shape::Discs),
-        };
-        Self { color, shape }
+/// The marker at the top of a stem.
+fn marker<'b, C: Clone + 'static>(of: Partitioning, at: C) -> Element<'b, C> {
+    match of {
+        Partitioning::Pow2 => Cross::new(at, px(4), color(of).stroke_width(DENSITY * 2)).into_dyn(),
+        Partitioning::Subtriangulation => TriangleMarker::new(at, px(4), color(of).filled()).into_dyn(),
+        _ => Circle::new(at, px(3), color(of).filled()).into_dyn(),
     }
+}
 
-    /// Draws points of the chart, and adds an entry to the legend.
-    fn draw<'a, 'b: 'a>(self, chart: &mut Chart<'a, 'b>, points: &[(f64, f64)], bottom: f64, label: String) -> Drawn {
-        let elements: Vec<Element<'b, _>> = match self.shape {
-            Shape::Line | Shape::Dashes => vec![self.path(highest_of_columns(chart, points))],
-            Shape::Discs | Shape::Crosses | Shape::Triangles => {
-                let pops = points.iter().filter(|(_, part)| *part > bottom);
-                pops.flat_map(|&(factor, part)| {
-                    [self.path(vec![(factor, bottom), (factor, part)]), self.marker((factor, part))]
-                })
-                .collect()
-            }
-        };
-        chart.draw_series(elements)?.label(label).legend(move |at| self.sample(at));
-        Ok(())
-    }
-
-    /// A line along points, in px or in coordinates of the chart. Stems are thin and pale, so that lines stand out.
-    fn path<'b, C: Clone + 'static>(self, points: Vec<C>) -> Element<'b, C> {
-        let thick = self.color.stroke_width(DENSITY * 2);
-        match self.shape {
-            Shape::Line => PathElement::new(points, thick).into_dyn(),
-            Shape::Dashes => DashedPathElement::new(points, px(7), px(4), thick).into_dyn(),
-            Shape::Discs | Shape::Crosses | Shape::Triangles => {
-                PathElement::new(points, self.color.mix(0.4).stroke_width(DENSITY)).into_dyn()
-            }
-        }
-    }
-
-    /// The marker at the top of a stem.
-    fn marker<'b, C: Clone + 'static>(self, at: C) -> Element<'b, C> {
-        match self.shape {
-            Shape::Crosses => Cross::new(at, px(4), self.color.stroke_width(DENSITY * 2)).into_dyn(),
-            Shape::Triangles => TriangleMarker::new(at, px(4), self.color.filled()).into_dyn(),
-            _ => Circle::new(at, px(3), self.color.filled()).into_dyn(),
-        }
-    }
-
-    /// The sample for the legend, to the right of a px.
-    fn sample<'b>(self, (x, y): (i32, i32)) -> Element<'b, (i32, i32)> {
-        match self.shape {
-            Shape::Line | Shape::Dashes => self.path(vec![(x, y), (x + px(32), y)]),
-            Shape::Discs | Shape::Crosses | Shape::Triangles => self.marker((x + px(16), y)),
-        }
-    }
+/// The sample for the legend, to the right of a px.
+fn sample<'b>(of: Partitioning, (x, y): (i32, i32)) -> Element<'b, (i32, i32)> {
+    if of.is_fractional() { path(of, vec![(x, y), (x + px(32), y)]) } else { marker(of, (x + px(16), y)) }
 }
 
 /// The highest point in each column of px. A line through all points would smear where steps are narrower than a px.
@@ -214,7 +180,7 @@ mod tests {
 
     /// The centres of the discs to the left of the legend, in px from the upper left corner.
     fn discs(picture: &RgbImage) -> Vec<[f64; 2]> {
-        let RGBColor(r, g, b) = CurveStyle::new(Partitioning::Integer).color;
+        let RGBColor(r, g, b) = color(Partitioning::Integer);
         let mut found: Vec<_> = picture.enumerate_pixels().filter(|(_, _, pixel)| pixel.0 == [r, g, b]).collect();
         found.retain(|(x, _, _)| *x < picture.width() * 6 / 10);
         found.sort_by_key(|(x, _, _)| *x);
@@ -248,11 +214,7 @@ mod tests {
         for shown in Partitioning::ALL {
             let picture = sweep_chart(&[sweep(shown, &jumps)], 1.0, [640, 400]).expect("it draws");
             for partitioning in Partitioning::ALL {
-                assert_eq!(
-                    has(&picture, CurveStyle::new(partitioning).color),
-                    partitioning == shown,
-                    "{partitioning:?}"
-                );
+                assert_eq!(has(&picture, color(partitioning)), partitioning == shown, "{partitioning:?}");
             }
         }
     }

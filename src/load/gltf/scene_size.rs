@@ -12,8 +12,7 @@ use crate::memory_budget::edge_bytes;
 use geometry::casts::to_usize;
 use geometry::mesh::borrowing;
 use geometry::mesh::build_limits::MAX_TRIANGLES;
-use geometry::mesh::detail_table::DetailTable;
-use geometry::mesh::interner::Interner;
+use geometry::mesh::detail_table::{DetailTable, id_bytes};
 
 /// The greatest number of vertices, their displacements and indices, each counted as often as it is used.
 const MAX_ELEMENTS: u64 = 1 << 29;
@@ -100,7 +99,7 @@ pub(crate) fn check(
     }
     let moving = if moves { all.vertices.saturating_mul(PER_BOUND) } else { 0 };
     let details = if is_detailed { DetailTable::bytes_for(to_usize(all.corners)) } else { 0 };
-    let read = Interner::bytes_for(to_usize(all.corners)) + all.triangles * PER_TRIANGLE;
+    let read = id_bytes(to_usize(all.corners)) + all.triangles * PER_TRIANGLE;
     // All triangles are put into one list after the buffers have been freed.
     let finished = (all.corners * 4 + all.triangles * 2 * PER_TRIANGLE).saturating_sub(accessors.buffer_bytes());
     let finished = if all.primitives > 1 { finished } else { 0 };

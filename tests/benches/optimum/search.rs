@@ -233,7 +233,7 @@ pub(crate) fn optimum(mesh: &Mesh, topology: &Topology, inputs: &Inputs, starts:
             continue;
         }
         let sides = topology.patches[index as usize].sides.map(|side| topology.sides[side as usize].edge as usize);
-        patches.push(Patch::new(inputs, limit.seen_patch(inputs, index), &net, [sides[1], sides[2], sides[0]]));
+        patches.push(Patch::new(inputs, limit.seen_patch(index), &net, [sides[1], sides[2], sides[0]]));
     }
     let alone: Vec<_> = patches.iter_mut().map(|patch| patch.alone(&levels)).collect();
     let lower_bound = alone.iter().map(|own| own.map_or(1, |(_, triangles)| triangles)).sum();

@@ -5,22 +5,24 @@ use glam::{DVec3, Vec3};
 use crate::casts::to_u32;
 use crate::mesh::union_find::UnionFind;
 use crate::mesh::weld::plus_zero3;
-use crate::mesh::{Mesh, Side, Topology};
+use crate::mesh::{Corner, Mesh, Side, Topology};
 
 /// A sum of unit normals that is shorter than this is what rounding leaves of normals that cancel.
 const CANCELLED: f64 = 1e-6;
 
 /// All fans of a mesh. Parts of a mesh that meet in a point without a common edge have a fan each, since nothing can
 /// tear between them.
-pub(super) struct Fans {
+pub(super) struct Fans<'a> {
+    pub mesh: &'a Mesh,
+    pub topology: &'a Topology,
     /// The fan of each corner k of each patch, at 3 * patch + k.
     fan_of: Vec<u32>,
     /// For each fan, the normal that its corners will share; none if they have the same normal already.
     pub normals: Vec<Option<Vec3>>,
 }
 
-impl Fans {
-    pub(super) fn new(mesh: &Mesh, topology: &Topology) -> Self {
+impl<'a> Fans<'a> {
+    pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology) -> Self {
         let count = 3 * topology.patches.len();
         let parts = UnionFind::new(count);
         for edge in &topology.edges {
@@ -41,7 +43,7 @@ impl Fans {
         for fan in keys.chunk_by(|a, b| a.0 == b.0).filter(|fan| fan.len() > 1) {
             normals[fan[0].0 as usize] = Some(mean(fan.iter().map(|(_, key)| *key)));
         }
-        Self { fan_of, normals }
+        Self { mesh, topology, fan_of, normals }
     }
 
     /// Returns the normal that corner `k` of a patch shares with its fan; none if the fan's normals don't differ.
@@ -52,6 +54,17 @@ impl Fans {
     /// Returns the same as [`normal`](Self::normal) for an end of a side: 0 or 1, in its edge's own direction.
     pub(super) fn normal_at(&self, side: &Side, end: usize) -> Option<Vec3> {
         self.normal(side.patch(), corner_at(side, end))
+    }
+
+    /// Returns a side's own normal at an end of its edge.
+    pub(super) fn own_normal(&self, side: &Side, end: usize) -> Vec3 {
+        self.mesh.corners[self.topology.side_corners(side)[end] as usize].normal
+    }
+
+    /// Returns a corner of the mesh, moved to its point.
+    pub(super) fn on_point(&self, corner: u32) -> Corner {
+        let point = self.topology.corner_points[corner as usize];
+        Corner { position: self.topology.points[point as usize], ..self.mesh.corners[corner as usize] }
     }
 }
 

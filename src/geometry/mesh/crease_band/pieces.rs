@@ -5,10 +5,9 @@ use std::collections::HashMap;
 use glam::{DVec3, Vec2, Vec3};
 
 use super::cuts::{Cuts, EdgeCuts};
-use super::fans::{Fans, blend};
-use super::on_point;
+use super::fans::blend;
 use crate::casts::{to_f32, to_u32};
-use crate::mesh::{Corner, Mesh, Topology};
+use crate::mesh::{Corner, Topology};
 
 /// The greatest part of the way from a corner to the centre of the incircle.
 const LARGEST_PART: f64 = 0.5;
@@ -19,12 +18,7 @@ const TWIN_STEP: f64 = 0.125;
 
 /// Cuts patches into pieces.
 pub(super) struct Cutter<'a> {
-    mesh: &'a Mesh,
-    topology: &'a Topology,
-    fans: &'a Fans,
-    cuts: &'a Cuts,
-    /// The band's width, in object units.
-    width: f64,
+    cuts: &'a Cuts<'a>,
     /// See [`twins`].
     twins: HashMap<u32, u32>,
     /// The number of triangles that are too small for the width.
@@ -59,9 +53,9 @@ struct CutPatch {
 }
 
 impl<'a> Cutter<'a> {
-    /// Prepares to cut patches. `width` is in object units.
-    pub(super) fn new(mesh: &'a Mesh, topology: &'a Topology, fans: &'a Fans, cuts: &'a Cuts, width: f64) -> Self {
-        Self { mesh, topology, fans, cuts, width, twins: twins(topology), narrowed: 0 }
+    /// Prepares to cut patches.
+    pub(super) fn new(cuts: &'a Cuts) -> Self {
+        Self { cuts, twins: twins(cuts.fans.topology), narrowed: 0 }
     }
 
     /// Calls `add` with each piece of a patch: first what the cuts leave of it, then the strips along creased sides.
@@ -92,10 +86,11 @@ impl<'a> Cutter<'a> {
     }
 
     fn whole(&self, patch: u32) -> CutPatch {
-        let Self { mesh, topology, fans, cuts, .. } = self;
-        let own = topology.patch_corners(patch).map(|corner| on_point(mesh, topology, corner));
+        let Cuts { fans, edges: cuts, .. } = self.cuts;
+        let topology = fans.topology;
+        let own = topology.patch_corners(patch).map(|corner| fans.on_point(corner));
         let sides = topology.patches[patch as usize].sides.map(|side| topology.sides[side as usize]);
-        let edges: [&EdgeCuts; 3] = sides.map(|side| &cuts.edges[side.edge as usize]);
+        let edges: [&EdgeCuts; 3] = sides.map(|side| &cuts[side.edge as usize]);
         let cut = |k: usize, end: usize| {
             let cut = edges[k].ends[if sides[k].reversed() { 1 - end } else { end }]?;
             let (from, to) = (own[(k + end) % 3], own[(k + 1 - end) % 3]);
@@ -119,8 +114,9 @@ impl<'a> Cutter<'a> {
         let [a, b, c] = whole.own.map(|corner| corner.position.as_dvec3());
         let perimeter = a.distance(b) + b.distance(c) + c.distance(a);
         let radius = (b - a).cross(c - a).length() / perimeter;
-        self.narrowed += u32::from(self.width > LARGEST_PART * radius);
-        let part = if self.width < LARGEST_PART * radius { self.width / radius } else { LARGEST_PART };
+        let width = self.cuts.width;
+        self.narrowed += u32::from(width > LARGEST_PART * radius);
+        let part = if width < LARGEST_PART * radius { width / radius } else { LARGEST_PART };
         part / (1.0 + TWIN_STEP * f64::from(self.twins.get(&patch).copied().unwrap_or(0)))
     }
 }

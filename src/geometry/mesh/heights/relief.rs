@@ -175,10 +175,7 @@ impl Triangles<'_> {
         let twists = self.largest(level, &|x, y| own.twist(x, y))?;
         let lost = match level {
             0 => vec![0.0; self.uvs.len()],
-            _ => {
-                let lost = LevelLoss::new(&own, heights);
-                self.largest(level, &|x, y| lost.at(x, y))?
-            }
+            _ => self.largest(level, &own.loss(heights))?,
         };
         // Width and height of a px, in px of level 0.
         let px = own.ratio.recip();
@@ -304,48 +301,37 @@ impl<'a> LevelPx<'a> {
             ((right - own).abs().max((beyond - below).abs()), (below - own).abs().max((beyond - right).abs()));
         across.hypot(down)
     }
-}
 
-/// How far a level is from level 0.
-struct LevelLoss<'a> {
-    own: &'a LevelPx<'a>,
-    heights: &'a LevelPx<'a>,
-    columns: Vec<Between>,
-    rows: Vec<Between>,
+    /// How far the level is from level 0, `heights`: the largest difference at the centres of level 0's px within one of the level.
+    fn loss(&self, heights: &LevelPx) -> impl Fn(usize, usize) -> f32 + Sync {
+        let of = |axis: usize| places(heights.size[axis], self.size[axis], self.repeats[axis]);
+        let (columns, rows) = (of(0), of(1));
+        move |x, y| {
+            let within = |axis: usize, at: usize| {
+                let (count, own) = (heights.size[axis], self.size[axis]);
+                at * count / own..((at + 1) * count).div_ceil(own)
+            };
+            let mut most = 0.0f32;
+            for row in within(1, y) {
+                let (upper, lower, below) = rows[row];
+                for column in within(0, x) {
+                    let (left, right, beside) = columns[column];
+                    let between = |line| {
+                        let (a, b) = (self.at(left, line), self.at(right, line));
+                        a + (b - a) * beside
+                    };
+                    let (above, under) = (between(upper), between(lower));
+                    most = most.max((heights.at(column, row) - (above + (under - above) * below)).abs());
+                }
+            }
+            most
+        }
+    }
 }
 
 /// The two px of a level that the centre of one of level 0 lies between, and how far it is from the first of them towards the second. At
 /// a border it lies beyond both, where slopes go on.
 type Between = (usize, usize, f32);
-
-impl<'a> LevelLoss<'a> {
-    fn new(own: &'a LevelPx, heights: &'a LevelPx) -> Self {
-        let of = |axis: usize| places(heights.size[axis], own.size[axis], own.repeats[axis]);
-        Self { own, heights, columns: of(0), rows: of(1) }
-    }
-
-    /// The largest difference at the centres of level 0's px within one of the level.
-    fn at(&self, x: usize, y: usize) -> f32 {
-        let within = |axis: usize, at: usize| {
-            let (count, own) = (self.heights.size[axis], self.own.size[axis]);
-            at * count / own..((at + 1) * count).div_ceil(own)
-        };
-        let mut most = 0.0f32;
-        for row in within(1, y) {
-            let (upper, lower, below) = self.rows[row];
-            for column in within(0, x) {
-                let (left, right, beside) = self.columns[column];
-                let between = |line| {
-                    let (a, b) = (self.own.at(left, line), self.own.at(right, line));
-                    a + (b - a) * beside
-                };
-                let (above, under) = (between(upper), between(lower));
-                most = most.max((self.heights.at(column, row) - (above + (under - above) * below)).abs());
-            }
-        }
-        most
-    }
-}
 
 /// For each of `count` px of level 0 along an axis, returns where it lies between a level's `own` px.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "whole numbers within the image")]

@@ -8,7 +8,6 @@ use std::sync::atomic::Ordering::Relaxed;
 
 use foldhash::fast::RandomState;
 use hashbrown::HashTable;
-use hashbrown::hash_table::Entry;
 use rayon::prelude::*;
 
 use crate::casts::to_u32;
@@ -35,11 +34,6 @@ pub(super) struct DistinctCorners {
 }
 
 impl DistinctCorners {
-    /// Returns the number of a corner. A new corner gets the next number.
-    pub(super) fn id(&mut self, corner: Corner, binding: u32) -> u32 {
-        self.id_of(self.hash(&corner, binding), corner, binding)
-    }
-
     /// Returns the hash of a corner for [`id_of`](Self::id_of).
     pub(super) fn hash(&self, corner: &Corner, binding: u32) -> u64 {
         self.hasher.hash_one(key(corner, binding))
@@ -50,7 +44,7 @@ impl DistinctCorners {
         black_box(self.tables[table_of(hash)].find(hash, |_| false));
     }
 
-    /// Returns the number of a corner with this hash, as [`id`](Self::id) does.
+    /// Returns the number of a corner with this hash. A new corner gets the next number.
     pub(super) fn id_of(&mut self, hash: u64, corner: Corner, binding: u32) -> u32 {
         let (corners, bindings) = (&self.corners, &self.bindings);
         let next = to_u32(corners.len());
@@ -62,7 +56,7 @@ impl DistinctCorners {
         id
     }
 
-    /// Returns the numbers of many corners, as [`id`](Self::id) does of one after another. Each core looks up those of some tables.
+    /// Returns the numbers of many corners, as [`id_of`](Self::id_of) does of one after another. Each core looks up those of some tables.
     pub(super) fn ids(&mut self, offered: &[(Corner, u32)]) -> Vec<u32> {
         let Self { corners, bindings, hasher, tables } = &mut *self;
         let hash_of = |(corner, binding): &(Corner, u32)| hasher.hash_one(key(corner, *binding));
@@ -162,10 +156,7 @@ fn find_or_add<K: Hash + Eq>(
     hasher: &RandomState,
 ) -> u32 {
     let key = key_of(own);
-    match table.entry(hash, |&id| key_of(id) == key, |&id| hasher.hash_one(key_of(id))) {
-        Entry::Occupied(there) => *there.get(),
-        Entry::Vacant(free) => *free.insert(own).get(),
-    }
+    *table.entry(hash, |&id| key_of(id) == key, |&id| hasher.hash_one(key_of(id))).or_insert(own).get()
 }
 
 fn key_of(corners: &[Corner], bindings: &[u32], id: u32) -> (u64, u64, u64, u64, u32) {

@@ -45,7 +45,7 @@ pub(super) fn cylinder(level: u32) -> Vec<[Corner; 3]> {
     let (sides, rows) = (SIDES << level, 1 << level);
     let wall = |i: usize, j: usize| {
         let v = fraction(j, rows);
-        let position = ring(i, sides, RADIUS) + Vec3::Y * (HALF_HEIGHT * (1.0 - 2.0 * v));
+        let position = around(i, sides) * RADIUS + Vec3::Y * (HALF_HEIGHT * (1.0 - 2.0 * v));
         corner(position, around(i, sides), Vec2::new(fraction(i, sides), v))
     };
     let walls = grid(sides, rows, |i, j| quad([wall(i, j + 1), wall(i + 1, j + 1), wall(i + 1, j), wall(i, j)]));
@@ -58,7 +58,7 @@ pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
     let normal = |out: Vec3| out * (2.0 * HALF_HEIGHT) + Vec3::Y * RADIUS;
     let slope = |i: usize, j: usize| {
         let v = fraction(j, rows);
-        let position = ring(i, sides, RADIUS * v) + Vec3::Y * (HALF_HEIGHT * (1.0 - 2.0 * v));
+        let position = around(i, sides) * (RADIUS * v) + Vec3::Y * (HALF_HEIGHT * (1.0 - 2.0 * v));
         corner(position, normal(around(i, sides)), Vec2::new(fraction(i, sides), v))
     };
     let side = |i: usize| {
@@ -73,11 +73,6 @@ pub(super) fn cone(level: u32) -> Vec<[Corner; 3]> {
     (0..sides).flat_map(side).chain(cap(-HALF_HEIGHT, level)).collect()
 }
 
-/// Returns column i of `sides` on a circle around the Y axis.
-fn ring(i: usize, sides: usize, radius: f32) -> Vec3 {
-    around(i, sides) * radius
-}
-
 /// Returns a disc around the Y axis that faces away from the shape's centre.
 fn cap(y: f32, level: u32) -> impl Iterator<Item = [Corner; 3]> {
     let (sides, rows) = (SIDES << level, 1 << level);
@@ -88,7 +83,7 @@ fn cap(y: f32, level: u32) -> impl Iterator<Item = [Corner; 3]> {
     };
     (0..sides).flat_map(move |i| {
         let (a, b) = if y > 0.0 { (i, i + 1) } else { (i + 1, i) };
-        let node = move |i: usize, j: usize| at(ring(i, sides, RADIUS * fraction(j, rows)) + Vec3::Y * y);
+        let node = move |i: usize, j: usize| at(around(i, sides) * (RADIUS * fraction(j, rows)) + Vec3::Y * y);
         let rest = (1..rows).flat_map(move |j| quad([node(a, j), node(a, j + 1), node(b, j + 1), node(b, j)]));
         std::iter::once([at(Vec3::Y * y), node(a, 1), node(b, 1)]).chain(rest)
     })

@@ -17,10 +17,24 @@ pub(super) fn decayed(sharpness: f32) -> f32 {
     if sharpness >= INFINITELY_SHARP { sharpness } else { (sharpness - 1.0).max(0.0) }
 }
 
+impl Scheme {
+    /// The side of the finer level that leaves the point where a side starts, along that side.
+    fn leaving(self, side: u32) -> u32 {
+        match self {
+            Self::CatmullClark => 4 * side,
+            Self::Loop | Self::Butterfly => 3 * (side + side / 3),
+        }
+    }
+
+    /// The side of the finer level that arrives at the point where a side starts, in the same face.
+    fn arriving(self, side: u32) -> u32 {
+        self.leaving(side) + if self == Self::CatmullClark { 3 } else { 2 }
+    }
+}
+
 impl Level {
     /// Divides each face and edge.
     pub(super) fn split(&self, scheme: Scheme) -> Self {
-        let splitter = Splitter { level: self, scheme };
         let (polygons, faces) = match scheme {
             Scheme::CatmullClark => (Polygons::Quads, self.faces()),
             Scheme::Loop | Scheme::Butterfly => (Polygons::Triangles, 0),
@@ -29,93 +43,69 @@ impl Level {
         Self {
             points: self.points + self.edge_sides.len() + faces as usize,
             polygons,
-            origins: splitter.origins(),
-            edges: splitter.edges(),
-            edge_sides: splitter.edge_sides(),
+            origins: self.finer_origins(scheme),
+            edges: self.finer_edges(scheme),
+            edge_sides: self.finer_edge_sides(scheme),
             edge_sharpness: halves.collect(),
             point_sharpness: self.point_sharpness.iter().copied().map(decayed).collect(),
-            first_sides: splitter.first_sides(faces),
+            first_sides: self.finer_first_sides(scheme, faces),
         }
-    }
-}
-
-struct Splitter<'a> {
-    level: &'a Level,
-    scheme: Scheme,
-}
-
-impl Splitter<'_> {
-    /// The side of the finer level that leaves the point where a side starts, along that side.
-    fn leaving(&self, side: u32) -> u32 {
-        match self.scheme {
-            Scheme::CatmullClark => 4 * side,
-            Scheme::Loop | Scheme::Butterfly => 3 * (side + side / 3),
-        }
-    }
-
-    /// The side of the finer level that arrives at the point where a side starts, in the same face.
-    fn arriving(&self, side: u32) -> u32 {
-        self.leaving(side) + if self.scheme == Scheme::CatmullClark { 3 } else { 2 }
     }
 
     /// The point that each side of the finer level starts at.
-    fn origins(&self) -> Vec<u32> {
-        let level = self.level;
-        let [points, edges] = [level.points, level.edge_sides.len()].map(to_u32);
-        let middle = |side: u32| points + level.edges[side as usize];
-        let other = |side: u32| match self.scheme {
-            Scheme::CatmullClark => points + edges + level.polygons.face_of(side),
+    fn finer_origins(&self, scheme: Scheme) -> Vec<u32> {
+        let [points, edges] = [self.points, self.edge_sides.len()].map(to_u32);
+        let middle = |side: u32| points + self.edges[side as usize];
+        let other = |side: u32| match scheme {
+            Scheme::CatmullClark => points + edges + self.polygons.face_of(side),
             Scheme::Loop | Scheme::Butterfly => middle(side),
         };
-        let corner = |side: u32, before: u32| [level.origins[side as usize], middle(side), middle(before)];
-        of_corners(level, self.scheme, corner, other)
+        let corner = |side: u32, before: u32| [self.origins[side as usize], middle(side), middle(before)];
+        of_corners(self, scheme, corner, other)
     }
 
     /// The edge of each side of the finer level.
-    fn edges(&self) -> Vec<u32> {
-        let level = self.level;
-        let first_inner = 2 * to_u32(level.edge_sides.len());
+    fn finer_edges(&self, scheme: Scheme) -> Vec<u32> {
+        let first_inner = 2 * to_u32(self.edge_sides.len());
         // The half of a side's edge where the side starts.
         let start = |side: u32| {
-            let edge = level.edges[side as usize];
-            let first = level.edge_sides[edge as usize][0];
-            2 * edge + u32::from(level.origins[first as usize] != level.origins[side as usize])
+            let edge = self.edges[side as usize];
+            let first = self.edge_sides[edge as usize][0];
+            2 * edge + u32::from(self.origins[first as usize] != self.origins[side as usize])
         };
-        let other = |side: u32| match self.scheme {
-            Scheme::CatmullClark => first_inner + level.polygons.before(side),
-            Scheme::Loop | Scheme::Butterfly => first_inner + level.polygons.after(side),
+        let other = |side: u32| match scheme {
+            Scheme::CatmullClark => first_inner + self.polygons.before(side),
+            Scheme::Loop | Scheme::Butterfly => first_inner + self.polygons.after(side),
         };
-        of_corners(level, self.scheme, |side, before| [start(side), first_inner + side, start(before) ^ 1], other)
+        of_corners(self, scheme, |side, before| [start(side), first_inner + side, start(before) ^ 1], other)
     }
 
     /// The sides on each edge of the finer level.
-    fn edge_sides(&self) -> Vec<[u32; 2]> {
-        let level = self.level;
+    fn finer_edge_sides(&self, scheme: Scheme) -> Vec<[u32; 2]> {
         let halves = |&[a, b]: &[u32; 2]| {
-            let after = |side| self.arriving(level.polygons.after(side));
+            let after = |side| scheme.arriving(self.polygons.after(side));
             match () {
-                () if b == NONE => [[self.leaving(a), NONE], [after(a), NONE]],
-                () if level.is_inconsistent([a, b]) => [[self.leaving(a), self.leaving(b)], [after(a), after(b)]],
-                () => [[self.leaving(a), after(b)], [after(a), self.leaving(b)]],
+                () if b == NONE => [[scheme.leaving(a), NONE], [after(a), NONE]],
+                () if self.is_inconsistent([a, b]) => [[scheme.leaving(a), scheme.leaving(b)], [after(a), after(b)]],
+                () => [[scheme.leaving(a), after(b)], [after(a), scheme.leaving(b)]],
             }
         };
-        let inner = |side: u32| match self.scheme {
-            Scheme::CatmullClark => [4 * side + 1, 4 * level.polygons.after(side) + 2],
-            Scheme::Loop | Scheme::Butterfly => [self.leaving(side) + 1, 12 * (side / 3) + 9 + (side + 2) % 3],
+        let inner = |side: u32| match scheme {
+            Scheme::CatmullClark => [4 * side + 1, 4 * self.polygons.after(side) + 2],
+            Scheme::Loop | Scheme::Butterfly => [scheme.leaving(side) + 1, 12 * (side / 3) + 9 + (side + 2) % 3],
         };
-        let mut sides = level.edge_sides.par_iter().map(halves).collect::<Vec<_>>().into_flattened();
-        sides.par_extend((0..to_u32(level.origins.len())).into_par_iter().map(inner));
+        let mut sides = self.edge_sides.par_iter().map(halves).collect::<Vec<_>>().into_flattened();
+        sides.par_extend((0..to_u32(self.origins.len())).into_par_iter().map(inner));
         sides
     }
 
     /// For each point of the finer level the side from which all faces around it are reached.
-    fn first_sides(&self, faces: u32) -> Vec<u32> {
-        let level = self.level;
-        let of_point = |&side: &u32| if side == NONE { NONE } else { self.leaving(side) };
-        let of_edge = |sides: &[u32; 2]| self.arriving(level.polygons.after(sides[0]));
-        let of_face = |face: u32| 4 * level.polygons.sides(face).start + 2;
-        let points = level.first_sides.par_iter().map(of_point);
-        points.chain(level.edge_sides.par_iter().map(of_edge)).chain((0..faces).into_par_iter().map(of_face)).collect()
+    fn finer_first_sides(&self, scheme: Scheme, faces: u32) -> Vec<u32> {
+        let of_point = |&side: &u32| if side == NONE { NONE } else { scheme.leaving(side) };
+        let of_edge = |sides: &[u32; 2]| scheme.arriving(self.polygons.after(sides[0]));
+        let of_face = |face: u32| 4 * self.polygons.sides(face).start + 2;
+        let points = self.first_sides.par_iter().map(of_point);
+        points.chain(self.edge_sides.par_iter().map(of_edge)).chain((0..faces).into_par_iter().map(of_face)).collect()
     }
 }
 

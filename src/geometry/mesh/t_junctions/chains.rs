@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::line_segment::LineSegment;
-use super::{TRIES, corners, open_edges};
+use super::{LineSegment, TRIES, corners, open_edges};
 use crate::groups::in_groups;
 use crate::mesh::{Edge, Topology};
 

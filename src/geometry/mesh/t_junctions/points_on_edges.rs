@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use foldhash::fast::RandomState;
 use glam::DVec3;
 
-use super::line_segment::LineSegment;
-use super::{TRIES, corners, open_edges};
+use super::{LineSegment, TRIES, corners, open_edges};
 use crate::casts::to_u32;
 use crate::mesh::bounds::Bounds;
 use crate::mesh::weld_preview::TOLERANCES;

@@ -125,8 +125,7 @@ fn other_lods_have_an_own_least_and_errors_and_no_requests() {
 fn errors_are_bounds_and_near_the_largest_distance() {
     let (mesh, topology, inputs) = shape(Shape::Icosahedron, Tessellation::default());
     let used = process(Partitioning::Integer, [3.0, 2.0, 4.0], 3.0);
-    let nets = ControlNets::new(&mesh, &topology, &inputs);
-    let seen = MeshLod { nets: &nets, inputs: &inputs, displacement: None }.seen_patch(0);
+    let seen = MeshLod::new(&mesh, &topology, &inputs).seen_patch(0);
     let errors = pattern_errors(&seen, Convention::D3d11, used).expect("it is emitted");
     // At a tolerance below the largest bound the search finds a place that is farther off.
     let beyond = |tolerance: f32| {
