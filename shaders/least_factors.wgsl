@@ -347,7 +347,7 @@ fn requests_again(chosen: f32, inside: f32) -> bool {
     return inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0;
 }
 
-// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.
+// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor, from 2 on.
 fn uniform_suffices(
     seen: ptr<function, SeenPatch>,
     tolerance: f32,
@@ -356,8 +356,5 @@ fn uniform_suffices(
 ) -> bool {
     let within = BOUND_SHARE * tolerance;
     let factors = process(partitioning, vec3<f32>(factor), factor);
-    if patch_is_minimal(factors) {
-        return triangle_error_at(seen, within, domain_plan(factors), 0u) <= within;
-    }
     return all(part_errors(seen, within, factors, vec4<bool>(true)) <= vec4<f32>(within));
 }

@@ -85,7 +85,9 @@ pub const BACKENDS: wgpu::Backends = wgpu::Backends::PRIMARY;
 
 fn instance() -> wgpu::Instance {
     let descriptor = wgpu::InstanceDescriptor::new_without_display_handle();
-    wgpu::Instance::new(wgpu::InstanceDescriptor { backends: BACKENDS, ..descriptor })
+    // Line numbers of shaders take a software driver's compiler a tenth of its time. WGPU_DEBUG=1 has them.
+    let flags = descriptor.flags.difference(wgpu::InstanceFlags::DEBUG).with_env();
+    wgpu::Instance::new(wgpu::InstanceDescriptor { backends: BACKENDS, flags, ..descriptor })
 }
 
 /// The machine's fastest, as the system has it.

@@ -14,6 +14,7 @@ use geometry::tessellate::{Lod, Surface, Tessellation};
 use inspect::settings::{
     Choice, Colors, Declaration, Kind, Overlay, Overlays, Range, Settings, SplitSide, Value, options,
 };
+use load::MorphWeights;
 
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
@@ -90,7 +91,7 @@ impl App {
             if let Some(file) = file
                 && ui.selectable_label(false, format!("Reference surface: {}", file.title())).clicked()
             {
-                self.open_left_mesh(ui.ctx(), file);
+                self.read_left(ui.ctx(), Some(file), MorphWeights::new());
             }
             if ui.selectable_label(false, "Another file…").clicked() {
                 self.ask_for(ui.ctx(), Purpose::CompanionFile(CompanionFile::LeftMesh));

@@ -338,13 +338,10 @@ pub(super) fn requests_again(chosen: f32, inside: f32) -> bool {
     inside == BEYOND_LAST || inside > 1.1 * chosen + 1.0
 }
 
-/// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor.
+/// Returns whether a patch is within `tolerance` px of its surface if its edges and its inside all have one factor, from 2 on.
 pub(super) fn uniform_suffices(patch: &SeenPatch, tolerance: f32, partitioning: Partitioning, factor: f32) -> bool {
     let within = BOUND_SHARE * tolerance;
     let factors = process(partitioning, [factor; 3], factor);
-    if patch_is_minimal(factors) {
-        return triangle_error_at(patch, within, &domain_plan(factors), 0) <= within;
-    }
     part_errors(patch, within, factors, [true; 4]).iter().all(|error| *error <= within)
 }
 
