@@ -73,6 +73,18 @@ impl Progress {
         self.shared.fraction.store((start + (end - start) * fraction).to_bits(), Ordering::Relaxed);
     }
 
+    /// Does both once every 4,096 steps, of which this is one: reports how much of the job is done, and tells whether to go on.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn step(&self, number: u64, fraction: impl FnOnce() -> f32) -> Result<(), Cancelled> {
+        if number.is_multiple_of(4096) {
+            self.set(fraction());
+            self.check()?;
+        }
+        Ok(())
+    }
+
     /// Returns a handle on the same job whose 0 to 1 stands for `start` to `end` of this handle's. Code that does a
     /// part of the work can report 0 to 1 without knowing about the rest.
     pub fn part(&self, start: f32, end: f32) -> Self {

@@ -103,10 +103,8 @@ impl<'a> Ktx2<'a> {
         let level = self.levels.len();
         let name = format!("level {level} of its KTX2 file");
         let bytes = part(self.bytes, [offset, length], &name)?;
-        let needed = self.data_bytes(level);
         let length = if self.is_zstd { unpacked } else { length };
-        if needed.is_some_and(|needed| length != needed) {
-            let needed = needed.unwrap_or(0);
+        if let Some(needed) = self.data_bytes(level).filter(|needed| *needed != length) {
             return Err(format!("{name} has {length} bytes, but its {} needs {needed}", self.codec));
         }
         self.levels.push(Level { bytes, length });
@@ -163,8 +161,7 @@ impl<'a> Ktx2<'a> {
             Codec::Uastc => basis::uastc(&data, self.level_size(index)),
             Codec::Etc1s(has_alpha) => {
                 let global = part(self.bytes, self.global, "its KTX2 codebooks")?;
-                let shared = basis::Shared { global, images: self.levels.len(), has_alpha };
-                shared.etc1s(&data, index, self.level_size(index))
+                basis::etc1s(&data, self.level_size(index), global, [index, self.levels.len()], has_alpha)
             }
         }
     }

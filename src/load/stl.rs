@@ -40,7 +40,6 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadE
             material,
             corners: Vec::new(),
             progress: files.progress,
-            bytes: bytes.len(),
             found: Counts::default(),
             cut_short: None,
         };
@@ -89,8 +88,6 @@ struct Reader<'a> {
     /// The corners of the triangle that is being added.
     corners: Vec<NumberedCorner>,
     progress: &'a Progress,
-    /// The file's size, in bytes.
-    bytes: usize,
     found: Counts,
     /// A warning about a text file that ends too early.
     cut_short: Option<String>,
@@ -134,9 +131,7 @@ impl Reader<'_> {
         }
         let position = |bytes: &[u8; 12]| Vec3::from(bytemuck::cast::<_, [[u8; 4]; 3]>(*bytes).map(f32::from_le_bytes));
         for (i, (triangle, bits)) in triangles.iter().zip(attributes).enumerate() {
-            if i % 4096 == 0 {
-                self.at(HEADER + i * TRIANGLE)?;
-            }
+            self.progress.step(i as u64, || 0.5 * (HEADER + i * TRIANGLE) as f32 / bytes.len() as f32)?;
             // The first vector is the normal.
             let [_, a, b, c, ..] = triangle.as_chunks::<12>().0 else { continue };
             let color = of_triangles.map_or(Vec4::ONE, |colors| colors.of_triangle(bits));
@@ -165,9 +160,7 @@ impl Reader<'_> {
         let (mut solids, mut open) = (0, false);
         let mut next = lines.next()?;
         while let Some(line) = next {
-            if line.number % 4096 == 0 {
-                self.at(bytes.len() - lines.rest.len())?;
-            }
+            self.progress.step(line.number as u64, || 0.5 * (1.0 - lines.rest.len() as f32 / bytes.len() as f32))?;
             next = None;
             let rest = first_word(line.text).1;
             match keyword(&line).as_slice() {
@@ -234,12 +227,6 @@ impl Reader<'_> {
         self.corners.clear();
         self.corners.extend(positions.map(corner));
         self.faces.add(self.material, &mut self.corners, place)
-    }
-
-    /// Sets the progress.
-    fn at(&self, byte: usize) -> Result<(), ReadError> {
-        self.progress.set(0.5 * byte as f32 / self.bytes as f32);
-        Ok(self.progress.check()?)
     }
 }
 

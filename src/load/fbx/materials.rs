@@ -5,16 +5,17 @@ use std::sync::Arc;
 
 use ufbx::{Mesh, Node, RefList};
 
-use super::looks::{LookSource, MapSource, MapUvs};
+use super::looks::{LookSource, MapSource};
 use super::textures::{Textures, of_file, sampling};
 use crate::face_builder::FaceBuilder;
 use crate::heights::ModelImages;
+use crate::map_uvs::MapUvs;
 use crate::memory_budget::Budget;
 use crate::notes::Notes;
 use crate::packing;
 use crate::read_error::ReadError;
 use crate::uri::{Files, shown};
-use geometry::mesh::{Alpha, HeightAmount, HeightMap, Map, MapUv, Material, Sampling, Slot, Texture};
+use geometry::mesh::{Alpha, HeightAmount, HeightMap, Map, Material, Sampling, Slot, Texture};
 
 /// The materials of all polygons.
 pub(super) struct Materials<'a> {
@@ -197,16 +198,10 @@ impl<'a> Materials<'a> {
     }
 
     fn map(&mut self, map: MapSource, texture: Arc<Texture>, what: &str, source: &LookSource) -> Map {
-        let MapUvs { set, transform } = map.uvs;
-        let uv = match set {
-            _ if map.uvs == source.own_uvs() => MapUv::Own,
-            0 | 1 => MapUv::Set(set, transform),
-            _ => {
-                let has = format!("the {what} of material \"{}\" has a third set of texture coordinates", source.name);
-                self.notes.push(format!("{has}, but only the first two sets are read for it; the first is used."));
-                MapUv::Set(0, transform)
-            }
-        };
+        let uv = map.uvs.on_corners(source.own_uvs(), || {
+            let has = format!("the {what} of material \"{}\" has a third set of texture coordinates", source.name);
+            self.notes.push(format!("{has}, but only the first two sets are read for it; the first is used."));
+        });
         let sampling = of_file(map.texture).map_or_else(Sampling::default, sampling);
         Map { texture, uv, sampling }
     }

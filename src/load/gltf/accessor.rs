@@ -11,7 +11,6 @@ use ::gltf::{Document, buffer};
 
 use super::GltfError;
 use super::buffers::Buffers;
-use super::decompressed_primitive::DecompressedPrimitive;
 use super::extensions::{MeshoptExtension, MeshoptMode};
 use super::meshopt::{Decompressed, decompress};
 use super::notes::Notes;
@@ -39,6 +38,23 @@ pub(crate) struct Accessors<'a> {
     pub budget: &'a Budget,
     /// What was repaired.
     pub notes: RefCell<Notes>,
+}
+
+/// The data of a primitive that was compressed.
+pub(crate) struct DecompressedPrimitive {
+    /// The indices of vertices, three for each triangle.
+    pub indices: Vec<u32>,
+    /// By their names in glTF, the numbers of attributes, as many for each vertex as their accessors say; or why one that a primitive can
+    /// do without can't be read, as a clause.
+    pub attributes: HashMap<String, Result<Vec<f32>, String>>,
+}
+
+impl DecompressedPrimitive {
+    /// Returns the size in memory, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let values: usize = self.attributes.values().flatten().map(Vec::len).sum();
+        4 * (self.indices.len() + values) as u64
+    }
 }
 
 /// Why data can't be read.
@@ -282,11 +298,7 @@ impl<'a> Accessors<'a> {
             let reason = format!("has {dimensions:?} elements of {kind:?}, but single unsigned integers are needed");
             return Err(DataError::Here(reason).of(accessor, role));
         }
-        let list = match kind {
-            DataType::U32 => self.read(accessor, 0, word),
-            _ => self.read(accessor, 0, unsigned_integer),
-        };
-        list.map_err(|error| error.of(accessor, role))
+        self.read(accessor, 0, unsigned_integer).map_err(|error| error.of(accessor, role))
     }
 
     /// Returns the size of all buffers and decompressed data, in bytes.
@@ -331,11 +343,19 @@ impl<'a> Accessors<'a> {
     /// are read.
     pub(crate) fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
         self.check_sound(accessor)?;
-        let found = match accessor.view() {
-            Some(view) => self.elements(&view, accessor.offset(), accessor.size(), accessor.count()).map(|_| ()),
-            None => zeros(accessor.count()).map_err(DataError::from),
-        };
-        found.map_err(|error| error.of(accessor, role))
+        self.stored(accessor).map(|_| ()).map_err(|error| error.of(accessor, role))
+    }
+
+    /// Returns the elements of an accessor without its sparse values; none if it has no buffer view, and all are zero.
+    fn stored(&self, accessor: &Accessor) -> Result<Option<Elements<'_>>, DataError> {
+        let count = accessor.count();
+        match accessor.view() {
+            Some(view) => self.elements(&view, accessor.offset(), accessor.size(), count).map(Some),
+            None if count <= MAX_ZEROS => Ok(None),
+            None => {
+                Err(format!("has {count} elements without data, but at most {MAX_ZEROS} such elements are read").into())
+            }
+        }
     }
 
     /// Reads the data of an accessor's view, if it can be read, so that its memory counts.
@@ -355,13 +375,7 @@ impl<'a> Accessors<'a> {
         decode: impl Fn(&[u8]) -> T + Copy + Sync + 'b,
     ) -> Result<List<'b, T>, DataError> {
         let (size, count) = (accessor.size(), accessor.count());
-        let elements = match accessor.view() {
-            Some(view) => Some(self.elements(&view, accessor.offset(), size, count)?),
-            None => {
-                zeros(count)?;
-                None
-            }
-        };
+        let elements = self.stored(accessor)?;
         if let (Some(elements), None) = (elements, accessor.sparse()) {
             return Ok(List::in_buffer(elements, decode, zero));
         }
@@ -428,14 +442,6 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Checks the number of elements of an accessor without data.
-fn zeros(count: usize) -> Result<(), String> {
-    match count {
-        0..=MAX_ZEROS => Ok(()),
-        _ => Err(format!("has {count} elements without data, but at most {MAX_ZEROS} such elements are read")),
-    }
-}
-
 /// Decodes an element of N floats, which most attributes consist of: without a look at their type, this takes a fraction of
 /// the time.
 fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
@@ -444,11 +450,6 @@ fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
         *number = f32::from_le_bytes(*bytes);
     }
     numbers
-}
-
-/// Decodes an integer of four bytes.
-fn word(bytes: &[u8]) -> u32 {
-    bytes.first_chunk().map_or(0, |own| u32::from_le_bytes(*own))
 }
 
 fn unsigned_integer(bytes: &[u8]) -> u32 {

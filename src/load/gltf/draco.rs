@@ -18,8 +18,7 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Primitive, Semantic};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
-use super::accessor::{DataError, component};
-use super::decompressed_primitive::DecompressedPrimitive;
+use super::accessor::{DataError, DecompressedPrimitive, component};
 use super::extensions::DracoExtension;
 use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};
@@ -35,7 +34,7 @@ use memory::decoding_bytes;
 /// Decompresses the primitives that are shown, by mesh and primitive.
 ///
 /// # Errors
-/// [`GltfError::Document`] or [`GltfError::Draco`] for the first primitive that can't be decompressed, and
+/// [`GltfError::Document`] or [`GltfError::Refused`] for the first primitive that can't be decompressed, and
 /// [`GltfError::Cancelled`].
 pub(super) fn unpack(
     accessors: &Accessors,
@@ -107,7 +106,8 @@ impl Stream<'_> {
     }
 
     fn too_large(&self, reason: String) -> GltfError {
-        GltfError::Draco { pointer: self.pointer.to_owned(), reason }
+        let advice = "decompress the model first, for example with gltf-transform";
+        GltfError::Refused(format!("{} {reason}; {advice}", self.pointer))
     }
 
     /// Returns the numbers of vertices and indices in the accessors.

@@ -22,7 +22,7 @@ use geometry::cores::in_ranges;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::{MemoryRefused, PartStyle, Repairs};
 
-use super::vertex_repairs::VertexRepairs;
+use super::vertex_details::VertexRepairs;
 pub(super) use super::vertices::NodePose;
 use super::vertices::{Findings, Vertex, Vertices};
 use super::{Accessors, GltfError};
@@ -147,7 +147,7 @@ impl PrimitiveReader {
     /// Adds the triangles of a primitive to the builder, in the scene's space, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
+    /// [`GltfError::Accessor`], [`GltfError::Document`] and [`GltfError::TooLarge`].
     pub(super) fn read(&mut self, job: Job, mut binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
         let Job { mesh, primitive, pose, style, material, accessors, builder, details } = job;
         let name = name(mesh, primitive);

@@ -3,8 +3,7 @@
 use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 
-use super::accessor::List;
-use super::decompressed_primitive::DecompressedPrimitive;
+use super::accessor::{DecompressedPrimitive, List};
 use super::notes::Notes;
 use super::{Accessors, GltfError};
 
@@ -23,7 +22,7 @@ pub(super) struct PrimitiveData<'a> {
 
 impl<'a> PrimitiveData<'a> {
     pub(super) fn problem(&self, reason: impl Into<String>) -> GltfError {
-        GltfError::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
+        GltfError::Document { pointer: self.name.to_owned(), reason: reason.into() }
     }
 
     /// # Errors

@@ -124,16 +124,16 @@ impl<'a> Archive<'a> {
             ErrorKind::InvalidSignature { .. } => broken(name, "it isn't where the archive says"),
             _ => broken(name, "the archive says that it lies beyond the file's end"),
         })?;
-        let packed = match entry.method {
-            CompressionMethod::STORE => Packed::Stored(own.data()),
-            CompressionMethod::DEFLATE => Packed::Deflated(Box::new(DeflateDecoder::new(own.data()))),
+        let data: Box<dyn Read> = match entry.method {
+            CompressionMethod::STORE => Box::new(own.data()),
+            CompressionMethod::DEFLATE => Box::new(DeflateDecoder::new(own.data())),
             method => {
                 let method = method.as_u16();
                 return Err(broken(name, format!("it is compressed by method {method}, but only 0 and 8 are read")));
             }
         };
         let (sum, wrong_sums) = (own.claim_verifier().crc, &self.wrong_sums);
-        Ok(Some(Unpacked { packed, left: unpacked, crc: Crc::new(), sum, wrong_sums }))
+        Ok(Some(Unpacked { data, left: unpacked, crc: Crc::new(), sum, wrong_sums }))
     }
 
     /// A warning about parts with a wrong checksum, if there are any.
@@ -156,7 +156,7 @@ impl Entry {
 
 /// The bytes of a part, unpacked while they are read.
 pub(super) struct Unpacked<'a> {
-    packed: Packed<'a>,
+    data: Box<dyn Read + 'a>,
     /// How many bytes are missing, by what the archive says.
     pub left: u64,
     crc: Crc,
@@ -165,19 +165,9 @@ pub(super) struct Unpacked<'a> {
     wrong_sums: &'a Cell<usize>,
 }
 
-enum Packed<'a> {
-    Stored(&'a [u8]),
-    Deflated(Box<DeflateDecoder<&'a [u8]>>),
-}
-
 impl Read for Unpacked<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = match &mut self.packed {
-            Packed::Stored(data) => data.read(buffer)?,
-            Packed::Deflated(decoder) => {
-                decoder.read(buffer).map_err(|_| io::Error::other("its compressed data is damaged"))?
-            }
-        };
+        let count = self.data.read(buffer).map_err(|_| io::Error::other("its compressed data is damaged"))?;
         let Some(left) = self.left.checked_sub(count as u64) else {
             return Err(io::Error::other("it unpacks to more than the archive says"));
         };
