@@ -154,9 +154,8 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     budget.release(lists.bytes());
     drop(parsed.lists);
     progress.set(0.8);
-    let (mut of_lights, mut of_cameras) = (Notes::default(), Notes::default());
-    let lights = parsed.lights.shown(&placed, &mut of_lights);
-    let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
+    let lights = parsed.lights.shown(&placed, notes);
+    let cameras = parsed.cameras.shown(&placed, notes);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let joints = rig_nodes::joints(document, &placed);
     let bones = bones(joints, &placed.scene, &placed.global, binder.as_ref());
@@ -171,8 +170,6 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     mesh.repairs.normals_rescaled += primitives.rescaled;
     mesh.lights = lights.into_iter().map(|(_, light)| light).collect();
     mesh.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
-    notes.append(of_lights);
-    notes.append(of_cameras);
     let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let contents = Contents { parts, ..parsed.contents };

@@ -57,9 +57,8 @@ fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, mut faces: FaceBuilder<'a>) ->
     faces.expect(most, vertices.positions.len().min(most.saturating_mul(4)));
     let (corners, found) = (Vec::new(), Counts::default());
     let mut reader = Reader { faces, material, vertices: &vertices, corners, found };
-    let cut_short = reader.read(&header, &mut rows)?;
+    reader.read(&header, &mut rows)?;
     let Reader { mut faces, found, .. } = reader;
-    faces.notes.extend(cut_short);
     let without_normals = if vertices.normals.is_empty() { vertices.positions.len() } else { 0 };
     faces.notes.extend(counted([faces.lacking_normals(without_normals, "vertices without normals")]));
     faces.notes.extend(found.sentences());
@@ -290,28 +289,28 @@ struct Reader<'v, 'a> {
 }
 
 impl Reader<'_, '_> {
-    /// Reads the faces, as far as the file goes. Returns a warning if it ends too early.
-    fn read(&mut self, header: &Header, rows: &mut Rows) -> Result<Option<String>, ReadError> {
+    /// Reads the faces, as far as the file goes.
+    fn read(&mut self, header: &Header, rows: &mut Rows) -> Result<(), ReadError> {
         if !self.vertices.colors.is_empty() {
             self.faces.color()?;
         }
         for i in 0..header.faces {
-            let cut_short = || {
+            let row = rows.next()?;
+            let read = row.as_ref().map_or(Ok(()), |row| self.face(row));
+            let is_cut = rows.lines.is_open && matches!(read, Err(ReadError::Broken { .. }));
+            if row.is_none() || is_cut {
                 let count = header.faces;
-                Some(format!(
+                self.faces.notes.push(format!(
                     "The file was cut short: it says that it has {count} faces, but it ends after {i}. Only those are shown."
-                ))
-            };
-            let Some(row) = rows.next()? else { return Ok(cut_short()) };
-            match self.face(&row) {
-                Err(ReadError::Broken { .. }) if rows.lines.is_open => return Ok(cut_short()),
-                read => read?,
+                ));
+                return Ok(());
             }
+            read?;
         }
         while rows.next()?.is_some() {
             self.found.after_faces += 1;
         }
-        Ok(None)
+        Ok(())
     }
 
     fn face(&mut self, row: &Line) -> Result<(), ReadError> {

@@ -35,14 +35,8 @@ const TRIANGLE: usize = 50;
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     read_faces(bytes, file, |bytes, files, mut faces| {
         let material = faces.material(Material::plain("default", [1.0; 4]))?;
-        let mut reader = Reader {
-            faces,
-            material,
-            corners: Vec::new(),
-            progress: files.progress,
-            found: Counts::default(),
-            cut_short: None,
-        };
+        let mut reader =
+            Reader { faces, material, corners: Vec::new(), progress: files.progress, found: Counts::default() };
         let holds = if is_text(bytes) { reader.text(bytes)? } else { reader.binary(bytes)? };
         Ok((reader.faces, holds))
     })
@@ -89,8 +83,6 @@ struct Reader<'a> {
     corners: Vec<NumberedCorner>,
     progress: &'a Progress,
     found: Counts,
-    /// A warning about a text file that ends too early.
-    cut_short: Option<String>,
 }
 
 counts! {
@@ -181,7 +173,6 @@ impl Reader<'_> {
                 next = lines.next()?;
             }
         }
-        self.faces.notes.extend(self.cut_short.take());
         self.found.open_solids = usize::from(open);
         self.faces.notes.extend(self.found.sentences());
         Ok(format!("it holds {solids} solids without facets"))
@@ -213,8 +204,8 @@ impl Reader<'_> {
             }
         }
         let number = first.number;
-        self.cut_short =
-            Some(format!("The file ends within the facet that begins in line {number}. That facet is left out."));
+        let said = format!("The file ends within the facet that begins in line {number}. That facet is left out.");
+        self.faces.notes.push(said);
         Ok(None)
     }
 

@@ -11,7 +11,7 @@ use ::gltf::{Document, buffer};
 
 use super::GltfError;
 use super::buffers::Buffers;
-use super::extensions::{MeshoptExtension, MeshoptMode};
+use super::extensions::MeshoptExtension;
 use super::meshopt::{Decompressed, decompress};
 use super::notes::Notes;
 use super::schema_check::{Fault, Faults};
@@ -21,17 +21,13 @@ use crate::memory_budget::Budget;
 /// file's size limits those.
 const MAX_ZEROS: usize = 1 << 24;
 
-/// The data of a view that was compressed, and the number of bytes from one element to the next, 0 if they are packed tightly. None if its
-/// uncompressed copy is read.
-type ViewData = Option<(Decompressed, usize)>;
-
 /// Reads the accessors of one document.
 pub(crate) struct Accessors<'a> {
     document: &'a Document,
     buffers: Buffers<'a>,
-    /// For each buffer view, how it is compressed, and its data once something needed it.
+    /// For each buffer view, how it is compressed, and its data once something needed it: none if its uncompressed copy is read.
     compressed: &'a [Option<MeshoptExtension>],
-    decompressed: Vec<OnceCell<Result<ViewData, Fault>>>,
+    decompressed: Vec<OnceCell<Result<Option<Decompressed>, Fault>>>,
     /// By mesh and primitive, the data that Draco compressed.
     pub unpacked: HashMap<[usize; 2], DecompressedPrimitive>,
     faults: &'a Faults,
@@ -176,7 +172,7 @@ impl<'a> Accessors<'a> {
 
     /// Returns the data of a view that is compressed; none if it isn't, or if its uncompressed copy is read since the compressed data is
     /// broken.
-    fn decompressed(&self, view: &buffer::View) -> Result<Option<&(Decompressed, usize)>, Fault> {
+    fn decompressed(&self, view: &buffer::View) -> Result<Option<&Decompressed>, Fault> {
         let i = view.index();
         let Some(compressed) = self.compressed.get(i).and_then(Option::as_ref) else { return Ok(None) };
         let made = self.decompressed[i].get_or_init(|| match self.decompress(view, compressed) {
@@ -225,8 +221,8 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {
-        let MeshoptExtension { buffer, offset, length, stride, count, mode, .. } = *compressed;
+    fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<Decompressed, String> {
+        let MeshoptExtension { buffer, offset, length, stride, count, .. } = *compressed;
         let bytes = self.range(buffer, offset, length).map_err(|error| match error {
             DataError::Here(reason) => reason,
             DataError::Elsewhere(error) => error.into_clause(),
@@ -238,9 +234,7 @@ impl<'a> Accessors<'a> {
                 "has {count} elements of {stride} bytes, which are {has} bytes, but its view's byteLength is {said}"
             ));
         }
-        // Indices are packed tightly. Attributes have the view's stride, or else that of the compressed data.
-        let stride = if mode == MeshoptMode::Attributes { stride } else { 0 };
-        Ok((made, stride))
+        Ok(made)
     }
 
     /// Reads elements of N numbers; normalised integers become -1 to 1 or 0 to 1. `role` says what they are for, in
@@ -304,7 +298,7 @@ impl<'a> Accessors<'a> {
     /// Returns the size of all buffers and decompressed data, in bytes.
     pub(crate) fn buffer_bytes(&self) -> u64 {
         let made = self.decompressed.iter().filter_map(|made| made.get()?.as_ref().ok()?.as_ref());
-        let made = made.map(|(made, _)| made.bytes().len() as u64);
+        let made = made.map(|made| made.bytes().len() as u64);
         let unpacked = self.unpacked.values().map(DecompressedPrimitive::bytes);
         made.chain(unpacked).sum::<u64>() + self.buffers.size()
     }
@@ -316,7 +310,7 @@ impl<'a> Accessors<'a> {
     pub(crate) fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], DataError> {
         let i = view.index();
         self.faults.check("bufferViews", i).map_err(GltfError::from)?;
-        if let Some((made, _)) = self.decompressed(view).map_err(GltfError::from)? {
+        if let Some(made) = self.decompressed(view).map_err(GltfError::from)? {
             return Ok(made.bytes());
         }
         let bytes = self.range(view.buffer().index(), view.offset() as u64, view.length() as u64);
@@ -419,8 +413,8 @@ impl<'a> Accessors<'a> {
     ) -> Result<Elements<'_>, DataError> {
         let bytes = self.view_bytes(view)?;
         let made = self.decompressed(view).map_err(GltfError::from)?;
-        let stride = view.stride().or(made.map(|(_, stride)| *stride).filter(|stride| *stride > 0));
-        let stride = stride.unwrap_or(size);
+        // Compressed attributes have the view's stride, or else that of the compressed data.
+        let stride = view.stride().or_else(|| made?.stride).unwrap_or(size);
         if stride < size {
             let i = view.index();
             let reason = format!("has elements of {size} bytes, but in /bufferViews/{i} they are {stride} bytes apart");

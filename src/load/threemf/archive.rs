@@ -36,7 +36,7 @@ pub(super) struct Archive<'a> {
 }
 
 /// A file in the archive.
-struct Entry {
+pub(super) struct Entry {
     name: String,
     is_encrypted: bool,
     method: CompressionMethod,
@@ -86,23 +86,19 @@ impl<'a> Archive<'a> {
         models.fold(0, |sum, entry| sum.saturating_add(entry.place.uncompressed_size_hint()))
     }
 
-    /// Whether there is a part of this name, as [`open`](Self::open) finds it.
-    pub(super) fn has(&self, name: &str) -> bool {
-        self.entry(name.trim_start_matches('/')).is_some()
-    }
-
-    fn entry(&self, name: &str) -> Option<&Entry> {
+    /// Finds a part by its name, whatever its case, with or without the slash that it begins with.
+    pub(super) fn entry(&self, name: &str) -> Option<&Entry> {
+        let name = name.trim_start_matches('/');
         self.entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))
     }
 
-    /// Opens a part by its name, whatever its case, with or without the slash that it begins with. Returns none if there is none of
-    /// this name.
+    /// Opens a part, as [`entry`](Self::entry) finds it. Returns none if there is none of this name.
     ///
     /// # Errors
     /// [`ReadError::Broken`], and [`ReadError::TooLarge`] for one that would unpack to too much.
     pub(super) fn open(&self, name: &str) -> Result<Option<Unpacked<'_>>, ReadError> {
-        let name = name.trim_start_matches('/');
         let Some(entry) = self.entry(name) else { return Ok(None) };
+        let name = name.trim_start_matches('/');
         let (packed, unpacked) = (entry.place.compressed_size_hint(), entry.place.uncompressed_size_hint());
         let total = self.unpacked.get().saturating_add(unpacked);
         if total > self.most {

@@ -129,7 +129,7 @@ fn root(archive: &Archive, notes: &mut Notes) -> Result<String, ReadError> {
         });
         notes.extend(read.err().map(|error| error.to_string()));
     }
-    if let Some(target) = target.take_if(|target| archive.has(target)) {
+    if let Some(target) = target.take_if(|target| archive.entry(target).is_some()) {
         return Ok(target);
     }
     let model = archive.names().find(|name| name.to_ascii_lowercase().ends_with(".model"));

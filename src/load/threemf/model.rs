@@ -360,7 +360,8 @@ impl<'a> ModelReader<'a> {
             *slot = parsed(value.trim_ascii());
         }
         let [Some(a), Some(b), Some(c)] = corners else {
-            let (id, triangle) = self.place();
+            let (id, first) = self.object.as_ref().map_or((0, 0), |(id, object)| (*id, object.triangles.start));
+            let triangle = self.geometry.triangles.len() - first;
             return Err(
                 self.broken(format!("triangle {triangle} of object {id} doesn't have the numbers of three vertices"))
             );
@@ -370,12 +371,6 @@ impl<'a> ModelReader<'a> {
         self.budget.hold(self.geometry.triangles.next_bytes())?;
         self.geometry.triangles.push(Triangle { corners: [a, b, c], look });
         Ok(())
-    }
-
-    /// The number of the open object, and of the triangle that comes next in it, counted from 0.
-    fn place(&self) -> (u32, usize) {
-        let (id, first) = self.object.as_ref().map_or((0, 0), |(id, object)| (*id, object.triangles.start));
-        (id, self.geometry.triangles.len() - first)
     }
 
     /// Reads an item of the build, or a component of an object.
