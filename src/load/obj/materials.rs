@@ -15,7 +15,6 @@ use crate::read_error::ReadError;
 use crate::text_lines::{shown, words};
 use crate::texture_room::{ReadImage, read_images};
 use crate::uri::Files;
-use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look, Material, Sampling, Wrap, borrowing};
 
 /// The greatest number of material files that are read.
