@@ -119,6 +119,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn every_4096th_step_reports_and_may_be_the_last() {
+        let progress = Progress::new();
+        assert_eq!((progress.step(4096, || 0.25), progress.fraction()), (Ok(()), 0.25));
+        assert_eq!((progress.step(4097, || 0.5), progress.fraction()), (Ok(()), 0.25));
+        progress.cancel();
+        assert_eq!([1, 8191, 8192].map(|number| progress.step(number, || 0.5)), [Ok(()), Ok(()), Err(Cancelled)]);
+    }
+
+    #[test]
     fn clones_share_their_state() {
         let (job, waiting) = {
             let progress = Progress::new();

@@ -90,7 +90,7 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let (extensions, reach, lists) = (&parsed.extensions, &parsed.reach, &parsed.lists);
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
-    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob, progress);
+    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob);
     progress.set(0.3);
     let mut placed = nodes::place(document, &reach.hiding, notes)?;
     let mut accessors = Accessors::new(document, buffers, &extensions.compressed, &parsed.faults, &budget);

@@ -100,7 +100,7 @@ impl<'a> Ktx2<'a> {
     }
 
     fn add_level(&mut self, offset: u64, length: u64, unpacked: u64) -> Result<(), String> {
-        let level = self.levels.len();
+        let level = self.level_count();
         let name = format!("level {level} of its KTX2 file");
         let bytes = part(self.bytes, [offset, length], &name)?;
         let length = if self.is_zstd { unpacked } else { length };
@@ -111,14 +111,9 @@ impl<'a> Ktx2<'a> {
         Ok(())
     }
 
-    /// Returns the width and height of a level, in px.
-    fn level_size(&self, level: usize) -> [u32; 2] {
-        level_size(self.size, to_u32(level))
-    }
-
     /// Returns how many bytes the data of a level has; none if its size doesn't say.
-    fn data_bytes(&self, level: usize) -> Option<u64> {
-        let sides = self.level_size(level).map(u64::from);
+    fn data_bytes(&self, level: u32) -> Option<u64> {
+        let sides = level_size(self.size, level).map(u64::from);
         let blocks = sides.map(|side| side.div_ceil(4));
         match self.codec {
             Codec::Etc1s(_) => None,
@@ -148,8 +143,7 @@ impl<'a> Ktx2<'a> {
     /// # Errors
     /// A clause that says what is wrong.
     pub(super) fn decode(&self, index: u32) -> Result<Vec<u8>, String> {
-        let index = index as usize;
-        let level = &self.levels[index];
+        let (level, size) = (&self.levels[index as usize], level_size(self.size, index));
         let data = if self.is_zstd {
             let unpacked = zstandard::decompress(level.bytes, to_usize(level.length));
             unpacked.map(Cow::Owned).map_err(|reason| format!("its Zstandard data {reason}"))?
@@ -158,10 +152,10 @@ impl<'a> Ktx2<'a> {
         };
         match self.codec {
             Codec::Plain(width) => Ok(rgba(&data, width)),
-            Codec::Uastc => basis::uastc(&data, self.level_size(index)),
+            Codec::Uastc => basis::uastc(&data, size),
             Codec::Etc1s(has_alpha) => {
                 let global = part(self.bytes, self.global, "its KTX2 codebooks")?;
-                basis::etc1s(&data, self.level_size(index), global, [index, self.levels.len()], has_alpha)
+                basis::etc1s(&data, size, global, [index as usize, self.levels.len()], has_alpha)
             }
         }
     }

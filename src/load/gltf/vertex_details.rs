@@ -1,5 +1,6 @@
 //! Reads what vertices have beside positions, normals and the base colour's texture coordinates: colours, tangents, and
-//! untransformed texture coordinates. What is wrong with these is left out, with a warning: what was repaired in vertices is counted here.
+//! untransformed texture coordinates. What is wrong with these is left out, with a warning. What was repaired in vertices is counted
+//! here, too.
 
 use ::gltf::Semantic;
 use ::gltf::accessor::Dimensions;
