@@ -16,6 +16,7 @@ use super::memory_budget::Budget;
 use super::panorama::{Panorama, Repaired};
 use super::watched_bytes::watched;
 use crate::files::{FileError, Limits, read_file};
+use geometry::mesh::MemoryRefused;
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
@@ -65,9 +66,24 @@ pub enum EnvironmentFault {
     /// It is no panorama.
     #[error("it begins neither like a Radiance file (.hdr) nor like an OpenEXR file (.exr); choose another file")]
     Unknown,
-    /// The decoder refuses it, it has no pixels, or it is too large; a clause that also says what to do.
-    #[error("{0}")]
-    Refused(String),
+    /// The decoder refuses it.
+    #[error("it can't be decoded: {reason}; save it again as a Radiance or an OpenEXR file with red, green and blue")]
+    Undecoded { reason: String },
+    /// It has fewer bytes than its header says.
+    #[error("it ends too early: the file is cut short; copy or download it again")]
+    Short,
+    /// It has no pixels.
+    #[error("it has {} x {} px, which is no picture; choose another file", size[0], size[1])]
+    Empty { size: [u32; 2] },
+    /// It is wider or higher than is read.
+    #[error("it has {} x {} px, but at most {MOST_SIDE} px a side are read; scale it down", size[0], size[1])]
+    TooLarge { size: [u32; 2] },
+    /// It would take too much memory.
+    #[error(
+        "it has {} x {} px and {reason}; scale it to 4096 x 2048 px",
+        size[0], size[1]
+    )]
+    TooMuch { size: [u32; 2], reason: MemoryRefused },
 }
 
 impl From<FileError> for EnvironmentError {
@@ -177,21 +193,21 @@ fn decode(
     beside: impl FnOnce(u64) -> u64,
 ) -> Result<([u32; 2], Vec<[f32; 3]>), EnvironmentFault> {
     let (width, height) = decoder.dimensions();
-    let refused = |why: &str| EnvironmentFault::Refused(format!("it has {width} x {height} px{why}"));
-    if width.min(height) == 0 {
-        return Err(refused(", which is no picture; choose another file"));
+    let size = [width, height];
+    if size.contains(&0) {
+        return Err(EnvironmentFault::Empty { size });
     }
-    if width.max(height) > MOST_SIDE {
-        return Err(refused(&format!(", but at most {MOST_SIDE} px a side are read; scale it down")));
+    if size.iter().any(|side| *side > MOST_SIDE) {
+        return Err(EnvironmentFault::TooLarge { size });
     }
     let whole = decoder.total_bytes();
     // A panorama that is too large to be kept is halved, and both are there for a while.
     let halved = whole / 4;
     let needed = whole.saturating_add(beside(whole).max(halved));
-    budget.hold(needed).map_err(|reason| refused(&format!(" and {reason}; scale it to 4096 x 2048 px")))?;
+    budget.hold(needed).map_err(|reason| EnvironmentFault::TooMuch { size, reason })?;
     let mut pixels = vec![[0.0_f32; 3]; width as usize * height as usize];
     decoder.read_image(bytemuck::cast_slice_mut(&mut pixels)).map_err(undecoded)?;
-    Ok(([width, height], pixels))
+    Ok((size, pixels))
 }
 
 /// What the `exr` crate says of a file that ends too early; it has no kind of error for that.
@@ -199,17 +215,16 @@ const MISSING_BYTES: &str = "reference to missing bytes";
 
 fn undecoded(error: ImageError) -> EnvironmentFault {
     match error {
-        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => because(MISSING_BYTES),
+        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => EnvironmentFault::Short,
         error => because(&error.to_string()),
     }
 }
 
 fn because(reason: &str) -> EnvironmentFault {
-    let advice = "save it again as a Radiance or an OpenEXR file with red, green and blue";
-    EnvironmentFault::Refused(match reason.ends_with(MISSING_BYTES) {
-        true => "it ends too early: the file is cut short; copy or download it again".to_owned(),
-        false => format!("it can't be decoded: {}; {advice}", shown(reason)),
-    })
+    if reason.ends_with(MISSING_BYTES) {
+        return EnvironmentFault::Short;
+    }
+    EnvironmentFault::Undecoded { reason: shown(reason) }
 }
 
 /// Sentences about what was changed.

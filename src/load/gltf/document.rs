@@ -51,7 +51,7 @@ pub(super) struct Parsed {
 /// if the document has it.
 ///
 /// # Errors
-/// [`GltfError::NotGltf`], [`GltfError::Refused`], [`GltfError::Document`], and [`GltfError::Cancelled`].
+/// [`GltfError::NotGltf`], [`GltfError::Extension`], [`GltfError::Document`], and [`GltfError::Cancelled`].
 pub(super) fn parse(
     bytes: Vec<u8>,
     selected: Selection,

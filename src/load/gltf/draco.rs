@@ -34,7 +34,7 @@ use memory::decoding_bytes;
 /// Decompresses the primitives that are shown, by mesh and primitive.
 ///
 /// # Errors
-/// [`GltfError::Document`] or [`GltfError::Refused`] for the first primitive that can't be decompressed, and
+/// [`GltfError::Document`] or [`GltfError::Draco`] for the first primitive that can't be decompressed, and
 /// [`GltfError::Cancelled`].
 pub(super) fn unpack(
     accessors: &Accessors,
@@ -106,8 +106,7 @@ impl Stream<'_> {
     }
 
     fn too_large(&self, reason: String) -> GltfError {
-        let advice = "decompress the model first, for example with gltf-transform";
-        GltfError::Refused(format!("{} {reason}; {advice}", self.pointer))
+        GltfError::Draco { pointer: self.pointer.to_owned(), reason }
     }
 
     /// Returns the numbers of vertices and indices in the accessors.

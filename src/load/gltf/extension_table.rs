@@ -65,7 +65,7 @@ fn effect(name: &str) -> Option<Effect> {
 /// change the shape, or aren't known.
 ///
 /// # Errors
-/// [`GltfError::Refused`] for the first required extension that changes the shape or isn't known.
+/// [`GltfError::Extension`] for the first required extension that changes the shape or isn't known.
 pub(super) fn check(root: &Map<String, Value>, notes: &mut Notes) -> Result<(), GltfError> {
     for (place, name) in names(root, "extensionsRequired") {
         let (reason, remedy) = match effect(name) {
@@ -73,8 +73,7 @@ pub(super) fn check(root: &Map<String, Value>, notes: &mut Notes) -> Result<(), 
             None if !is_harmless(name) => ("which isn't known, and may change the shape".to_owned(), EXPORT),
             Some((_, None)) | None => continue,
         };
-        let name = shown(name);
-        return Err(GltfError::Refused(format!("/extensionsRequired/{place} is {name}, {reason}; {remedy}")));
+        return Err(GltfError::Extension { place, name: shown(name), reason, remedy });
     }
     let mut unknown = Vec::new();
     for (_, name) in names(root, "extensionsUsed") {

@@ -14,10 +14,9 @@ pub enum GltfError {
     /// The file is no glTF 2.0 document.
     #[error("not a glTF 2.0 document: {reason}; export the model again as glTF 2.0")]
     NotGltf { reason: String },
-    /// The document requires an extension that isn't read, or something compressed would take too much memory; a sentence that also
-    /// says what to do.
-    #[error("{0}")]
-    Refused(String),
+    /// The document requires an extension that changes the shape and isn't read, or that isn't known.
+    #[error("/extensionsRequired/{place} is {name}, {reason}; {remedy}")]
+    Extension { place: usize, name: String, reason: String, remedy: &'static str },
     /// A member of the document has a value that it can't have.
     #[error("{pointer} {reason}; {}", remedy(pointer))]
     Document { pointer: String, reason: String },
@@ -27,6 +26,12 @@ pub enum GltfError {
     /// An accessor's data can't be what the document says.
     #[error("/accessors/{accessor} ({role}) {reason}; export the model again")]
     Accessor { accessor: usize, role: String, reason: String },
+    /// A primitive can't be used.
+    #[error("{primitive} {reason}; export the model again")]
+    Primitive { primitive: String, reason: String },
+    /// A compressed primitive could not be decompressed.
+    #[error("{pointer} {reason}; decompress the model first, for example with gltf-transform")]
+    Draco { pointer: String, reason: String },
     /// Something would take too much memory, or have too many triangles.
     #[error("{what} {reason}; split the model into several files")]
     TooLarge { what: String, reason: String },

@@ -147,7 +147,7 @@ impl PrimitiveReader {
     /// Adds the triangles of a primitive to the builder, in the scene's space, counter-clockwise seen from outside.
     ///
     /// # Errors
-    /// [`GltfError::Accessor`], [`GltfError::Document`] and [`GltfError::TooLarge`].
+    /// [`GltfError::Accessor`], [`GltfError::Primitive`] and [`GltfError::TooLarge`].
     pub(super) fn read(&mut self, job: Job, mut binder: Option<&mut NodeBinder>) -> Result<(), GltfError> {
         let Job { mesh, primitive, pose, style, material, accessors, builder, details } = job;
         let name = name(mesh, primitive);

@@ -22,7 +22,7 @@ pub(super) struct PrimitiveData<'a> {
 
 impl<'a> PrimitiveData<'a> {
     pub(super) fn problem(&self, reason: impl Into<String>) -> GltfError {
-        GltfError::Document { pointer: self.name.to_owned(), reason: reason.into() }
+        GltfError::Primitive { primitive: self.name.to_owned(), reason: reason.into() }
     }
 
     /// # Errors

@@ -167,7 +167,7 @@ impl<'a> Vertices<'a> {
     /// can do without is left out with a note if it can't be read. What is repaired is added to `repairs`.
     ///
     /// # Errors
-    /// [`GltfError::Accessor`] and [`GltfError::Document`].
+    /// [`GltfError::Accessor`] and [`GltfError::Primitive`].
     pub(super) fn new(
         source: PrimitiveData<'a>,
         pose: &'a NodePose<'a>,
