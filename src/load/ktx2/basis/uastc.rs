@@ -169,8 +169,8 @@ fn ends(bits: &mut Bits, endpoints: Endpoints, components: usize, subsets: usize
 impl Endpoints {
     /// Reads endpoints, from 0 to 255. All groups of trits or quints stand before the bits.
     fn read(self, bits: &mut Bits, values: &mut [u32]) {
-        // How many values are in a group, and how many bits a group of so many values has.
         let Self(width, base) = self;
+        // How many values are in a group, and how many bits a group of so many values has.
         let sizes: &[u32] = match base {
             TRIT => &[0, 2, 4, 5, 7, 8],
             QUINT => &[0, 3, 5, 7],
