@@ -73,6 +73,18 @@ impl Progress {
         self.shared.fraction.store((start + (end - start) * fraction).to_bits(), Ordering::Relaxed);
     }
 
+    /// Does both once every 4,096 steps, of which this is one: reports how much of the job is done, and tells whether to go on.
+    ///
+    /// # Errors
+    /// As [`check`](Self::check).
+    pub fn step(&self, number: u64, fraction: impl FnOnce() -> f32) -> Result<(), Cancelled> {
+        if number.is_multiple_of(4096) {
+            self.set(fraction());
+            self.check()?;
+        }
+        Ok(())
+    }
+
     /// Returns a handle on the same job whose 0 to 1 stands for `start` to `end` of this handle's. Code that does a
     /// part of the work can report 0 to 1 without knowing about the rest.
     pub fn part(&self, start: f32, end: f32) -> Self {
@@ -105,6 +117,15 @@ impl Progress {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn every_4096th_step_reports_and_may_be_the_last() {
+        let progress = Progress::new();
+        assert_eq!((progress.step(4096, || 0.25), progress.fraction()), (Ok(()), 0.25));
+        assert_eq!((progress.step(4097, || 0.5), progress.fraction()), (Ok(()), 0.25));
+        progress.cancel();
+        assert_eq!([1, 8191, 8192].map(|number| progress.step(number, || 0.5)), [Ok(()), Ok(()), Err(Cancelled)]);
+    }
 
     #[test]
     fn clones_share_their_state() {

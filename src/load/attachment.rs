@@ -6,6 +6,7 @@ use glam::{DMat4, DVec3};
 use geometry::mesh::rig::{AnimatedNode, Clip, Placement, Property};
 
 /// What a rig needs to know of a scene's nodes, whatever the format.
+#[derive(Default)]
 pub(super) struct SceneNodes {
     pub parents: Vec<Option<usize>>,
     /// All nodes, parents before children.
@@ -43,16 +44,12 @@ impl SceneNodes {
         }
     }
 
-    /// Marks nodes, and those above them. `order` has all nodes, parents before children.
-    pub(super) fn carrying(
-        nodes: impl IntoIterator<Item = usize>,
-        order: &[usize],
-        parents: &[Option<usize>],
-    ) -> Vec<bool> {
-        let mut marked = vec![false; parents.len()];
+    /// Marks nodes, and those above them.
+    pub(super) fn carrying(&self, nodes: impl IntoIterator<Item = usize>) -> Vec<bool> {
+        let mut marked = vec![false; self.parents.len()];
         nodes.into_iter().for_each(|node| marked[node] = true);
-        for &node in order.iter().rev() {
-            if let Some(parent) = parents[node].filter(|_| marked[node]) {
+        for &node in self.order.iter().rev() {
+            if let Some(parent) = self.parents[node].filter(|_| marked[node]) {
                 marked[parent] = true;
             }
         }
@@ -64,10 +61,15 @@ impl SceneNodes {
         let mut global = vec![DMat4::IDENTITY; self.local.len()];
         for &node in &self.order {
             let above = self.parents[node].map_or(DMat4::IDENTITY, |parent| global[parent]);
-            global[node] = above * self.local[node].matrix();
+            global[node] = below(above, self.local[node].matrix());
         }
         global
     }
+}
+
+/// Returns the product of two transforms. Most nodes have none: that is worth a shortcut where there are hundreds of thousands.
+pub(super) fn below(above: DMat4, own: DMat4) -> DMat4 {
+    if own == DMat4::IDENTITY { above } else { above * own }
 }
 
 /// A node's own transform.

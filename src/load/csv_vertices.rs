@@ -41,7 +41,7 @@ const IN_CLIP_SPACE: &str = "is in clip space, which can't be compared without t
      position in object space, and name that column with --position-column";
 
 /// Names columns.
-fn listed(attributes: &[&Attribute]) -> String {
+fn listed(attributes: &[Attribute]) -> String {
     const NAMED: usize = 20;
     if attributes.is_empty() {
         return "none with x, y and z".to_owned();
@@ -51,7 +51,6 @@ fn listed(attributes: &[&Attribute]) -> String {
 }
 
 /// An attribute with at least three components.
-#[derive(Clone, Debug, PartialEq)]
 struct Attribute {
     /// Its name, without components.
     name: String,
@@ -81,7 +80,7 @@ pub fn read_vertices(
     let bytes = read_file(path, limits, |_| Ok::<_, CsvError>(()), progress)?;
     let broken = |fault| CsvError::Broken { path: path.to_owned(), fault };
     let lines = Lines::open(&bytes).map_err(broken)?;
-    let attribute = chosen(&lines.attributes(), column).map_err(broken)?;
+    let attribute = chosen(lines.attributes(), column).map_err(broken)?;
     lines.read(&attribute, &Budget::new(bytes.len(), limits.memory), progress, broken)
 }
 
@@ -248,35 +247,31 @@ fn is_in_clip_space(name: &str) -> bool {
     name.contains("sv_pos") || name.contains("gl_position") || name.contains("clip")
 }
 
+/// Whether an attribute of this name may be the position.
+fn is_position(name: &str) -> bool {
+    let name = name.to_ascii_lowercase();
+    name.contains("pos") || matches!(&name[..], "" | "p" | "v" | "vertex" | "coord")
+}
+
 /// Chooses the attribute that is the position.
 ///
 /// # Errors
 /// Which there are, if that isn't clear.
-fn chosen(attributes: &[Attribute], asked: Option<&str>) -> Result<Attribute, String> {
-    let all: Vec<&Attribute> = attributes.iter().collect();
-    if let Some(asked) = asked {
-        let found = attributes.iter().find(|attribute| attribute.name.eq_ignore_ascii_case(asked));
-        let missing = || format!("it has no column {asked}.x, .y and .z; it has {}", listed(&all));
-        return found.cloned().ok_or_else(missing);
-    }
-    let is_position = |name: &str| {
-        let name = name.to_ascii_lowercase();
-        name.contains("pos") || matches!(&name[..], "" | "p" | "v" | "vertex" | "coord")
+fn chosen(attributes: Vec<Attribute>, asked: Option<&str>) -> Result<Attribute, String> {
+    let all = listed(&attributes);
+    let clip = attributes.iter().find(|own| is_in_clip_space(&own.name)).map(|own| own.name.clone());
+    let is_chosen = |own: &Attribute| match asked {
+        Some(asked) => own.name.eq_ignore_ascii_case(asked),
+        None => is_position(&own.name) && !is_in_clip_space(&own.name),
     };
-    let (clip, others): (Vec<&Attribute>, Vec<&Attribute>) =
-        all.iter().partition(|attribute| is_in_clip_space(&attribute.name));
-    let found: Vec<&Attribute> = others.into_iter().filter(|attribute| is_position(&attribute.name)).collect();
-    match (&found[..], clip.first()) {
-        ([one], _) => Ok((*one).clone()),
-        ([], Some(clip)) => Err(format!("its only position, {}, {IN_CLIP_SPACE}", clip.name)),
-        ([], None) => {
-            let (has, help) = (listed(&all), "name the one that is with --position-column");
-            Err(format!("none of its columns are positions; it has {has}; {help}"))
-        }
-        (several, _) => Err(format!(
-            "several of its columns may be positions: {}; name one with --position-column",
-            listed(several)
-        )),
+    let mut found: Vec<Attribute> = attributes.into_iter().filter(is_chosen).collect();
+    let help = "with --position-column";
+    match (found.len(), asked, clip) {
+        (0, Some(asked), _) => Err(format!("it has no column {asked}.x, .y and .z; it has {all}")),
+        (0, None, Some(clip)) => Err(format!("its only position, {clip}, {IN_CLIP_SPACE}")),
+        (0, None, None) => Err(format!("none of its columns are positions; it has {all}; name the one that is {help}")),
+        (1, ..) | (_, Some(_), _) => Ok(found.swap_remove(0)),
+        _ => Err(format!("several of its columns may be positions: {}; name one {help}", listed(&found))),
     }
 }
 

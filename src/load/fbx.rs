@@ -67,9 +67,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let mut placed = Placed::new(&meshes, file, &budget, &mut notes)?;
     let clips = clips::read(&scene, &placed, &file.selected, &budget, &progress.part(0.3, 0.4), &mut notes)?;
     placed.grow(&clips);
-    let mut warnings = Vec::new();
-    let binder = RigBuilder::new(clips, &placed.scene, &mut warnings);
-    notes.extend(warnings);
+    let binder = RigBuilder::new(clips, &placed.scene, &mut notes);
     let files = Files::new(file.folder, &file.limits, &budget, progress);
     let mut surfaces = Surfaces::new(&meshes, &placed, file, &files, binder)?;
     let mut drawn = Vec::new();
@@ -79,9 +77,8 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     }
     let holds = left_out::holds(&scene, &placed);
     let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
-    let (joints, own) = (nodes::joints(&scene, &drawn), &placed.scene);
     let of_node = |node: usize| Some(&*scene.nodes[node].element.name).filter(|name| !name.is_empty());
-    let bones = bones(joints, of_node, &own.order, &own.parents, &placed.global, binder.as_ref());
+    let bones = bones(nodes::joints(&scene, &drawn), of_node, &placed.scene, &placed.global, binder.as_ref());
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64 + meshes.memory);
     let morph_targets = morphs::file_weights(&scene);

@@ -14,7 +14,6 @@ mod animations;
 mod buffers;
 mod cameras;
 mod carried;
-mod decompressed_primitive;
 mod document;
 mod draco;
 mod extension_table;
@@ -25,7 +24,6 @@ mod instances;
 mod json;
 mod lenient;
 mod lights;
-mod material_lists;
 pub mod material_members;
 mod material_source;
 mod materials;
@@ -44,10 +42,8 @@ mod schema;
 mod schema_check;
 mod skin;
 mod texture_source;
-mod uv_transform;
 mod variants;
 mod vertex_details;
-mod vertex_repairs;
 mod vertices;
 
 use std::collections::HashMap;
@@ -56,6 +52,7 @@ use std::sync::Arc;
 use ::gltf::{Document, Node, Semantic};
 use glam::DMat4;
 
+use super::attachment::below;
 use super::loaded_mesh::{Contents, LoadedMesh};
 use super::memory_budget::Budget;
 use super::model_file::ModelFile;
@@ -93,24 +90,22 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     let (extensions, reach, lists) = (&parsed.extensions, &parsed.reach, &parsed.lists);
     progress.check()?;
     let files = Files::new(folder, limits, &budget, progress);
-    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob, progress);
+    let buffers = Buffers::new(document, &extensions.fallback, &parsed.faults, &files, parsed.blob);
     progress.set(0.3);
-    let placed = nodes::place(document, &reach.hiding, notes)?;
+    let mut placed = nodes::place(document, &reach.hiding, notes)?;
     let mut accessors = Accessors::new(document, buffers, &extensions.compressed, &parsed.faults, &budget);
     accessors.unpacked = draco::unpack(&accessors, document, &placed, &extensions.packed, progress)?;
-    let mut warnings = Vec::new();
-    let clips = animations::read(parsed.animations, document, &accessors, &mut warnings);
+    let clips = animations::read(parsed.animations, document, &accessors, notes);
     progress.check()?;
     let moves_meshes = rig_nodes::move_meshes(&clips, document, &placed);
     let (mut binder, mut grown) = (None, None);
     if !clips.is_empty() {
         let also = parsed.lights.nodes().chain(parsed.cameras.nodes());
-        let mut nodes = rig_nodes::of(document, &placed, also);
-        nodes.grow(&clips);
-        grown = (!nodes.grown.is_empty()).then(|| nodes.global());
-        binder = RigBuilder::new(clips, &nodes, &mut warnings);
+        rig_nodes::complete(&mut placed, document, also);
+        placed.scene.grow(&clips);
+        grown = (!placed.scene.grown.is_empty()).then(|| placed.scene.global());
+        binder = RigBuilder::new(clips, &placed.scene, notes);
     }
-    notes.extend(warnings);
     let mut materials = Materials::new(lists, document, &placed, &accessors, &files)?;
     let is_detailed = needs_details(document, &placed, &materials);
     let check = |moves| scene_size::check(document, &placed, &extensions.instances, &accessors, moves, is_detailed);
@@ -159,13 +154,12 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     budget.release(lists.bytes());
     drop(parsed.lists);
     progress.set(0.8);
-    let (mut of_lights, mut of_cameras) = (Notes::default(), Notes::default());
-    let lights = parsed.lights.shown(&placed, &mut of_lights);
-    let cameras = parsed.cameras.shown(&placed, &mut of_cameras);
+    let lights = parsed.lights.shown(&placed, notes);
+    let cameras = parsed.cameras.shown(&placed, notes);
     let mounts = [mounts(binder.as_ref(), &lights), mounts(binder.as_ref(), &cameras)];
     let joints = rig_nodes::joints(document, &placed);
     let of_node = |node| document.nodes().nth(node)?.name();
-    let bones = bones(joints, of_node, &placed.order, &placed.parents, &placed.global, binder.as_ref());
+    let bones = bones(joints, of_node, &placed.scene, &placed.global, binder.as_ref());
     let (mut mesh, bindings) = builder.finish_bound(name.to_owned(), &budget, progress)?;
     let parts = parsed.parts.list.finish(&mut mesh, notes);
     mesh.bones = bones;
@@ -177,8 +171,6 @@ pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, GltfE
     mesh.repairs.normals_rescaled += primitives.rescaled;
     mesh.lights = lights.into_iter().map(|(_, light)| light).collect();
     mesh.cameras = cameras.into_iter().map(|(_, camera)| camera).collect();
-    notes.append(of_lights);
-    notes.append(of_cameras);
     let mut warnings = parsed.notes.into_warnings();
     warnings.extend(repair_warnings(&mesh.repairs, &selected.import));
     let contents = Contents { parts, ..parsed.contents };
@@ -241,7 +233,7 @@ impl Scene<'_, '_> {
     ) -> Result<(), GltfError> {
         let mut binder = self.binder.as_mut().map(|binder| binder.node(node.index(), skin));
         let global = self.global.get(node.index()).copied().unwrap_or(DMat4::IDENTITY);
-        let global = nodes::below(global, instance);
+        let global = below(global, instance);
         // Vertices of a skin don't move with their node.
         let scale = if skin.is_some() { 1.0 } else { to_f32(global.determinant().abs().cbrt()) };
         for primitive in mesh.primitives() {

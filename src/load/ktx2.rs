@@ -100,27 +100,20 @@ impl<'a> Ktx2<'a> {
     }
 
     fn add_level(&mut self, offset: u64, length: u64, unpacked: u64) -> Result<(), String> {
-        let level = self.levels.len();
+        let level = self.level_count();
         let name = format!("level {level} of its KTX2 file");
         let bytes = part(self.bytes, [offset, length], &name)?;
-        let needed = self.data_bytes(level);
         let length = if self.is_zstd { unpacked } else { length };
-        if needed.is_some_and(|needed| length != needed) {
-            let needed = needed.unwrap_or(0);
+        if let Some(needed) = self.data_bytes(level).filter(|needed| *needed != length) {
             return Err(format!("{name} has {length} bytes, but its {} needs {needed}", self.codec));
         }
         self.levels.push(Level { bytes, length });
         Ok(())
     }
 
-    /// Returns the width and height of a level, in px.
-    fn level_size(&self, level: usize) -> [u32; 2] {
-        level_size(self.size, to_u32(level))
-    }
-
     /// Returns how many bytes the data of a level has; none if its size doesn't say.
-    fn data_bytes(&self, level: usize) -> Option<u64> {
-        let sides = self.level_size(level).map(u64::from);
+    fn data_bytes(&self, level: u32) -> Option<u64> {
+        let sides = level_size(self.size, level).map(u64::from);
         let blocks = sides.map(|side| side.div_ceil(4));
         match self.codec {
             Codec::Etc1s(_) => None,
@@ -150,8 +143,7 @@ impl<'a> Ktx2<'a> {
     /// # Errors
     /// A clause that says what is wrong.
     pub(super) fn decode(&self, index: u32) -> Result<Vec<u8>, String> {
-        let index = index as usize;
-        let level = &self.levels[index];
+        let (level, size) = (&self.levels[index as usize], level_size(self.size, index));
         let data = if self.is_zstd {
             let unpacked = zstandard::decompress(level.bytes, to_usize(level.length));
             unpacked.map(Cow::Owned).map_err(|reason| format!("its Zstandard data {reason}"))?
@@ -160,11 +152,10 @@ impl<'a> Ktx2<'a> {
         };
         match self.codec {
             Codec::Plain(width) => Ok(rgba(&data, width)),
-            Codec::Uastc => basis::uastc(&data, self.level_size(index)),
+            Codec::Uastc => basis::uastc(&data, size),
             Codec::Etc1s(has_alpha) => {
                 let global = part(self.bytes, self.global, "its KTX2 codebooks")?;
-                let shared = basis::Shared { global, images: self.levels.len(), has_alpha };
-                shared.etc1s(&data, index, self.level_size(index))
+                basis::etc1s(&data, size, global, [index as usize, self.levels.len()], has_alpha)
             }
         }
     }

@@ -20,6 +20,7 @@ mod images;
 pub mod import;
 mod ktx2;
 mod loaded_mesh;
+mod map_uvs;
 pub mod markdown;
 mod matcap_image;
 mod memory_budget;

@@ -26,31 +26,16 @@ pub enum LoadError {
     /// The load was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// Neither the content nor the extension is that of a format.
-    #[error(
-        "{} can't be read: its content shows no format, and it has {extension}; choose a {} file",
-        shown_path(path),
-        known_extensions()
-    )]
-    UnknownFormat { path: PathBuf, extension: String },
-    /// The file has a format that isn't read.
-    #[error("{} is {is}, which isn't read; {advice}", shown_path(path))]
-    NotRead { path: PathBuf, is: &'static str, advice: &'static str },
+    /// The file is empty, has a format that isn't read or none that is known, or isn't of the format that its extension says; what is said
+    /// after its path.
+    #[error("{} {reason}", shown_path(path))]
+    NotRead { path: PathBuf, reason: String },
     /// The path leads to a folder, a device or a pipe.
     #[error("{} is not a file; choose a {} file", shown_path(path), known_extensions())]
     NotAFile { path: PathBuf },
     /// The file could not be read.
     #[error(transparent)]
     File(FileError),
-    /// The file is empty.
-    #[error("{} is empty; export the model again", shown_path(path))]
-    NoBytes { path: PathBuf },
-    /// The file is neither glTF JSON nor a binary glTF.
-    #[error(
-        "{} isn't a glTF file: it begins neither with \"glTF\" nor with a {{; export the model again",
-        shown_path(path)
-    )]
-    NoGltf { path: PathBuf },
     /// The glTF document can't be read.
     #[error("{}: {problem}", shown_path(path))]
     Gltf { path: PathBuf, problem: Box<GltfError> },
@@ -131,7 +116,7 @@ pub fn load_selected(
     let judge = |start: &[u8]| Judged::new(path, start, file.len()).map(|found| judged = Some(found));
     let bytes = read_file(path, limits, judge, progress)?;
     let Some(Judged { format, is_utf16, warning }) = judged else {
-        return Err(LoadError::NoBytes { path: path.to_owned() });
+        return Err(not_read(path, NO_BYTES));
     };
     let mut mesh = read(format, if is_utf16 { in_utf8(bytes) } else { bytes }, path, selected, limits, progress)?;
     mesh.warnings.splice(0..0, warning);
@@ -192,10 +177,10 @@ impl Judged {
     /// Judges a file by its first bytes, and by its name if they show no format. `length` is the file's size in bytes.
     ///
     /// # Errors
-    /// [`LoadError::NoBytes`], [`LoadError::NotRead`], [`LoadError::UnknownFormat`] and [`LoadError::NoGltf`].
+    /// [`LoadError::NotRead`].
     fn new(path: &Path, start: &[u8], length: u64) -> Result<Self, LoadError> {
         if start.is_empty() {
-            return Err(LoadError::NoBytes { path: path.to_owned() });
+            return Err(not_read(path, NO_BYTES));
         }
         let (named, extension) = (Format::from_name(path), extension_of(path).unwrap_or_default());
         let by_name = |format| Self { format, is_utf16: false, warning: None };
@@ -211,28 +196,36 @@ impl Judged {
                 Ok(Self { format, is_utf16: is_utf16 && format != Format::Obj, warning })
             }
             (Some(Content::Unread(format)), _) => {
-                Err(unread(path, unread_formats::of_compressed(start, &extension).unwrap_or(format)))
+                Err(not_read(path, unread(unread_formats::of_compressed(start, &extension).unwrap_or(format))))
             }
-            (None, Some(Format::Gltf)) if !begins_as_json(start) => Err(LoadError::NoGltf { path: path.to_owned() }),
+            (None, Some(Format::Gltf)) if !begins_as_json(start) => Err(not_read(path, NO_GLTF)),
             (None, Some(format)) => Ok(by_name(format)),
-            (None, None) => Err(match unread_formats::of_extension(&extension) {
-                Some(format) => unread(path, format),
-                None => unknown(path, &extension),
-            }),
+            (None, None) => {
+                let known = unread_formats::of_extension(&extension);
+                Err(not_read(path, known.map_or_else(|| unknown(&extension), unread)))
+            }
         }
     }
 }
 
-fn unread(path: &Path, &UnreadFormat { is, advice, .. }: &UnreadFormat) -> LoadError {
-    LoadError::NotRead { path: path.to_owned(), is, advice }
+const NO_BYTES: &str = "is empty; export the model again";
+const NO_GLTF: &str = "isn't a glTF file: it begins neither with \"glTF\" nor with a {; export the model again";
+
+fn not_read(path: &Path, reason: impl Into<String>) -> LoadError {
+    LoadError::NotRead { path: path.to_owned(), reason: reason.into() }
 }
 
-fn unknown(path: &Path, extension: &str) -> LoadError {
+fn unread(UnreadFormat { is, advice, .. }: &UnreadFormat) -> String {
+    format!("is {is}, which isn't read; {advice}")
+}
+
+fn unknown(extension: &str) -> String {
     let extension = match extension {
         "" => "no extension".to_owned(),
         extension => format!("the extension .{}", shown(extension)),
     };
-    LoadError::UnknownFormat { path: path.to_owned(), extension }
+    let advice = format!("choose a {} file", known_extensions());
+    format!("can't be read: its content shows no format, and it has {extension}; {advice}")
 }
 
 /// A warning about a file whose content isn't what its name says.

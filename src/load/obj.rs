@@ -18,8 +18,6 @@ mod tags;
 mod textures;
 mod vertices;
 
-use std::borrow::Cow;
-
 use glam::Vec4;
 
 use super::face_builder::{FaceBuilder, Gathered, NumberedCorner, linear_color, read_faces};
@@ -60,8 +58,7 @@ fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, faces: FaceBuilder<'a>, smooth
         above.push(vertices.counts());
         vertices.add(&more, budget)?;
         more.libraries.iter().for_each(|names| materials.add_library(names, files));
-        more.tags.iter().filter(|_| faces.cage.is_some()).try_for_each(|tag| tags.take(tag, budget))?;
-        more.error.map_or(Ok(()), Err)
+        Ok(more.tags.iter().filter(|_| faces.cage.is_some()).try_for_each(|tag| tags.take(tag, budget))?)
     };
     in_pieces(&pieces, |_, piece| VertexPiece::parse(piece), take, budget, &progress.part(0.0, 0.25))?;
     tags.holes.sort_unstable();
@@ -118,11 +115,11 @@ struct Statement<'a> {
 }
 
 impl<'a> Statement<'a> {
-    fn new(line: &Line<'a>) -> Self {
-        let (word, rest) = first_word(line.text);
+    fn new(number: usize, text: &'a [u8]) -> Self {
+        let (word, rest) = first_word(text);
         let is_comment = word.first() == Some(&b'#');
         let (word, rest) = if is_comment { (&b""[..], &b""[..]) } else { (word, rest) };
-        Self { number: line.number, word, rest }
+        Self { number, word, rest }
     }
 
     /// Returns what follows the first word, without a comment. A comment starts with a `#` at the start of a word, since names
@@ -146,22 +143,18 @@ fn each_statement(
     mut lines: Lines,
     mut take: impl FnMut(&Statement) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
-    while let Some(line) = lines.next()? {
+    while let Some(Line { text, number }) = lines.next()? {
         // A comment may end with a backslash, as in the path of a Windows folder.
-        let is_whole = line.text.last() != Some(&b'\\') || line.text.trim_ascii_start().starts_with(b"#");
-        if is_whole {
-            take(&Statement::new(&line))?;
-        } else {
-            let text = continued(line.text, &mut lines)?;
-            take(&Statement::new(&Line { text: &text, number: line.number }))?;
+        match text.strip_suffix(b"\\").filter(|_| !text.trim_ascii_start().starts_with(b"#")) {
+            None => take(&Statement::new(number, text))?,
+            Some(start) => take(&Statement::new(number, &continued(start, &mut lines)?))?,
         }
     }
     Ok(())
 }
 
-/// Returns a line joined with the lines that continue it. A line that ends with `\` is continued.
-fn continued<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Result<Cow<'a, [u8]>, ReadError> {
-    let Some(start) = text.strip_suffix(b"\\") else { return Ok(text.into()) };
+/// Returns the start of a line joined with the lines that continue it. A line that ends with `\` is continued.
+fn continued(start: &[u8], lines: &mut Lines) -> Result<Vec<u8>, ReadError> {
     let mut all = start.to_vec();
     while let Some(line) = lines.next()? {
         let part = line.text.strip_suffix(b"\\");
@@ -172,7 +165,7 @@ fn continued<'a>(text: &'a [u8], lines: &mut Lines<'a>) -> Result<Cow<'a, [u8]>,
             break;
         }
     }
-    Ok(all.into())
+    Ok(all)
 }
 
 /// What was found among the faces.
@@ -224,7 +217,7 @@ struct Reader<'v, 'a> {
 impl Reader<'_, '_> {
     /// Takes what was found in the next piece of the file.
     fn take_piece(&mut self, made: FacePiece) -> Result<(), ReadError> {
-        let FacePiece { found, corners, counts, error } = made;
+        let FacePiece { found, corners, counts } = made;
         self.found.statements += counts;
         let mut start = 0;
         for found in found {
@@ -246,7 +239,7 @@ impl Reader<'_, '_> {
                 Found::Material(name) => self.materials.enter(&name),
             }
         }
-        error.map_or(Ok(()), Err)
+        Ok(())
     }
 
     /// Begins an object (0) or a group (1). A part is a group of an object.

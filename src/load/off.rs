@@ -55,11 +55,10 @@ fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, mut faces: FaceBuilder<'a>) ->
     let material = faces.material(Material::plain("default", [1.0; 4]))?;
     let most = header.faces.min(bytes.len() / LEAST_FACE);
     faces.expect(most, vertices.positions.len().min(most.saturating_mul(4)));
-    let (corners, colors, found) = (Vec::new(), Vec::new(), Counts::default());
-    let mut reader = Reader { faces, material, vertices: &vertices, corners, colors, found };
-    let cut_short = reader.read(&header, &mut rows)?;
+    let (corners, found) = (Vec::new(), Counts::default());
+    let mut reader = Reader { faces, material, vertices: &vertices, corners, found };
+    reader.read(&header, &mut rows)?;
     let Reader { mut faces, found, .. } = reader;
-    faces.notes.extend(cut_short);
     let without_normals = if vertices.normals.is_empty() { vertices.positions.len() } else { 0 };
     faces.notes.extend(counted([faces.lacking_normals(without_normals, "vertices without normals")]));
     faces.notes.extend(found.sentences());
@@ -82,11 +81,9 @@ impl<'a> Rows<'a> {
     /// Returns the next line without white space around it, if there is one.
     fn next(&mut self) -> Result<Option<Line<'a>>, ReadError> {
         while let Some(line) = self.lines.next()? {
-            if line.number % 4096 == 0
-                && let Some(progress) = self.progress
-            {
-                progress.set(0.5 * (1.0 - self.lines.rest.len() as f32 / self.bytes as f32));
-                progress.check()?;
+            if let Some(progress) = self.progress {
+                let left = || self.lines.rest.len() as f32 / self.bytes as f32;
+                progress.step(line.number as u64, || 0.5 * (1.0 - left()))?;
             }
             let comment = memchr::memchr(b'#', line.text).unwrap_or(line.text.len());
             let text = line.text[..comment].trim_ascii();
@@ -288,34 +285,32 @@ struct Reader<'v, 'a> {
     vertices: &'v Vertices,
     /// The corners of the face that is being read.
     corners: Vec<NumberedCorner>,
-    /// The colours of its vertices.
-    colors: Vec<Option<Vec4>>,
     found: Counts,
 }
 
 impl Reader<'_, '_> {
-    /// Reads the faces, as far as the file goes. Returns a warning if it ends too early.
-    fn read(&mut self, header: &Header, rows: &mut Rows) -> Result<Option<String>, ReadError> {
+    /// Reads the faces, as far as the file goes.
+    fn read(&mut self, header: &Header, rows: &mut Rows) -> Result<(), ReadError> {
         if !self.vertices.colors.is_empty() {
             self.faces.color()?;
         }
         for i in 0..header.faces {
-            let cut_short = || {
+            let row = rows.next()?;
+            let read = row.as_ref().map_or(Ok(()), |row| self.face(row));
+            let is_cut = rows.lines.is_open && matches!(read, Err(ReadError::Broken { .. }));
+            if row.is_none() || is_cut {
                 let count = header.faces;
-                Some(format!(
+                self.faces.notes.push(format!(
                     "The file was cut short: it says that it has {count} faces, but it ends after {i}. Only those are shown."
-                ))
-            };
-            let Some(row) = rows.next()? else { return Ok(cut_short()) };
-            match self.face(&row) {
-                Err(ReadError::Broken { .. }) if rows.lines.is_open => return Ok(cut_short()),
-                read => read?,
+                ));
+                return Ok(());
             }
+            read?;
         }
         while rows.next()?.is_some() {
             self.found.after_faces += 1;
         }
-        Ok(None)
+        Ok(())
     }
 
     fn face(&mut self, row: &Line) -> Result<(), ReadError> {
@@ -327,14 +322,13 @@ impl Reader<'_, '_> {
             return Err(row.place().error(format!("the face has more than {MAX_CORNERS} corners")));
         }
         self.corners.clear();
-        self.colors.clear();
         for i in 0..count {
             let word = words.next().ok_or_else(|| {
                 row.place().error(format!("the face has {i} corners, but it says that it has {count}"))
             })?;
             if let Some((corner, color)) = parsed(word).and_then(|index| self.vertices.corner(index)) {
-                self.colors.push(color);
-                self.corners.push(NumberedCorner { corner, number: 0, vertex: None });
+                let number = self.faces.number(color.unwrap_or(Vec4::ONE))?;
+                self.corners.push(NumberedCorner { corner, number, vertex: None });
             }
         }
         if self.corners.len() < count {
@@ -342,11 +336,10 @@ impl Reader<'_, '_> {
             return Ok(());
         }
         let face_color = if self.vertices.colors.is_empty() { self.face_color(words) } else { None };
-        if face_color.is_some() {
+        if let Some(color) = face_color {
             self.faces.color()?;
-        }
-        for (at, own) in self.corners.iter_mut().zip(&self.colors) {
-            at.number = self.faces.number(own.or(face_color).unwrap_or(Vec4::ONE))?;
+            let number = self.faces.number(color)?;
+            self.corners.iter_mut().for_each(|at| at.number = number);
         }
         self.faces.add(self.material, &mut self.corners, row.place())
     }

@@ -82,8 +82,7 @@ fn gather<'a>(bytes: &[u8], files: &'a Files<'a>, mut faces: FaceBuilder<'a>) ->
                 if matches!(name, b"face" | b"tristrips") {
                     before_vertices.push((element, values.clone()));
                 }
-                let skipped =
-                    values.check(element).and_then(|()| values.skip(element, |values, i| reader.at(values, i)));
+                let skipped = values.check(element).and_then(|()| values.skip(element, files.progress));
                 // What comes after the faces isn't shown.
                 skipped.or_else(|error| if is_needed { Err(error) } else { reader.cut(&values, element, error) })?;
             }
@@ -189,7 +188,7 @@ impl<'a> Reader<'a, '_> {
             colors: Vec::with_capacity(room(has_colors)),
         };
         for i in 0..element.count {
-            self.at(values, i)?;
+            self.files.progress.step(i, || 0.5 * values.fraction())?;
             let mut found = [0.0; ATTRIBUTES.len()];
             // Alpha, where there is none.
             found[11] = 1.0 / scale;
@@ -257,7 +256,7 @@ impl<'a> Reader<'a, '_> {
         let faces = usize::try_from(values.most(element)).unwrap_or_default();
         self.faces.expect(faces, vertices.positions.len().min(faces.saturating_mul(4)));
         for i in 0..element.count {
-            self.at(values, i)?;
+            self.files.progress.step(i, || 0.5 * values.fraction())?;
             self.read_list(element, i, of_face, values, vertices)?;
         }
         Ok(())
@@ -435,15 +434,6 @@ impl<'a> Reader<'a, '_> {
                 self.push(corner)?;
             }
             self.faces.add(self.material, &mut self.corners, place)?;
-        }
-        Ok(())
-    }
-
-    /// Sets the progress, once every 4,096 elements.
-    fn at(&self, values: &Values, i: u64) -> Result<(), ReadError> {
-        if i.is_multiple_of(4096) {
-            self.files.progress.set(0.5 * values.fraction());
-            self.files.progress.check()?;
         }
         Ok(())
     }

@@ -21,7 +21,7 @@ use geometry::names::shown;
 use geometry::progress::{Cancelled, Progress};
 
 /// The greatest number of bound vertices, and of their displacements, which limits the memory.
-pub(super) const MAX_BOUND: usize = 1 << 24;
+const MAX_BOUND: usize = 1 << 24;
 /// Memory for a displacement of a bound vertex, and for finding equal ones, in bytes.
 pub(super) const PER_DELTA: u64 = 250;
 /// The greatest number of elements of morph targets that are read.
@@ -88,7 +88,7 @@ struct BoundVertex {
 impl RigBuilder {
     /// Prepares for some clips, whose targets are nodes of the scene. Returns none if no clip moves anything that is
     /// shown. Adds a warning for each clip that doesn't.
-    pub(super) fn new(clips: Vec<Clip>, scene: &SceneNodes, warnings: &mut Vec<String>) -> Option<Self> {
+    pub(super) fn new(clips: Vec<Clip>, scene: &SceneNodes, notes: &mut Notes) -> Option<Self> {
         if clips.is_empty() {
             return None;
         }
@@ -111,7 +111,7 @@ impl RigBuilder {
         for clip in clips {
             let (name, clip) = (clip.name.clone(), binder.retargeted(clip, &moved));
             if clip.channels.is_empty() {
-                warnings.push(format!("animation \"{name}\" moves nothing that is shown; it is left out."));
+                notes.push(format!("animation \"{name}\" moves nothing that is shown; it is left out."));
             } else {
                 binder.rig.clips.push(clip);
             }
@@ -351,22 +351,22 @@ impl RigBuilder {
     }
 }
 
-/// Returns these joints as bones, each once: parents before children, as `order` has all nodes. What no clip moves is where `global`
-/// has it. `name` gives a node's name, if it has one.
+/// Returns these joints as bones, each once, parents before children. What no clip moves is where `global` has it. `name` gives a
+/// node's name, if it has one.
 pub(super) fn bones<'a>(
     joints: impl Iterator<Item = usize>,
     name: impl Fn(usize) -> Option<&'a str>,
-    order: &[usize],
-    parents: &[Option<usize>],
+    scene: &SceneNodes,
     global: &[DMat4],
     binder: Option<&RigBuilder>,
 ) -> Vec<Bone> {
+    let parents = &scene.parents;
     let mut is_joint = vec![false; parents.len()];
     joints.for_each(|joint| is_joint[joint] = true);
     // Of each node the bone that it is, or else the nearest one above it.
     let mut nearest: Vec<Option<u32>> = vec![None; parents.len()];
     let mut bones = Vec::new();
-    for &node in order {
+    for &node in &scene.order {
         let parent = parents[node].and_then(|parent| nearest[parent]);
         nearest[node] = if is_joint[node] { Some(to_u32(bones.len())) } else { parent };
         if is_joint[node] {

@@ -35,15 +35,8 @@ const TRIANGLE: usize = 50;
 pub(super) fn read(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, ReadError> {
     read_faces(bytes, file, |bytes, files, mut faces| {
         let material = faces.material(Material::plain("default", [1.0; 4]))?;
-        let mut reader = Reader {
-            faces,
-            material,
-            corners: Vec::new(),
-            progress: files.progress,
-            bytes: bytes.len(),
-            found: Counts::default(),
-            cut_short: None,
-        };
+        let mut reader =
+            Reader { faces, material, corners: Vec::new(), progress: files.progress, found: Counts::default() };
         let holds = if is_text(bytes) { reader.text(bytes)? } else { reader.binary(bytes)? };
         Ok((reader.faces, holds))
     })
@@ -89,11 +82,7 @@ struct Reader<'a> {
     /// The corners of the triangle that is being added.
     corners: Vec<NumberedCorner>,
     progress: &'a Progress,
-    /// The file's size, in bytes.
-    bytes: usize,
     found: Counts,
-    /// A warning about a text file that ends too early.
-    cut_short: Option<String>,
 }
 
 counts! {
@@ -134,9 +123,7 @@ impl Reader<'_> {
         }
         let position = |bytes: &[u8; 12]| Vec3::from(bytemuck::cast::<_, [[u8; 4]; 3]>(*bytes).map(f32::from_le_bytes));
         for (i, (triangle, bits)) in triangles.iter().zip(attributes).enumerate() {
-            if i % 4096 == 0 {
-                self.at(HEADER + i * TRIANGLE)?;
-            }
+            self.progress.step(i as u64, || 0.5 * (HEADER + i * TRIANGLE) as f32 / bytes.len() as f32)?;
             // The first vector is the normal.
             let [_, a, b, c, ..] = triangle.as_chunks::<12>().0 else { continue };
             let color = of_triangles.map_or(Vec4::ONE, |colors| colors.of_triangle(bits));
@@ -165,9 +152,7 @@ impl Reader<'_> {
         let (mut solids, mut open) = (0, false);
         let mut next = lines.next()?;
         while let Some(line) = next {
-            if line.number % 4096 == 0 {
-                self.at(bytes.len() - lines.rest.len())?;
-            }
+            self.progress.step(line.number as u64, || 0.5 * (1.0 - lines.rest.len() as f32 / bytes.len() as f32))?;
             next = None;
             let rest = first_word(line.text).1;
             match keyword(&line).as_slice() {
@@ -188,7 +173,6 @@ impl Reader<'_> {
                 next = lines.next()?;
             }
         }
-        self.faces.notes.extend(self.cut_short.take());
         self.found.open_solids = usize::from(open);
         self.faces.notes.extend(self.found.sentences());
         Ok(format!("it holds {solids} solids without facets"))
@@ -220,8 +204,8 @@ impl Reader<'_> {
             }
         }
         let number = first.number;
-        self.cut_short =
-            Some(format!("The file ends within the facet that begins in line {number}. That facet is left out."));
+        let said = format!("The file ends within the facet that begins in line {number}. That facet is left out.");
+        self.faces.notes.push(said);
         Ok(None)
     }
 
@@ -234,12 +218,6 @@ impl Reader<'_> {
         self.corners.clear();
         self.corners.extend(positions.map(corner));
         self.faces.add(self.material, &mut self.corners, place)
-    }
-
-    /// Sets the progress.
-    fn at(&self, byte: usize) -> Result<(), ReadError> {
-        self.progress.set(0.5 * byte as f32 / self.bytes as f32);
-        Ok(self.progress.check()?)
     }
 }
 

@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
+use super::map_uvs::MapUvs;
 use super::notes::Notes;
 use geometry::casts::to_u32;
 use geometry::mesh::build_limits::BuildError;
@@ -182,10 +183,7 @@ impl DetailedMesh<'_> {
         let Self { mesh, details, bindings } = self;
         let uvs = |corner: usize| match uv {
             MapUv::Own => mesh.corners[corner].uv,
-            MapUv::Set(set, [a, b, c, d, e, f]) => {
-                let uv = details[corner].uvs[set];
-                Vec2::new(a * uv.x + b * uv.y + c, d * uv.x + e * uv.y + f)
-            }
+            MapUv::Set(set, transform) => MapUvs { set, transform }.apply(details[corner].uvs[set]),
         };
         let corner = |corner: u32| Corner { uv: uvs(corner as usize), ..mesh.corners[corner as usize] };
         let mut surface =
@@ -270,6 +268,7 @@ impl Geometry for Surface {
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec2;
     use proptest::prelude::*;
 
     use super::*;

@@ -5,8 +5,8 @@ use glam::{DVec3, Vec3};
 use ufbx::{MaterialMap, Mesh, ShaderType, Texture};
 
 use super::convert::{matrix, vec4};
+use crate::map_uvs::MapUvs;
 use geometry::casts::to_f32;
-use geometry::defaults::with_defaults;
 use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look};
 
@@ -18,17 +18,6 @@ const MOST_LIGHT: f32 = 65504.0;
 pub(super) struct MapSource<'a> {
     pub texture: &'a Texture,
     pub uvs: MapUvs,
-}
-
-with_defaults! {
-    /// Texture coordinates of a map.
-    #[derive(Clone, Copy, Debug, PartialEq)]
-    pub(super) struct MapUvs {
-        /// The index of the mesh's set.
-        pub set: usize = 0,
-        /// The affine map to texture coordinates that count from the top (see [`MapUv::Set`](geometry::mesh::MapUv::Set)).
-        pub transform: [f32; 6] = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
-    }
 }
 
 /// What a material says.

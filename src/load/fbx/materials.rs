@@ -5,21 +5,23 @@ use std::sync::Arc;
 
 use ufbx::{Mesh, Node, RefList};
 
-use super::looks::{LookSource, MapSource, MapUvs};
-use super::textures::{Textures, of_file, sampling};
+use super::looks::{LookSource, MapSource};
+use super::textures::{bytes, of_file, sampling};
 use crate::face_builder::FaceBuilder;
 use crate::heights::ModelImages;
-use crate::memory_budget::Budget;
+use crate::map_uvs::MapUvs;
 use crate::notes::Notes;
 use crate::packing;
 use crate::read_error::ReadError;
+use crate::texture_room::{ReadImage, read_images};
 use crate::uri::{Files, shown};
-use geometry::mesh::{Alpha, HeightAmount, HeightMap, Map, MapUv, Material, Sampling, Slot, Texture};
+use geometry::mesh::{Alpha, HeightAmount, HeightMap, Map, Material, Sampling, Slot, Texture};
 
 /// The materials of all polygons.
 pub(super) struct Materials<'a> {
-    textures: Textures<'a>,
-    budget: &'a Budget,
+    files: &'a Files<'a>,
+    /// By the number of the file.
+    images: HashMap<u32, ReadImage>,
     /// By material (none for polygons without one) and the sets of its maps, which depend on the mesh.
     resolved: HashMap<(Option<u32>, Vec<usize>), Resolved>,
     heights: ModelImages<'a, u32>,
@@ -43,8 +45,8 @@ impl<'a> Materials<'a> {
     /// `unit` is how many object units one unit of the file is.
     pub(super) fn new(files: &'a Files<'a>, unit: f32) -> Self {
         Self {
-            textures: Textures::new(files),
-            budget: files.budget,
+            files,
+            images: HashMap::new(),
             resolved: HashMap::new(),
             heights: ModelImages::new(files),
             unit,
@@ -77,7 +79,13 @@ impl<'a> Materials<'a> {
             is_used.then(|| self.height(&source)).transpose()?;
             images.extend(source.images());
         }
-        Ok(self.textures.read(images.into_iter(), reserved)?)
+        let mut seen = HashSet::new();
+        let used = images.into_iter().filter_map(|(texture, filter)| Some((of_file(texture)?, filter)));
+        let used: Vec<_> = used.filter(|(file, _)| seen.insert(file.file_index)).collect();
+        let bytes = |(file, filter)| Ok((bytes(file, self.files)?, filter));
+        let read = read_images(&used, bytes, reserved, self.files.budget, self.files.progress)?;
+        self.images = used.iter().map(|(file, _)| file.file_index).zip(read).collect();
+        Ok(())
     }
 
     /// Finds a material of a node's mesh by its index there, or adds it to the builder.
@@ -99,7 +107,7 @@ impl<'a> Materials<'a> {
         if let Some(&resolved) = self.resolved.get(&key) {
             return Ok(resolved);
         }
-        self.budget.hold(size_of::<Material>() as u64)?;
+        self.files.budget.hold(size_of::<Material>() as u64)?;
         let (material, own) = match &source {
             Some(source) => {
                 let undrawn = source.undrawn.iter();
@@ -148,7 +156,7 @@ impl<'a> Materials<'a> {
         let names = [&*format!("\"{}\"", shown(file.element.name.as_ref())), &*source.name];
         let is_elsewhere = map.uvs != source.own_uvs();
         let used = (HeightAmount::from_factor(source.height_factor * self.unit, 0.0), sampling(map.texture).wrap);
-        Ok(self.heights.read(file.file_index, names, used, is_elsewhere, || self.textures.bytes(file))?)
+        Ok(self.heights.read(file.file_index, names, used, is_elsewhere, || bytes(file, self.files))?)
     }
 
     /// Returns the image of the base colour, with the opacity as its alpha.
@@ -158,7 +166,7 @@ impl<'a> Materials<'a> {
         let map = source.base.or(source.opacity);
         let sampling = map.map_or_else(Sampling::default, |map| sampling(map.texture));
         let Some(opacity) = opacity else { return (color, sampling) };
-        match packing::with_opacity(color.as_deref(), &opacity, self.budget) {
+        match packing::with_opacity(color.as_deref(), &opacity, self.files.budget) {
             Ok(joined) => (Some(Arc::new(joined)), sampling),
             Err(reason) => {
                 self.notes.push(format!("the opacity map of material \"{}\" is left out: it {reason}.", source.name));
@@ -182,7 +190,7 @@ impl<'a> Materials<'a> {
                     roughness.as_deref(),
                     source.is_glossiness,
                     metalness.as_deref(),
-                    self.budget,
+                    self.files.budget,
                 );
                 let left_out = |reason| format!("the {what} of material \"{}\" is left out: it {reason}.", source.name);
                 Arc::new(packed.map_err(|reason: String| self.notes.push(left_out(reason))).ok()?)
@@ -191,22 +199,23 @@ impl<'a> Materials<'a> {
         Some(self.map(map, texture, what, source))
     }
 
+    /// Returns the image of a map. One that is missing or broken causes a warning.
     fn image(&mut self, map: MapSource, what: &str, source: &LookSource) -> Option<Arc<Texture>> {
         let what = format!("the {what} of material \"{}\"", source.name);
-        self.textures.image(map.texture, &what, &mut self.notes)
+        let Some(file) = of_file(map.texture) else {
+            self.notes.push(format!("{what} is left out: it is computed by another program."));
+            return None;
+        };
+        let image = self.images.get_mut(&file.file_index)?;
+        self.notes.extend(image.said.take().map(|said| format!("{what} {said}")));
+        image.texture.clone()
     }
 
     fn map(&mut self, map: MapSource, texture: Arc<Texture>, what: &str, source: &LookSource) -> Map {
-        let MapUvs { set, transform } = map.uvs;
-        let uv = match set {
-            _ if map.uvs == source.own_uvs() => MapUv::Own,
-            0 | 1 => MapUv::Set(set, transform),
-            _ => {
-                let has = format!("the {what} of material \"{}\" has a third set of texture coordinates", source.name);
-                self.notes.push(format!("{has}, but only the first two sets are read for it; the first is used."));
-                MapUv::Set(0, transform)
-            }
-        };
+        let uv = map.uvs.on_corners(source.own_uvs(), || {
+            let has = format!("the {what} of material \"{}\" has a third set of texture coordinates", source.name);
+            self.notes.push(format!("{has}, but only the first two sets are read for it; the first is used."));
+        });
         let sampling = of_file(map.texture).map_or_else(Sampling::default, sampling);
         Map { texture, uv, sampling }
     }

@@ -49,30 +49,29 @@ impl Placed {
         check_instances(meshes, budget)?;
         let scene = meshes.scene;
         let nodes = &scene.nodes;
-        let parents: Vec<Option<usize>> =
-            nodes.into_iter().map(|node| node.parent.as_ref().map(|parent| index(parent))).collect();
+        let parents = nodes.into_iter().map(|node| node.parent.as_ref().map(|parent| index(parent))).collect();
         let mut order: Vec<usize> = (0..nodes.len()).collect();
         // A stable sort, which keeps siblings in order.
         order.sort_by_key(|&node| nodes[node].node_depth);
-        let is_hidden = hidden(scene, file.selected.import.show_hidden, &order, &parents);
+        let local = nodes.into_iter().map(|node| LocalTransform::Placement(placement(&node.local_transform))).collect();
+        let mut own = SceneNodes { parents, order, local, ..SceneNodes::default() };
+        let is_hidden = hidden(scene, file.selected.import.show_hidden, &own);
         let with_mesh = || (0..nodes.len()).filter(|&node| meshes.of(&nodes[node]).is_some());
         let shown: Vec<usize> = with_mesh().filter(|&node| !is_hidden[node]).collect();
         let hidden = with_mesh().count() - shown.len();
         notes.extend(counted([(hidden, "meshes that the file hides, left out (--show-hidden shows them)")]));
-        let carries = carries_shown(scene, &shown, &order, &parents);
-        let carries_mesh = SceneNodes::carrying(with_mesh(), &order, &parents);
+        own.carries = own.carrying(shown.iter().copied().chain(joints(scene, &shown)));
+        let carries_mesh = own.carrying(with_mesh());
         let with_weights = |&node: &usize| {
             let rest = morphs::rest_weights(nodes[node].mesh.as_ref()?, &file.selected);
             (!rest.is_empty()).then_some((node, rest))
         };
-        let morphed = shown.iter().filter_map(with_weights).collect();
-        let local = nodes.into_iter().map(|node| LocalTransform::Placement(placement(&node.local_transform))).collect();
+        own.morphed = shown.iter().filter_map(with_weights).collect();
         let groups = scene.lod_groups.into_iter().flat_map(|group| &group.element.instances);
         let levels = groups.flat_map(|group| group.children.into_iter().enumerate().skip(1));
         let levels = levels.map(|(number, level)| (index(level), number)).collect();
         let levels = level_names(&levels, nodes.into_iter().map(|node| &*node.element.name).enumerate());
-        let scene = SceneNodes { parents, order, local, carries, morphed, grown: Vec::new() };
-        Ok(Self { global: scene.global(), scene, shown, hidden, carries_mesh, levels })
+        Ok(Self { global: own.global(), scene: own, shown, hidden, carries_mesh, levels })
     }
 
     /// Lets nodes [grow](SceneNodes::grow).
@@ -120,25 +119,20 @@ pub(super) fn is_on(element: &Element, name: &str) -> bool {
 
 /// Returns which nodes the file hides: those that are switched off, or whose display layer is, and those below them that inherit
 /// it. None are if hidden nodes are shown.
-fn hidden(scene: &Scene, show_hidden: bool, order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
+fn hidden(scene: &Scene, show_hidden: bool, nodes: &SceneNodes) -> Vec<bool> {
     let mut is_off: Vec<bool> = scene.nodes.into_iter().map(|node| !is_on(&node.element, "Visibility")).collect();
     let layers = scene.display_layers.into_iter().filter(|layer| !is_on(&layer.element, "Show"));
     layers.flat_map(|layer| &layer.nodes).for_each(|node| is_off[index(node)] = true);
     if show_hidden {
         is_off.fill(false);
     }
-    let mut hidden = vec![false; order.len()];
-    for &node in order {
-        let (own, above) = (&scene.nodes[node].element, parents[node]);
+    let mut hidden = vec![false; nodes.order.len()];
+    for &node in &nodes.order {
+        let (own, above) = (&scene.nodes[node].element, nodes.parents[node]);
         let inherits = || is_on(own, "Visibility Inheritance");
         hidden[node] = is_off[node] || above.is_some_and(|above| hidden[above] && inherits());
     }
     hidden
-}
-
-/// Returns which nodes carry something that is shown, on them or below them: a mesh, or a joint of a mesh's skin.
-fn carries_shown(scene: &Scene, shown: &[usize], order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
-    SceneNodes::carrying(shown.iter().copied().chain(joints(scene, shown)), order, parents)
 }
 
 /// Returns the joints of the skins of these nodes' meshes.

@@ -286,9 +286,7 @@ impl MeshReader<'_, '_, '_, '_> {
     fn corner(&mut self, corner: usize, material: &Resolved) -> Result<(NumberedCorner, bool), ReadError> {
         let (vertex, mut posed, has_more) = self.posed(corner)?;
         self.all.found.many_joints += usize::from(has_more);
-        let uv = self.uv(material.own.set, corner);
-        let [a, b, c, d, e, f] = material.own.transform;
-        posed.corner.uv = Vec2::new(a * uv.x + b * uv.y + c, d * uv.x + e * uv.y + f);
+        posed.corner.uv = material.own.apply(self.uv(material.own.set, corner));
         let mut number = 0;
         if let Some(binder) = &mut self.binder {
             // Blend shapes are at rest, unless a clip weighs them.

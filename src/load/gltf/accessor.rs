@@ -11,8 +11,7 @@ use ::gltf::{Document, buffer};
 
 use super::GltfError;
 use super::buffers::Buffers;
-use super::decompressed_primitive::DecompressedPrimitive;
-use super::extensions::{MeshoptExtension, MeshoptMode};
+use super::extensions::MeshoptExtension;
 use super::meshopt::{Decompressed, decompress};
 use super::notes::Notes;
 use super::schema_check::{Fault, Faults};
@@ -22,23 +21,36 @@ use crate::memory_budget::Budget;
 /// file's size limits those.
 const MAX_ZEROS: usize = 1 << 24;
 
-/// The data of a view that was compressed, and the number of bytes from one element to the next, 0 if they are packed tightly. None if its
-/// uncompressed copy is read.
-type ViewData = Option<(Decompressed, usize)>;
-
 /// Reads the accessors of one document.
 pub(crate) struct Accessors<'a> {
     document: &'a Document,
     buffers: Buffers<'a>,
-    /// For each buffer view, how it is compressed, and its data once something needed it.
+    /// For each buffer view, how it is compressed, and its data once something needed it: none if its uncompressed copy is read.
     compressed: &'a [Option<MeshoptExtension>],
-    decompressed: Vec<OnceCell<Result<ViewData, Fault>>>,
+    decompressed: Vec<OnceCell<Result<Option<Decompressed>, Fault>>>,
     /// By mesh and primitive, the data that Draco compressed.
     pub unpacked: HashMap<[usize; 2], DecompressedPrimitive>,
     faults: &'a Faults,
     pub budget: &'a Budget,
     /// What was repaired.
     pub notes: RefCell<Notes>,
+}
+
+/// The data of a primitive that was compressed.
+pub(crate) struct DecompressedPrimitive {
+    /// The indices of vertices, three for each triangle.
+    pub indices: Vec<u32>,
+    /// By their names in glTF, the numbers of attributes, as many for each vertex as their accessors say; or why one that a primitive can
+    /// do without can't be read, as a clause.
+    pub attributes: HashMap<String, Result<Vec<f32>, String>>,
+}
+
+impl DecompressedPrimitive {
+    /// Returns the size in memory, in bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let values: usize = self.attributes.values().flatten().map(Vec::len).sum();
+        4 * (self.indices.len() + values) as u64
+    }
 }
 
 /// Why data can't be read.
@@ -160,7 +172,7 @@ impl<'a> Accessors<'a> {
 
     /// Returns the data of a view that is compressed; none if it isn't, or if its uncompressed copy is read since the compressed data is
     /// broken.
-    fn decompressed(&self, view: &buffer::View) -> Result<Option<&(Decompressed, usize)>, Fault> {
+    fn decompressed(&self, view: &buffer::View) -> Result<Option<&Decompressed>, Fault> {
         let i = view.index();
         let Some(compressed) = self.compressed.get(i).and_then(Option::as_ref) else { return Ok(None) };
         let made = self.decompressed[i].get_or_init(|| match self.decompress(view, compressed) {
@@ -209,8 +221,8 @@ impl<'a> Accessors<'a> {
         }
     }
 
-    fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<(Decompressed, usize), String> {
-        let MeshoptExtension { buffer, offset, length, stride, count, mode, .. } = *compressed;
+    fn decompress(&self, view: &buffer::View, compressed: &MeshoptExtension) -> Result<Decompressed, String> {
+        let MeshoptExtension { buffer, offset, length, stride, count, .. } = *compressed;
         let bytes = self.range(buffer, offset, length).map_err(|error| match error {
             DataError::Here(reason) => reason,
             DataError::Elsewhere(error) => error.into_clause(),
@@ -222,9 +234,7 @@ impl<'a> Accessors<'a> {
                 "has {count} elements of {stride} bytes, which are {has} bytes, but its view's byteLength is {said}"
             ));
         }
-        // Indices are packed tightly. Attributes have the view's stride, or else that of the compressed data.
-        let stride = if mode == MeshoptMode::Attributes { stride } else { 0 };
-        Ok((made, stride))
+        Ok(made)
     }
 
     /// Reads elements of N numbers; normalised integers become -1 to 1 or 0 to 1. `role` says what they are for, in
@@ -282,17 +292,13 @@ impl<'a> Accessors<'a> {
             let reason = format!("has {dimensions:?} elements of {kind:?}, but single unsigned integers are needed");
             return Err(DataError::Here(reason).of(accessor, role));
         }
-        let list = match kind {
-            DataType::U32 => self.read(accessor, 0, word),
-            _ => self.read(accessor, 0, unsigned_integer),
-        };
-        list.map_err(|error| error.of(accessor, role))
+        self.read(accessor, 0, unsigned_integer).map_err(|error| error.of(accessor, role))
     }
 
     /// Returns the size of all buffers and decompressed data, in bytes.
     pub(crate) fn buffer_bytes(&self) -> u64 {
         let made = self.decompressed.iter().filter_map(|made| made.get()?.as_ref().ok()?.as_ref());
-        let made = made.map(|(made, _)| made.bytes().len() as u64);
+        let made = made.map(|made| made.bytes().len() as u64);
         let unpacked = self.unpacked.values().map(DecompressedPrimitive::bytes);
         made.chain(unpacked).sum::<u64>() + self.buffers.size()
     }
@@ -304,7 +310,7 @@ impl<'a> Accessors<'a> {
     pub(crate) fn view_bytes(&self, view: &buffer::View) -> Result<&[u8], DataError> {
         let i = view.index();
         self.faults.check("bufferViews", i).map_err(GltfError::from)?;
-        if let Some((made, _)) = self.decompressed(view).map_err(GltfError::from)? {
+        if let Some(made) = self.decompressed(view).map_err(GltfError::from)? {
             return Ok(made.bytes());
         }
         let bytes = self.range(view.buffer().index(), view.offset() as u64, view.length() as u64);
@@ -331,11 +337,19 @@ impl<'a> Accessors<'a> {
     /// are read.
     pub(crate) fn check(&self, accessor: &Accessor, role: &str) -> Result<(), GltfError> {
         self.check_sound(accessor)?;
-        let found = match accessor.view() {
-            Some(view) => self.elements(&view, accessor.offset(), accessor.size(), accessor.count()).map(|_| ()),
-            None => zeros(accessor.count()).map_err(DataError::from),
-        };
-        found.map_err(|error| error.of(accessor, role))
+        self.stored(accessor).map(|_| ()).map_err(|error| error.of(accessor, role))
+    }
+
+    /// Returns the elements of an accessor without its sparse values; none if it has no buffer view, and all are zero.
+    fn stored(&self, accessor: &Accessor) -> Result<Option<Elements<'_>>, DataError> {
+        let count = accessor.count();
+        match accessor.view() {
+            Some(view) => self.elements(&view, accessor.offset(), accessor.size(), count).map(Some),
+            None if count <= MAX_ZEROS => Ok(None),
+            None => {
+                Err(format!("has {count} elements without data, but at most {MAX_ZEROS} such elements are read").into())
+            }
+        }
     }
 
     /// Reads the data of an accessor's view, if it can be read, so that its memory counts.
@@ -355,13 +369,7 @@ impl<'a> Accessors<'a> {
         decode: impl Fn(&[u8]) -> T + Copy + Sync + 'b,
     ) -> Result<List<'b, T>, DataError> {
         let (size, count) = (accessor.size(), accessor.count());
-        let elements = match accessor.view() {
-            Some(view) => Some(self.elements(&view, accessor.offset(), size, count)?),
-            None => {
-                zeros(count)?;
-                None
-            }
-        };
+        let elements = self.stored(accessor)?;
         if let (Some(elements), None) = (elements, accessor.sparse()) {
             return Ok(List::in_buffer(elements, decode, zero));
         }
@@ -405,8 +413,8 @@ impl<'a> Accessors<'a> {
     ) -> Result<Elements<'_>, DataError> {
         let bytes = self.view_bytes(view)?;
         let made = self.decompressed(view).map_err(GltfError::from)?;
-        let stride = view.stride().or(made.map(|(_, stride)| *stride).filter(|stride| *stride > 0));
-        let stride = stride.unwrap_or(size);
+        // Compressed attributes have the view's stride, or else that of the compressed data.
+        let stride = view.stride().or_else(|| made?.stride).unwrap_or(size);
         if stride < size {
             let i = view.index();
             let reason = format!("has elements of {size} bytes, but in /bufferViews/{i} they are {stride} bytes apart");
@@ -428,14 +436,6 @@ impl<'a> Accessors<'a> {
     }
 }
 
-/// Checks the number of elements of an accessor without data.
-fn zeros(count: usize) -> Result<(), String> {
-    match count {
-        0..=MAX_ZEROS => Ok(()),
-        _ => Err(format!("has {count} elements without data, but at most {MAX_ZEROS} such elements are read")),
-    }
-}
-
 /// Decodes an element of N floats, which most attributes consist of: without a look at their type, this takes a fraction of
 /// the time.
 fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
@@ -444,11 +444,6 @@ fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
         *number = f32::from_le_bytes(*bytes);
     }
     numbers
-}
-
-/// Decodes an integer of four bytes.
-fn word(bytes: &[u8]) -> u32 {
-    bytes.first_chunk().map_or(0, |own| u32::from_le_bytes(*own))
 }
 
 fn unsigned_integer(bytes: &[u8]) -> u32 {

@@ -3,7 +3,7 @@
 use ::gltf::{Primitive, Semantic};
 use glam::DMat4;
 
-use super::rig_builder::{MAX_BOUND, NodeBinder, PER_DELTA, UndeformedVertex, VertexFrame};
+use super::rig_builder::{NodeBinder, PER_DELTA, UndeformedVertex, VertexFrame};
 use super::vertices::Vertices;
 use crate::memory_budget::Budget;
 use geometry::mesh::mesh_builder::InputCorner;
@@ -22,8 +22,6 @@ pub(super) struct AnimatedVertices<'a, 'b, 'c> {
     deltas: Vec<Delta>,
     /// What each of them adds to the vertex's tangent; empty if tangents turn along with normals.
     tangents: Vec<[f32; 3]>,
-    /// The number of displacements so far.
-    found: usize,
 }
 
 /// Returns whether a clip changes the weights of a primitive's morph targets. They aren't to be read if they have too many elements.
@@ -49,7 +47,7 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
             binder.binder.give_up(problem.clone());
             first_weight = None;
         }
-        Self { binder, frame, budget, first_weight, deltas: Vec::new(), tangents: Vec::new(), found: 0 }
+        Self { binder, frame, budget, first_weight, deltas: Vec::new(), tangents: Vec::new() }
     }
 
     /// Returns the number of the binding of a vertex, which these joints move.
@@ -88,12 +86,7 @@ impl<'a, 'b, 'c> AnimatedVertices<'a, 'b, 'c> {
                 self.tangents.extend(has_tangents.then_some(tangent));
             }
         }
-        self.found += self.deltas.len();
-        if self.found > MAX_BOUND {
-            return Err(format!("there are more than {MAX_BOUND} displacements of vertices"));
-        }
         let memory = self.deltas.len() as u64 * PER_DELTA + self.tangents.len() as u64 * PER_TANGENT;
-        let kept = self.budget.hold(memory);
-        kept.map_err(|reason| format!("{} displacements of vertices {reason}", self.found))
+        self.budget.hold(memory).map_err(|reason| format!("with displacements of vertices, the load {reason}"))
     }
 }

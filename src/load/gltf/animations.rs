@@ -9,6 +9,7 @@ use ::gltf::Document;
 use serde::Deserialize;
 use serde_json::Value;
 
+use super::notes::Notes;
 use super::{Accessors, nodes};
 use crate::attachment::LocalTransform;
 use geometry::casts::to_u32;
@@ -47,12 +48,7 @@ struct Sampler {
 
 /// Reads the document's clips, whose channels have nodes of the document as targets. Adds a warning for each that is
 /// left out.
-pub(super) fn read(
-    animations: Vec<Value>,
-    document: &Document,
-    accessors: &Accessors,
-    warnings: &mut Vec<String>,
-) -> Vec<Clip> {
+pub(super) fn read(animations: Vec<Value>, document: &Document, accessors: &Accessors, notes: &mut Notes) -> Vec<Clip> {
     let target_counts = HashMap::new();
     let mut reader = Reader { document, accessors, numbers_left: MAX_NUMBERS, target_counts, pointers: 0 };
     let mut clips = Vec::new();
@@ -63,12 +59,11 @@ pub(super) fn read(
             Ok(clip) => {
                 if reader.pointers > 0 {
                     let (count, said) = (reader.pointers, "which aren't read; the others are played");
-                    warnings
-                        .push(format!("animation {i}{quoted} has {count} channels of KHR_animation_pointer, {said}."));
+                    notes.push(format!("animation {i}{quoted} has {count} channels of KHR_animation_pointer, {said}."));
                 }
                 clips.push(clip);
             }
-            Err(reason) => warnings.push(format!("animation {i}{quoted} is left out: {reason}.")),
+            Err(reason) => notes.push(format!("animation {i}{quoted} is left out: {reason}.")),
         }
     }
     clips

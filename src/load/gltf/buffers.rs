@@ -8,7 +8,6 @@ use ::gltf::json::Buffer;
 use super::GltfError;
 use super::schema_check::Faults;
 use crate::uri::{self, Files};
-use geometry::progress::Progress;
 
 /// The buffers of a document.
 pub(crate) struct Buffers<'a> {
@@ -19,7 +18,6 @@ pub(crate) struct Buffers<'a> {
     files: &'a Files<'a>,
     /// What was read, cut to the lengths in the document; or a clause that says what is wrong.
     read: Vec<OnceCell<Result<Vec<u8>, String>>>,
-    progress: &'a Progress,
 }
 
 impl<'a> Buffers<'a> {
@@ -29,7 +27,6 @@ impl<'a> Buffers<'a> {
         faults: &'a Faults,
         files: &'a Files<'a>,
         chunk: Option<Vec<u8>>,
-        progress: &'a Progress,
     ) -> Self {
         let list = &document.as_json().buffers[..];
         let may_own = |i: &usize| list[*i].uri.is_none() && !fallback[*i] && faults.check("buffers", *i).is_ok();
@@ -38,7 +35,7 @@ impl<'a> Buffers<'a> {
         if let Some((owner, chunk)) = (0..list.len()).find(may_own).zip(chunk) {
             read[owner] = OnceCell::from(cut(chunk, list[owner].byte_length.0));
         }
-        Self { list, fallback, faults, files, read, progress }
+        Self { list, fallback, faults, files, read }
     }
 
     /// Returns the bytes of a buffer. A fallback without a URI has none.
@@ -55,7 +52,7 @@ impl<'a> Buffers<'a> {
             None => Err("the document has no binary chunk for it; export the model again".to_owned()),
         });
         // A cancelled read isn't an error of the buffer.
-        self.progress.check()?;
+        self.files.progress.check()?;
         let uri = || buffer.uri.as_deref().map_or("the binary chunk".to_owned(), uri::shown);
         read.as_deref().map_err(|reason| GltfError::Buffer { buffer: i, uri: uri(), reason: reason.clone() })
     }

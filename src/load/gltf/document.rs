@@ -12,12 +12,12 @@ use super::extensions::Extensions;
 use super::json::{list, objects};
 use super::lenient::take_list;
 use super::lights;
-use super::material_lists::MaterialLists;
 use super::node_parts::{self, NodeParts};
 use super::notes::Notes;
 use super::reach::Reach;
 use super::repair::Settled;
 use super::schema_check::Faults;
+use super::texture_source::MaterialLists;
 use super::{
     GltfError, extension_table, extensions, glb, json, morph_targets, repair, scenes, schema, schema_check, variants,
 };

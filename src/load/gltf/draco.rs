@@ -18,8 +18,7 @@ use ::gltf::mesh::Mode;
 use ::gltf::{Document, Primitive, Semantic};
 use draco_core::{DataType, DecodeLimits, DecoderBuffer, ErrorKind, Mesh, MeshDecoder, PointAttribute, PointIndex};
 
-use super::accessor::{DataError, component};
-use super::decompressed_primitive::DecompressedPrimitive;
+use super::accessor::{DataError, DecompressedPrimitive, component};
 use super::extensions::DracoExtension;
 use super::nodes::Placed;
 use super::schema::{DRACO, is_detail};

@@ -10,38 +10,26 @@ use super::notes::Notes;
 use super::schema::{BASISU, DRACO, INSTANCING, KHR_MESHOPT, LOD, MESHOPT, TRANSFORM, VISIBILITY, WEBP};
 use crate::uri::shown;
 
-/// How an extension changes a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Effect {
-    /// It is read, or it changes nothing of the shape at rest: looks, light, sound, behaviour, descriptions.
-    None,
-    /// It changes how the model looks and isn't read; what it does to the model.
-    Looks(&'static str),
-    /// It changes the shape and isn't read.
-    Shape {
-        /// What it does to the model.
-        does: &'static str,
-        /// What a user can do.
-        remedy: &'static str,
-    },
-}
+/// What an extension does to a model; and, if that changes the shape, what a user can do. Without that, it changes how the model looks.
+type Effect = (&'static str, Option<&'static str>);
 
 /// How many unknown extensions a sentence names.
 const NAMED: usize = 5;
 
 const EXPORT: &str = "export the model without it";
+const SHADERS: &str = "draws with shaders of its own";
 
 /// The extensions that have an effect and aren't read.
 const KNOWN: [(&str, Effect); 9] = [
-    ("AGI_articulations", shape("places parts by articulations", EXPORT)),
-    ("EXT_primitive_voxels", shape("makes voxels of its primitives", "export the voxels as triangles")),
-    ("KHR_gaussian_splatting", shape("makes splats of points", "convert the splats to triangles")),
-    ("KHR_technique_webgl", SHADERS),
-    ("KHR_techniques_webgl", SHADERS),
-    ("MAXAR_mesh_variants", shape("has several variants of its meshes, of which the first is shown", EXPORT)),
-    ("MPEG_accessor_timed", shape("changes vertices over time", EXPORT)),
-    ("MPEG_mesh_linking", shape("moves meshes with others", EXPORT)),
-    ("MPEG_scene_dynamic", shape("changes the scene over time", EXPORT)),
+    ("AGI_articulations", ("places parts by articulations", Some(EXPORT))),
+    ("EXT_primitive_voxels", ("makes voxels of its primitives", Some("export the voxels as triangles"))),
+    ("KHR_gaussian_splatting", ("makes splats of points", Some("convert the splats to triangles"))),
+    ("KHR_technique_webgl", (SHADERS, None)),
+    ("KHR_techniques_webgl", (SHADERS, None)),
+    ("MAXAR_mesh_variants", ("has several variants of its meshes, of which the first is shown", Some(EXPORT))),
+    ("MPEG_accessor_timed", ("changes vertices over time", Some(EXPORT))),
+    ("MPEG_mesh_linking", ("moves meshes with others", Some(EXPORT))),
+    ("MPEG_scene_dynamic", ("changes the scene over time", Some(EXPORT))),
 ];
 
 /// The extensions that are read, and those that have no effect, besides those whose [names](concerns_looks) tell it. FB_ngon_encoding
@@ -56,12 +44,6 @@ const WITHOUT_EFFECT: &str = "\
     MSFT_packing_occlusionRoughnessMetallic OMI_physics_body OMI_physics_shape VRM VRMC_node_constraint VRMC_springBone \
     VRMC_springBone_extended_collider VRMC_vrm VRMC_vrm_animation";
 
-const SHADERS: Effect = Effect::Looks("draws with shaders of its own");
-
-const fn shape(does: &'static str, remedy: &'static str) -> Effect {
-    Effect::Shape { does, remedy }
-}
-
 /// Returns whether an extension is one of materials, textures or lights, whose names say so behind the vendor's prefix.
 fn concerns_looks(name: &str) -> bool {
     let subject = name.split_once('_').map_or("", |(_, subject)| subject);
@@ -69,11 +51,13 @@ fn concerns_looks(name: &str) -> bool {
         || ["materials_", "texture_", "lights_"].iter().any(|prefix| subject.starts_with(prefix))
 }
 
-/// Returns an extension's effect; none if it isn't known.
+/// Returns whether an extension is read, or changes nothing of the shape at rest: looks, light, sound, behaviour, descriptions.
+fn is_harmless(name: &str) -> bool {
+    concerns_looks(name) || READ.contains(&name) || WITHOUT_EFFECT.split(' ').any(|known| known == name)
+}
+
+/// Returns the effect of an extension that isn't read, if it is known.
 fn effect(name: &str) -> Option<Effect> {
-    if concerns_looks(name) || READ.contains(&name) || WITHOUT_EFFECT.split(' ').any(|known| known == name) {
-        return Some(Effect::None);
-    }
     KNOWN.iter().find(|(known, _)| *known == name).map(|(_, effect)| *effect)
 }
 
@@ -85,21 +69,24 @@ fn effect(name: &str) -> Option<Effect> {
 pub(super) fn check(root: &Map<String, Value>, notes: &mut Notes) -> Result<(), GltfError> {
     for (place, name) in names(root, "extensionsRequired") {
         let (reason, remedy) = match effect(name) {
-            Some(Effect::None | Effect::Looks(_)) => continue,
-            Some(Effect::Shape { does, remedy }) => (format!("which {does} and isn't read"), remedy),
-            None => ("which isn't known, and may change the shape".to_owned(), EXPORT),
+            Some((does, Some(remedy))) => (format!("which {does} and isn't read"), remedy),
+            None if !is_harmless(name) => ("which isn't known, and may change the shape".to_owned(), EXPORT),
+            Some((_, None)) | None => continue,
         };
         return Err(GltfError::Extension { place, name: shown(name), reason, remedy });
     }
     let mut unknown = Vec::new();
     for (_, name) in names(root, "extensionsUsed") {
         match effect(name) {
-            Some(Effect::None) => {}
-            Some(Effect::Looks(does)) => notes.push(format!("{name} isn't read: it {does}. Colours may differ.")),
-            Some(Effect::Shape { does, .. }) => {
-                notes.push(format!("{name} isn't read: it {does}. What is shown may differ from what the file means."));
+            Some((does, remedy)) => {
+                let what = if remedy.is_some() {
+                    "What is shown may differ from what the file means"
+                } else {
+                    "Colours may differ"
+                };
+                notes.push(format!("{name} isn't read: it {does}. {what}."));
             }
-            None if unknown.contains(&name) => {}
+            None if is_harmless(name) || unknown.contains(&name) => {}
             None => unknown.push(name),
         }
         if unknown.len() > NAMED {

@@ -123,13 +123,13 @@ impl<'a> Members<'a> {
     }
 
     /// Returns the n of a TEXCOORD_n; none if the member is missing or no such number.
-    pub(super) fn uv_set(&self, name: &str) -> Option<u32> {
+    pub(super) fn uv_set(&self, name: &str) -> Option<usize> {
         let value = self.get(name)?;
         let set = value.as_u64().and_then(|set| u32::try_from(set).ok());
         if set.is_none() {
             self.note(name, format_args!("is {}, not a whole number up to {}", shown(value), u32::MAX), "0 is used");
         }
-        Some(set.unwrap_or(0))
+        Some(set.unwrap_or(0) as usize)
     }
 
     /// Returns an index into one of the document's lists; none without one, or if the list doesn't have it.

@@ -22,15 +22,12 @@ const RANGE: [f32; 2] = [1e-18, 1e18];
 
 /// Takes the lights out of a document before it is checked. Each is at the origin, shining along -Z.
 pub(super) fn take(root: &mut Map<String, Value>, notes: &RefCell<Notes>) -> Carried<Light> {
-    let lights = match take_extension(root, EXTENSION).map(|mut own| own.get_mut("lights").map(Value::take)) {
-        Some(Some(Value::Array(lights))) => lights,
-        Some(_) => {
-            notes.borrow_mut().push(format!("/{} isn't a list; there are no lights.", Light::LIST));
-            Vec::new()
-        }
-        None => Vec::new(),
-    };
-    Carried::take(root, &lights, notes)
+    let own = take_extension(root, EXTENSION);
+    let lights = own.as_ref().map_or(Some(&[][..]), |own| own.get("lights")?.as_array().map(Vec::as_slice));
+    if lights.is_none() {
+        notes.borrow_mut().push(format!("/{} isn't a list; there are no lights.", Light::LIST));
+    }
+    Carried::take(root, lights.unwrap_or_default(), notes)
 }
 
 impl Carriable for Light {

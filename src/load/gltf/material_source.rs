@@ -7,7 +7,7 @@
 use super::lenient::Members;
 use super::material_members::{self, ANY, EXTENSIONS, MAPS, METALLIC_ROUGHNESS, Member, POSITIVE, UNIT};
 use super::schema::TRANSFORM;
-use super::uv_transform::UvTransform;
+use crate::map_uvs::{MapUvs, affine};
 use geometry::mesh::{Alpha, HeightAmount, Look, Slot};
 
 /// A material of a document. Its images are still to be read.
@@ -34,15 +34,8 @@ pub(super) struct MaterialSource {
 pub(super) struct MapSource {
     /// Index into the document's textures.
     pub texture: usize,
-    pub uvs: Uvs,
-}
-
-/// Which texture coordinates a texture uses, and how they are transformed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Uvs {
-    /// The n of TEXCOORD_n.
-    pub set: u32,
-    pub transform: Option<UvTransform>,
+    /// Those of TEXCOORD_n, with the set n.
+    pub uvs: MapUvs,
 }
 
 /// Extensions that aren't drawn, and the number of each that is 0 where it changes nothing.
@@ -189,9 +182,9 @@ impl MaterialSource {
     }
 
     /// Returns the texture coordinates that corners have themselves.
-    pub(super) fn own_uvs(&self) -> Uvs {
+    pub(super) fn own_uvs(&self) -> MapUvs {
         let height = self.height.as_ref().map(|(map, _)| *map);
-        self.base_map.or(height).map_or_else(Uvs::default, |map| map.uvs)
+        self.base_map.or(height).map_or_else(MapUvs::default, |map| map.uvs)
     }
 
     /// Returns whether corners need more than position, normal and texture coordinates.
@@ -224,14 +217,12 @@ impl MapSource {
             info.say("has no index; it is left out");
         }
         let texture = info.index("index", "textures", textures)?;
-        let set = info.uv_set("texCoord").unwrap_or(0);
-        let transform = info.inside("extensions").and_then(|extensions| extensions.inside(TRANSFORM));
-        Some(Self {
-            texture,
-            uvs: Uvs {
-                set: transform.as_ref().and_then(|transform| transform.uv_set("texCoord")).unwrap_or(set),
-                transform: transform.as_ref().and_then(UvTransform::new),
-            },
-        })
+        let mut uvs = MapUvs { set: info.uv_set("texCoord").unwrap_or(0), ..MapUvs::default() };
+        if let Some(own) = info.inside("extensions").and_then(|extensions| extensions.inside(TRANSFORM)) {
+            uvs.set = own.uv_set("texCoord").unwrap_or(uvs.set);
+            let (offset, angle) = (own.numbers("offset", [0.0; 2], ANY), own.number("rotation", 0.0, ANY));
+            uvs.transform = affine(own.numbers("scale", [1.0; 2], ANY), angle, offset);
+        }
+        Some(Self { texture, uvs })
     }
 }

@@ -8,22 +8,21 @@ use std::sync::Arc;
 use ::gltf::Document;
 
 use super::lenient::Members;
-use super::material_lists::MaterialLists;
-use super::material_source::{MapSource, MaterialSource, Uvs};
+use super::material_source::{MapSource, MaterialSource};
 use super::nodes::Placed;
 use super::notes::Notes;
-use super::texture_source::{self, TextureSource};
-use super::uv_transform::UvTransform;
+use super::texture_source::{MaterialLists, TextureSource};
 use super::{Accessors, GltfError};
 use crate::heights::ModelImages;
 use crate::images::texture_size;
+use crate::map_uvs::MapUvs;
 use crate::packing::roughness;
 use crate::texture_room::{LEFT_OUT, ReadImage, read_images};
 use crate::uri::Files;
 use geometry::choice::Choice;
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::mipmap::MipFilter;
-use geometry::mesh::{HeightMap, Look, Map, MapUv, Material, Sampling, Slot, Texture, borrowing};
+use geometry::mesh::{HeightMap, Look, Map, Material, Sampling, Slot, Texture, borrowing};
 use geometry::progress::Cancelled;
 
 /// How many materials a sentence names.
@@ -35,7 +34,7 @@ pub(super) struct Resolved {
     pub index: usize,
     /// The scale of the node that it was made for; NaN once a warning said that other nodes have another.
     scale: f32,
-    pub uvs: Uvs,
+    pub uvs: MapUvs,
     pub needs: DetailNeeds,
 }
 
@@ -163,7 +162,7 @@ impl<'a> Materials<'a> {
     }
 
     fn bytes(&self, image: usize) -> Result<Cow<'a, [u8]>, String> {
-        texture_source::image(&self.lists.images, image, self.accessors, self.files)
+        self.lists.image(image, self.accessors, self.files)
     }
 
     /// Finds a material of what is shown, or adds it to the builder. `scale` is that of the node which shows it. A texture that
@@ -206,20 +205,14 @@ impl<'a> Materials<'a> {
         resolved
     }
 
-    fn map(&mut self, map: MapSource, slot: Slot, own: Uvs, material: &str) -> Option<Map> {
+    fn map(&mut self, map: MapSource, slot: Slot, own: MapUvs, material: &str) -> Option<Map> {
         let what = slot.label();
         let (texture, sampling) = self.texture(map.texture, MipFilter::from_map(slot), what, material)?;
-        let Uvs { set, transform } = map.uvs;
-        let uv = match set {
-            _ if map.uvs == own => MapUv::Own,
-            0 | 1 => MapUv::Set(set as usize, UvTransform::affine(transform)),
-            _ => {
-                let said = "only TEXCOORD_0 and TEXCOORD_1 are read for it; TEXCOORD_0 is used";
-                let said = format!("the {what} of material \"{material}\" has TEXCOORD_{set}, but {said}.");
-                self.notes.get_mut().push(said);
-                MapUv::Set(0, UvTransform::affine(transform))
-            }
-        };
+        let uv = map.uvs.on_corners(own, || {
+            let said = "only TEXCOORD_0 and TEXCOORD_1 are read for it; TEXCOORD_0 is used";
+            let set = map.uvs.set;
+            self.notes.get_mut().push(format!("the {what} of material \"{material}\" has TEXCOORD_{set}, but {said}."));
+        });
         Some(Map { texture, uv, sampling })
     }
 
@@ -227,7 +220,7 @@ impl<'a> Materials<'a> {
         let (map, amount) = source.height?;
         let TextureSource { images, sampling } = self.texture_source(map.texture)?;
         let image = *images.last()?;
-        let bytes = || texture_source::image(&self.lists.images, image, self.accessors, self.files);
+        let bytes = || self.lists.image(image, self.accessors, self.files);
         let names = [&*format!("/images/{image}"), material];
         // If it was cancelled, what follows ends too.
         self.heights.read(image, names, (amount, sampling.wrap), map.uvs != source.own_uvs(), bytes).ok()?
@@ -255,8 +248,7 @@ impl<'a> Materials<'a> {
     }
 
     fn texture_source(&mut self, texture: usize) -> Option<TextureSource> {
-        let MaterialLists { textures, samplers, images, .. } = self.lists;
-        let read = || texture_source::texture(textures, samplers, images.len(), texture, &self.notes);
+        let read = || self.lists.texture(texture, &self.notes);
         self.textures.entry(texture).or_insert_with(read).clone()
     }
 

@@ -13,6 +13,8 @@ use geometry::casts::to_usize;
 pub(super) struct Decompressed {
     words: Vec<u32>,
     length: usize,
+    /// The number of bytes from one element to the next; none if they are packed tightly, as indices are.
+    pub stride: Option<usize>,
 }
 
 impl Decompressed {
@@ -57,7 +59,8 @@ pub(super) fn decompress(view: &MeshoptExtension, bytes: &[u8], budget: &Budget)
             MeshoptFilter::Color => ffi::meshopt_decodeFilterColor(to.cast(), count, view.stride),
         }
     }
-    Ok(Decompressed { words, length })
+    let stride = (view.mode == MeshoptMode::Attributes).then_some(view.stride);
+    Ok(Decompressed { words, length, stride })
 }
 
 /// Checks the sizes that the decoders require.

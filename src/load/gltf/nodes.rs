@@ -6,7 +6,7 @@ use glam::{DMat4, Mat4};
 
 use super::GltfError;
 use super::notes::Notes;
-use crate::attachment::LocalTransform;
+use crate::attachment::{LocalTransform, SceneNodes};
 use geometry::mesh::rig::Placement;
 
 /// The nodes of a document with their places.
@@ -16,9 +16,7 @@ pub(crate) struct Placed {
     pub global: Vec<DMat4>,
     /// The nodes that the scene shows, each once: parents before children, siblings in order.
     pub shown: Vec<usize>,
-    pub parents: Vec<Option<usize>>,
-    /// All nodes, parents before children.
-    pub order: Vec<usize>,
+    pub scene: SceneNodes,
 }
 
 impl Placed {
@@ -52,17 +50,15 @@ pub(super) fn place(document: &Document, hiding: &[bool], notes: &mut Notes) -> 
         ));
     });
     let roots: Vec<usize> = (0..nodes.len()).filter(|&node| parents[node].is_none()).collect();
-    let mut global = vec![DMat4::IDENTITY; nodes.len()];
     let order = walk(nodes, &parents, &roots, &[]);
     if order.len() < nodes.len() {
         return Err(circle(&parents, &order));
     }
-    for node in order.iter().filter_map(|&node| document.nodes().nth(node)) {
-        let above = parents[node.index()].map_or(DMat4::IDENTITY, |parent| global[parent]);
-        global[node.index()] = below(above, local(&node).matrix());
-    }
     let roots = document.default_scene().map_or(roots, |scene| scene.nodes().map(|node| node.index()).collect());
-    Ok(Placed { global, shown: walk(nodes, &parents, &roots, hiding), parents, order })
+    let shown = walk(nodes, &parents, &roots, hiding);
+    let local = document.nodes().map(|node| local(&node)).collect();
+    let scene = SceneNodes { parents, order, local, ..SceneNodes::default() };
+    Ok(Placed { global: scene.global(), shown, scene })
 }
 
 /// Returns the first parent of each node. Calls `doubled` with each other one, the place among its children, the child, and its first parent.
@@ -109,11 +105,6 @@ pub(super) fn walk(nodes: &[json::Node], parents: &[Option<usize>], roots: &[usi
         }
     }
     order
-}
-
-/// Returns the product of two transforms. Most nodes have none: that is worth a shortcut where there are hundreds of thousands.
-pub(super) fn below(above: DMat4, own: DMat4) -> DMat4 {
-    if own == DMat4::IDENTITY { above } else { above * own }
 }
 
 /// Returns a node's own transform.

@@ -22,7 +22,7 @@ use geometry::cores::in_ranges;
 use geometry::mesh::detail_table::DetailTable;
 use geometry::mesh::{MemoryRefused, PartStyle, Repairs};
 
-use super::vertex_repairs::VertexRepairs;
+use super::vertex_details::VertexRepairs;
 pub(super) use super::vertices::NodePose;
 use super::vertices::{Findings, Vertex, Vertices};
 use super::{Accessors, GltfError};

@@ -3,8 +3,7 @@
 use ::gltf::accessor::Accessor;
 use ::gltf::{Primitive, Semantic};
 
-use super::accessor::List;
-use super::decompressed_primitive::DecompressedPrimitive;
+use super::accessor::{DecompressedPrimitive, List};
 use super::notes::Notes;
 use super::{Accessors, GltfError};
 

@@ -3,28 +3,20 @@
 use ::gltf::{Document, Node};
 
 use super::nodes::{self, Placed};
-use crate::attachment::SceneNodes;
 use geometry::mesh::rig::{Clip, Property};
 
-/// Describes the nodes of a document, with the morph targets of those that are shown. `also` are nodes that carry something beside
-/// meshes, if they are shown.
-pub(super) fn of(document: &Document, placed: &Placed, also: impl Iterator<Item = usize>) -> SceneNodes {
-    let all: Vec<_> = document.nodes().collect();
+/// Finds out which nodes carry something that is shown, and which morph targets nodes have that are. `also` are nodes that carry
+/// something beside meshes, if they are shown.
+pub(super) fn complete(placed: &mut Placed, document: &Document, also: impl Iterator<Item = usize>) {
+    placed.scene.carries = carries_shown(document, placed, also);
     let morphed = placed.shown.iter().filter_map(|&index| {
-        let node = all.get(index)?;
-        let targets = nodes::target_count(node);
-        let mut rest = super::weights(node).to_vec();
+        let node = document.nodes().nth(index)?;
+        let targets = nodes::target_count(&node);
+        let mut rest = super::weights(&node).to_vec();
         rest.resize(targets, 0.0);
         (targets > 0).then_some((index, rest))
     });
-    SceneNodes {
-        parents: placed.parents.clone(),
-        order: placed.order.clone(),
-        carries: carries_shown(document, placed, also),
-        morphed: morphed.collect(),
-        local: all.iter().map(nodes::local).collect(),
-        grown: Vec::new(),
-    }
+    placed.scene.morphed = morphed.collect();
 }
 
 /// Returns whether clips, whose targets are nodes of the document, move or deform a mesh that is shown.
@@ -43,7 +35,7 @@ fn carries_shown(document: &Document, placed: &Placed, also: impl Iterator<Item 
     let is_shown = placed.is_shown();
     let also = also.filter(|node| is_shown.get(*node) == Some(&true));
     let meshes = with_mesh(document, placed).map(|node| node.index());
-    SceneNodes::carrying(meshes.chain(joints(document, placed)).chain(also), &placed.order, &placed.parents)
+    placed.scene.carrying(meshes.chain(joints(document, placed)).chain(also))
 }
 
 /// Returns the joints of the skins of meshes that are shown.

@@ -1,5 +1,6 @@
 //! Reads what vertices have beside positions, normals and the base colour's texture coordinates: colours, tangents, and
-//! untransformed texture coordinates. What is wrong with these is left out, with a warning.
+//! untransformed texture coordinates. What is wrong with these is left out, with a warning. What was repaired in vertices is counted
+//! here, too.
 
 use ::gltf::Semantic;
 use ::gltf::accessor::Dimensions;
@@ -7,10 +8,41 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::accessor::List;
 use super::materials::DetailNeeds;
-use super::notes::Notes;
+use super::notes::{Notes, counts};
 use super::primitive_data::PrimitiveData;
-use super::vertex_repairs::VertexRepairs;
 use geometry::casts::to_u32;
+
+counts! {
+    pub(super) struct VertexFlaws {
+        bad_uvs => "uvs that aren't finite, replaced by (0, 0)";
+        missing_uvs => "primitives without the texture coordinates of a map, which has (0, 0) there";
+        bad_colors => "colours of vertices that aren't finite, replaced by white";
+        bad_tangents => "tangents without a direction, replaced by ones that are computed";
+        bad_weights => "vertices with unusable joints or weights, left unskinned";
+    }
+}
+
+/// What was repaired in vertices.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct VertexRepairs {
+    /// Primitives without normals.
+    pub without_normals: usize,
+    pub flaws: VertexFlaws,
+    /// Vertices that more joints than are kept move.
+    pub cut_weights: usize,
+    /// The largest part of a vertex's weights that was left out, of 1.
+    pub largest_cut: f64,
+}
+
+impl VertexRepairs {
+    /// Adds what was repaired in other vertices.
+    pub(super) fn add(&mut self, other: &Self) {
+        self.without_normals += other.without_normals;
+        self.flaws += other.flaws;
+        self.cut_weights += other.cut_weights;
+        self.largest_cut = self.largest_cut.max(other.largest_cut);
+    }
+}
 
 /// The lists of one primitive.
 pub(super) struct VertexDetails<'a> {

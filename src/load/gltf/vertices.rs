@@ -9,10 +9,10 @@ use super::accessor::List;
 use super::materials::Resolved;
 use super::notes::Notes;
 use super::primitive_data::PrimitiveData;
-use super::uv_transform::UvTransform;
-use super::vertex_details::VertexDetails;
-use super::vertex_repairs::VertexRepairs;
+use super::vertex_details::{VertexDetails, VertexRepairs};
 use crate::binding_space::turned;
+use crate::map_uvs::MapUvs;
+use geometry::casts::to_u32;
 use geometry::mesh::CornerDetail;
 use geometry::mesh::mesh_builder::InputCorner;
 use geometry::mesh::normals::GivenNormal;
@@ -146,7 +146,8 @@ fn cut(found: &mut Vec<(usize, f64)>) -> f64 {
 /// Reads a primitive's vertices, and puts them into their rest pose.
 pub(super) struct Vertices<'a> {
     pose: &'a NodePose<'a>,
-    transform: Option<UvTransform>,
+    /// Where the base colour lies on its texture coordinates.
+    own: MapUvs,
     pub count: usize,
     positions: List<'a, [f32; 3]>,
     normals: Option<List<'a, [f32; 3]>>,
@@ -180,11 +181,11 @@ impl<'a> Vertices<'a> {
         let count = positions.count();
         let positions = source.list(&positions, "POSITION", count)?;
         let normals = source.normals(count, notes)?;
-        let uvs = source.detail(Semantic::TexCoords(material.uvs.set), count, notes);
+        let uvs = source.detail(Semantic::TexCoords(to_u32(material.uvs.set)), count, notes);
         let details = is_detailed.then(|| VertexDetails::new(source, count, material.needs, &mut repairs, notes));
         let mut vertices = Self {
             pose,
-            transform: material.uvs.transform,
+            own: material.uvs,
             count,
             positions,
             normals,
@@ -263,10 +264,7 @@ impl<'a> Vertices<'a> {
         let linear = DMat3::from_mat4(matrix);
         // A normal without a direction becomes zero, which the builder replaces and counts.
         let normal = normal.map(|normal| turned(normal, &linear).unwrap_or(Vec3::ZERO));
-        let mut uv = self.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs.get(i).into());
-        if let Some(transform) = self.transform {
-            uv = transform.apply(uv);
-        }
+        let mut uv = self.own.apply(self.uvs.as_ref().map_or(Vec2::ZERO, |uvs| uvs.get(i).into()));
         if !uv.is_finite() {
             uv = Vec2::ZERO;
             findings.repairs.flaws.bad_uvs += 1;

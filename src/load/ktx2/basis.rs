@@ -14,14 +14,6 @@ use etc1s::Codebooks;
 /// The size of a block of UASTC, in bytes.
 pub(super) const UASTC_BLOCK: usize = uastc::BLOCK;
 
-/// What the images of a file in ETC1S have in common.
-pub(super) struct Shared<'a> {
-    /// The global data: codebooks, and where each image is.
-    pub global: &'a [u8],
-    pub images: usize,
-    pub has_alpha: bool,
-}
-
 /// Decodes an image of this width and height in px to RGBA.
 ///
 /// # Errors
@@ -36,27 +28,32 @@ pub(super) fn uastc(data: &[u8], size: [u32; 2]) -> Result<Vec<u8>, String> {
     Ok(image.rgba)
 }
 
-impl Shared<'_> {
-    /// Decodes image `index`, which has this width and height in px, to RGBA.
-    ///
-    /// # Errors
-    /// A clause that says what is wrong.
-    pub(super) fn etc1s(&self, data: &[u8], index: usize, size: [u32; 2]) -> Result<Vec<u8>, String> {
-        let wrong = || "its ETC1S data is broken".to_owned();
-        let books = Codebooks::read(self.global, self.images).ok_or_else(wrong)?;
-        let [color, alpha] = etc1s::slices(self.global, index).ok_or_else(wrong)?;
-        let mut image = Image::new(size);
-        let blocks = image.blocks();
-        let color = part(data, color.map(u64::from), "its ETC1S colours")?;
-        let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[..3].copy_from_slice(&texels[texel]));
-        books.decode(color, blocks, put).ok_or_else(wrong)?;
-        if self.has_alpha {
-            let alpha = part(data, alpha.map(u64::from), "its ETC1S alpha")?;
-            let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[3] = texels[texel][1]);
-            books.decode(alpha, blocks, put).ok_or_else(wrong)?;
-        }
-        Ok(image.rgba)
+/// Decodes an image of this width and height in px to RGBA: number `index` of a file's `images`, which share the global data, where
+/// codebooks are and where each image is.
+///
+/// # Errors
+/// A clause that says what is wrong.
+pub(super) fn etc1s(
+    data: &[u8],
+    size: [u32; 2],
+    global: &[u8],
+    [index, images]: [usize; 2],
+    has_alpha: bool,
+) -> Result<Vec<u8>, String> {
+    let wrong = || "its ETC1S data is broken".to_owned();
+    let books = Codebooks::read(global, images).ok_or_else(wrong)?;
+    let [color, alpha] = etc1s::slices(global, index).ok_or_else(wrong)?;
+    let mut image = Image::new(size);
+    let blocks = image.blocks();
+    let color = part(data, color.map(u64::from), "its ETC1S colours")?;
+    let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[..3].copy_from_slice(&texels[texel]));
+    books.decode(color, blocks, put).ok_or_else(wrong)?;
+    if has_alpha {
+        let alpha = part(data, alpha.map(u64::from), "its ETC1S alpha")?;
+        let put = |at, texels: [[u8; 3]; 16]| image.put(at, |to, texel| to[3] = texels[texel][1]);
+        books.decode(alpha, blocks, put).ok_or_else(wrong)?;
     }
+    Ok(image.rgba)
 }
 
 /// An image that is put together from blocks of 4 x 4 px, of which those at the right and at the bottom may reach beyond it.

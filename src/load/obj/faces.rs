@@ -19,8 +19,6 @@ pub(super) struct FacePiece {
     /// The corners of all its faces.
     pub corners: Vec<VertexNumbers>,
     pub counts: StatementCounts,
-    /// Why the piece couldn't be read to its end.
-    pub error: Option<ReadError>,
 }
 
 /// A statement that was found.
@@ -61,8 +59,9 @@ const SILENT: &str = "vp mg lod bevel c_interp d_interp cstype deg bmat step par
                       trace_obj";
 
 impl FacePiece {
-    /// Parses a piece of a file that has `counts` positions, texture coordinates and normals, `above` of them before the piece.
-    pub(super) fn parse(piece: &Piece, mut above: [usize; 3], counts: [usize; 3]) -> Self {
+    /// Parses a piece of a file that has `counts` positions, texture coordinates and normals, `above` of them before the piece, as
+    /// far as it can be read.
+    pub(super) fn parse(piece: &Piece, mut above: [usize; 3], counts: [usize; 3]) -> (Self, Result<(), ReadError>) {
         let mut found = Self::default();
         let ended = each_statement(piece.lines(), |statement| {
             let name = || statement.rest().into();
@@ -81,8 +80,7 @@ impl FacePiece {
             }
             Ok(())
         });
-        found.error = ended.err();
-        found
+        (found, ended)
     }
 
     fn count(&mut self, word: &[u8], statement: &Statement) {

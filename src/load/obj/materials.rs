@@ -1,12 +1,12 @@
 //! The materials of an OBJ file. Files in its folder describe them; each is made when a face first uses it.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::Vec2;
 
 use super::mtl::{self, MtlMap, MtlMaterial, MtlTexture};
-use super::textures::{Giving, TextureUser, are_normals};
+use super::textures::{Giving, UsedMap, are_normals};
 use crate::face_builder::FaceBuilder;
 use crate::heights::ModelImages;
 use crate::images::decoded_bytes;
@@ -15,19 +15,10 @@ use crate::read_error::ReadError;
 use crate::text_lines::{shown, words};
 use crate::texture_room::{ReadImage, read_images};
 use crate::uri::Files;
-use geometry::mesh::mipmap::MipFilter;
 use geometry::mesh::{Alpha, Look, Material, Sampling, Wrap, borrowing};
 
 /// The greatest number of material files that are read.
 const MAX_LIBRARIES: usize = 64;
-
-/// A file with an image, and what uses it.
-struct TextureFile {
-    name: String,
-    /// The name of the first material that uses it.
-    first: String,
-    users: Vec<TextureUser>,
-}
 
 /// The materials of the faces.
 #[derive(Default)]
@@ -44,9 +35,8 @@ pub(super) struct Materials {
     places: HashMap<usize, [Vec2; 2]>,
     /// The height images, by the index of a material.
     heights: Vec<(usize, MtlTexture)>,
-    /// The texture files, in order, and their numbers by name.
-    textures: Vec<TextureFile>,
-    numbers: HashMap<String, usize>,
+    /// The other maps of materials, by their indices, in the order of the maps.
+    used: Vec<(usize, Vec<UsedMap>)>,
     problems: Vec<String>,
     found: Counts,
 }
@@ -129,23 +119,19 @@ impl Materials {
             return Ok(index);
         }
         let (material, textures) = self.make();
-        let name = material.name.clone();
         let index = faces.material(material)?;
         // One place serves all images of a material.
         let place = textures.first().map(|(.., texture)| [texture.scale, texture.offset].map(Vec2::from));
         self.places.extend(place.filter(|place| *place != [Vec2::ONE, Vec2::ZERO]).map(|place| (index, place)));
+        let mut used = Vec::new();
         for (map, factor, texture) in textures {
             if map == MtlMap::Displacement {
                 self.heights.push((index, texture));
-                continue;
+            } else {
+                used.push(UsedMap { map, factor, file: texture.file });
             }
-            let file = texture.file;
-            let number = *self.numbers.entry(file.clone()).or_insert(self.textures.len());
-            if number == self.textures.len() {
-                self.textures.push(TextureFile { name: file, first: name.clone(), users: Vec::new() });
-            }
-            self.textures[number].users.push(TextureUser { material: index, map, factor });
         }
+        self.used.push((index, used));
         self.indices.insert(self.name.clone(), index);
         self.index = Some(index);
         Ok(index)
@@ -197,36 +183,43 @@ impl Materials {
     /// # Errors
     /// [`ReadError::Cancelled`].
     pub(super) fn read_images(&mut self, faces: &mut FaceBuilder, files: &Files, freed: u64) -> Result<(), ReadError> {
-        let textures = std::mem::take(&mut self.textures);
-        let mut giving = Giving::default();
-        let bytes = |file: &TextureFile| {
-            let filter = file.users.first().map_or(MipFilter::Colors, |user| user.map.filter());
-            Ok((Cow::Owned(files.read_path(&file.name)?), filter))
-        };
+        let used = std::mem::take(&mut self.used);
+        let uses = || used.iter().flat_map(|(index, maps)| maps.iter().map(move |own| (*index, own)));
+        // By file, how many materials have it as a bump map, and how many as another map.
+        let mut users: HashMap<&str, [usize; 2]> = HashMap::new();
+        uses().for_each(|(_, own)| users.entry(&own.file).or_default()[usize::from(own.map != MtlMap::Bump)] += 1);
         let reserved = faces.bytes_to_finish().saturating_sub(freed);
         // Textures can be scaled down to the room that heights leave.
         self.read_heights(faces, files, reserved)?;
-        let images: Vec<_> = textures.iter().collect();
-        let images = read_images(&images, bytes, reserved, files.budget, files.progress)?;
-        for (file, ReadImage { texture, said }) in textures.into_iter().zip(images) {
-            let (bumps, mut users): (Vec<_>, Vec<_>) =
-                file.users.into_iter().partition(|user| user.map == MtlMap::Bump);
-            if !bumps.is_empty() && texture.as_ref().is_some_and(|texture| are_normals(texture)) {
-                self.found.bumped -= bumps.len();
-                self.found.with_normals_as_bumps += bumps.len();
-                users.extend(bumps);
-            }
-            if users.is_empty() {
+        let mut seen = HashSet::new();
+        let first: Vec<_> = uses().filter(|(_, own)| seen.insert(&own.file)).collect();
+        let bytes = |(_, own): (usize, &UsedMap)| Ok((Cow::Owned(files.read_path(&own.file)?), own.map.filter()));
+        let read = read_images(&first, bytes, reserved, files.budget, files.progress)?;
+        let mut images = HashMap::new();
+        for ((index, own), ReadImage { texture, said }) in first.into_iter().zip(read) {
+            let [bumps, others] = users[&*own.file];
+            let is_of_normals = bumps > 0 && texture.as_ref().is_some_and(|texture| are_normals(texture));
+            if is_of_normals {
+                self.found.bumped -= bumps;
+                self.found.with_normals_as_bumps += bumps;
+            } else if others == 0 {
                 // Heights aren't drawn.
                 files.budget.release(texture.map_or(0, |texture| decoded_bytes(texture.size)));
                 continue;
             }
-            let (image, first) = (shown(file.name.as_bytes()), &file.first);
-            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{first}\" {said}")));
-            let given = texture.iter().flat_map(|texture| users.iter().map(move |user| (user, texture)));
-            given.for_each(|(user, texture)| giving.give(faces, user, texture));
+            let (image, material) = (shown(own.file.as_bytes()), &faces.builder.material_mut(index).name);
+            self.problems.extend(said.map(|said| format!("the texture {image} of material \"{material}\" {said}")));
+            images.extend(texture.map(|texture| (&*own.file, (texture, is_of_normals))));
         }
-        self.problems.extend(giving.finish(faces, files.budget));
+        let mut giving = Giving::default();
+        for (index, maps) in &used {
+            let given = maps.iter().filter_map(|own| {
+                let (texture, is_of_normals) = images.get(&*own.file)?;
+                (own.map != MtlMap::Bump || *is_of_normals).then_some((own, texture))
+            });
+            let given: Vec<_> = given.collect();
+            self.problems.extend(giving.give(faces.builder.material_mut(*index), &given, files.budget));
+        }
         Ok(())
     }
 

@@ -68,13 +68,13 @@ fn length(text: &[u8], end: u8) -> usize {
     memchr::memchr_iter(end, far).find(is_last).map_or(text.len(), |at| LEAST + at + 1)
 }
 
-/// Parses pieces on all cores, and passes what is made of each to `take`, in their order.
+/// Parses pieces on all cores, and passes what is made of each to `take`, in their order. `parse` also returns whether it came to the end.
 ///
 /// # Errors
-/// Those of `take`, [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
+/// Those of `parse` and `take`, [`ReadError::TooLarge`] and [`ReadError::Cancelled`].
 pub(super) fn in_pieces<'a, T: Send>(
     pieces: &[Piece<'a>],
-    parse: impl Fn(usize, &Piece<'a>) -> T + Sync,
+    parse: impl Fn(usize, &Piece<'a>) -> (T, Result<(), ReadError>) + Sync,
     mut take: impl FnMut(T) -> Result<(), ReadError>,
     budget: &Budget,
     progress: &Progress,
@@ -89,7 +89,7 @@ pub(super) fn in_pieces<'a, T: Send>(
         budget.borrow(bytes as u64 * PER_BYTE)?;
         let own = |i: usize| parse(first + i, &some[i]);
         let made = in_ranges(some.len(), 1, |range| range.map(own).collect::<Vec<_>>());
-        made.into_iter().flatten().try_for_each(&mut take)?;
+        made.into_iter().flatten().try_for_each(|(made, ended)| take(made).and(ended))?;
         first += some.len();
     }
     Ok(())

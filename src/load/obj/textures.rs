@@ -1,10 +1,9 @@
 //! What the images of materials are for.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::mtl::MtlMap;
-use crate::face_builder::FaceBuilder;
 use crate::memory_budget::Budget;
 use crate::packing::{metallic_roughness, with_opacity};
 use geometry::mesh::{Alpha, Map, MapUv, Material, Slot, Texture};
@@ -16,95 +15,83 @@ const LENGTH_ROOM: f32 = 0.35;
 /// Which part of the texels must be normals.
 const LEAST_PART: f32 = 0.9;
 
-/// A material that uses an image.
-pub(super) struct TextureUser {
-    /// Its index.
-    pub material: usize,
+/// A map of a material.
+pub(super) struct UsedMap {
     pub map: MtlMap,
     /// What the image's numbers are multiplied by.
     pub factor: f32,
+    pub file: String,
 }
 
-/// The images of a material that are joined with others.
+/// Gives images to materials. Those that join the same images share the result.
 #[derive(Default)]
-struct Parts {
-    opacity: Option<Arc<Texture>>,
-    roughness: Option<Arc<Texture>>,
-    metalness: Option<Arc<Texture>>,
-}
-
-/// Gives images to materials. Images of opacity, roughness and metalness are joined with others at the end.
-#[derive(Default)]
-pub(super) struct Giving(BTreeMap<usize, Parts>);
+pub(super) struct Giving(HashMap<(&'static str, [Option<*const Texture>; 2]), Arc<Texture>>);
 
 impl Giving {
-    /// Gives an image to a material of this index.
-    pub(super) fn give(&mut self, faces: &mut FaceBuilder, user: &TextureUser, texture: &Arc<Texture>) {
-        let &TextureUser { material: index, map, factor } = user;
-        let (material, texture) = (faces.builder.material_mut(index), texture.clone());
-        match map {
-            MtlMap::BaseColor => material.texture = Some(texture),
-            MtlMap::Emissive => {
-                // A texture alone shines as it is.
-                if material.look.emissive == [0.0; 3] {
-                    material.look.emissive = [1.0; 3];
+    /// Gives images to a material, in the order of its maps: opacity becomes the alpha of the base colour, and roughness and metalness
+    /// become one image. Returns a sentence for each that takes too much memory.
+    pub(super) fn give(
+        &mut self,
+        material: &mut Material,
+        images: &[(&UsedMap, &Arc<Texture>)],
+        budget: &Budget,
+    ) -> Vec<String> {
+        let (mut problems, name) = (Vec::new(), material.name.clone());
+        let mut warn = |what: &str, reason: String| {
+            problems.push(format!("{what} of material \"{name}\" is left out: it {reason}."));
+        };
+        for &(&UsedMap { map, factor, .. }, texture) in images {
+            match map {
+                MtlMap::BaseColor => material.texture = Some(texture.clone()),
+                MtlMap::Emissive => {
+                    // A texture alone shines as it is.
+                    if material.look.emissive == [0.0; 3] {
+                        material.look.emissive = [1.0; 3];
+                    }
+                    set_map(material, Slot::Emissive, texture.clone());
                 }
-                set_map(material, Slot::Emissive, texture);
-            }
-            MtlMap::Normal | MtlMap::Bump => {
-                material.look.normal_scale = factor;
-                set_map(material, Slot::Normal, texture);
-            }
-            // Read apart from the others, with all its bits.
-            MtlMap::Displacement => {}
-            MtlMap::Opacity => self.0.entry(index).or_default().opacity = Some(texture),
-            MtlMap::Roughness => {
-                material.look.roughness = factor;
-                self.0.entry(index).or_default().roughness = Some(texture);
-            }
-            MtlMap::Metalness => {
-                material.look.metallic = factor;
-                self.0.entry(index).or_default().metalness = Some(texture);
+                MtlMap::Normal | MtlMap::Bump => {
+                    material.look.normal_scale = factor;
+                    set_map(material, Slot::Normal, texture.clone());
+                }
+                // Read apart from the others, with all its bits.
+                MtlMap::Displacement => {}
+                MtlMap::Opacity => {
+                    let color = material.texture.as_ref();
+                    let join = || with_opacity(color.map(|own| &**own), texture, budget);
+                    match self.joined("opacity", [color, Some(texture)], join) {
+                        Ok(texture) => (material.texture, material.look.alpha) = (Some(texture), Alpha::Blend),
+                        Err(reason) => warn("the opacity", reason),
+                    }
+                }
+                MtlMap::Roughness => material.look.roughness = factor,
+                MtlMap::Metalness => material.look.metallic = factor,
             }
         }
-    }
-
-    /// Joins images: opacity becomes the alpha of the base colour, and roughness and metalness become one image. Returns a clause for
-    /// each material whose images take too much memory.
-    pub(super) fn finish(self, faces: &mut FaceBuilder, budget: &Budget) -> Vec<String> {
-        let mut problems = Vec::new();
-        // Materials that join the same images share the result.
-        let mut known: HashMap<(&str, [Option<*const Texture>; 2]), Arc<Texture>> = HashMap::new();
-        let mut joined = |what, images: [&Option<Arc<Texture>>; 2], join: &dyn Fn() -> Result<Texture, String>| {
-            let key = (what, images.map(|image| image.as_ref().map(Arc::as_ptr)));
-            if let Some(texture) = known.get(&key) {
-                return Ok(texture.clone());
-            }
-            join().map(|texture| known.entry(key).or_insert(Arc::new(texture)).clone())
-        };
-        for (index, Parts { opacity, roughness, metalness }) in &self.0 {
-            let material = faces.builder.material_mut(*index);
-            let name = material.name.clone();
-            let mut warn = |what: &str, reason: String| {
-                problems.push(format!("{what} of material \"{name}\" is left out: {reason}."));
-            };
-            if let Some(image) = opacity {
-                let color = material.texture.clone();
-                let join = || with_opacity(color.as_deref(), image, budget);
-                match joined("opacity", [&color, opacity], &join) {
-                    Ok(texture) => (material.texture, material.look.alpha) = (Some(texture), Alpha::Blend),
-                    Err(reason) => warn("the opacity", reason),
-                }
-            }
-            if roughness.is_some() || metalness.is_some() {
-                let join = || metallic_roughness(roughness.as_deref(), false, metalness.as_deref(), budget);
-                match joined("roughness and metalness", [roughness, metalness], &join) {
-                    Ok(texture) => set_map(material, Slot::MetallicRoughness, texture),
-                    Err(reason) => warn("the texture of roughness and metalness", reason),
-                }
+        let image = |map| images.iter().find(|(own, _)| own.map == map).map(|(_, texture)| *texture);
+        let both = [MtlMap::Roughness, MtlMap::Metalness].map(image);
+        if both.iter().any(Option::is_some) {
+            let [roughness, metalness] = both.map(|own| own.map(|own| &**own));
+            let join = || metallic_roughness(roughness, false, metalness, budget);
+            match self.joined("roughness and metalness", both, join) {
+                Ok(texture) => set_map(material, Slot::MetallicRoughness, texture),
+                Err(reason) => warn("the texture of roughness and metalness", reason),
             }
         }
         problems
+    }
+
+    fn joined(
+        &mut self,
+        what: &'static str,
+        images: [Option<&Arc<Texture>>; 2],
+        join: impl FnOnce() -> Result<Texture, String>,
+    ) -> Result<Arc<Texture>, String> {
+        let key = (what, images.map(|image| image.map(Arc::as_ptr)));
+        if let Some(texture) = self.0.get(&key) {
+            return Ok(texture.clone());
+        }
+        join().map(|texture| self.0.entry(key).or_insert(Arc::new(texture)).clone())
     }
 }
 

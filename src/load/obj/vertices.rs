@@ -43,7 +43,7 @@ impl Vertices {
     /// Stores what was read from the next piece of the file.
     ///
     /// # Errors
-    /// [`ReadError::TooLarge`], and the error that ended the piece.
+    /// [`ReadError::TooLarge`].
     pub(super) fn add(&mut self, more: &VertexPiece, budget: &Budget) -> Result<(), ReadError> {
         let before = self.positions.len();
         extend(&mut self.positions, &more.positions, budget)?;
@@ -87,19 +87,17 @@ pub(super) struct VertexPiece {
     pub libraries: Vec<Vec<u8>>,
     /// What its subdivision tags say.
     pub tags: Vec<Vec<u8>>,
-    /// Why the piece couldn't be read to its end.
-    pub error: Option<ReadError>,
 }
 
 impl VertexPiece {
-    pub(super) fn parse(piece: &Piece) -> Self {
+    /// Parses a piece, as far as it can be read.
+    pub(super) fn parse(piece: &Piece) -> (Self, Result<(), ReadError>) {
         let mut found = Self::default();
         let ended = each_statement(piece.lines(), |statement| {
             found.take(statement);
             Ok(())
         });
-        found.error = ended.err();
-        found
+        (found, ended)
     }
 
     fn take(&mut self, statement: &Statement) {

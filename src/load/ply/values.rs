@@ -4,6 +4,7 @@ use super::header::{Element, Encoding, Header, PropertyKind, Scalar};
 use crate::read_error::{FilePosition, ReadError};
 use crate::text_lines::{Line, Lines, first_word, parsed, shown, words};
 use geometry::casts::to_usize;
+use geometry::progress::Progress;
 
 /// The position of the next value.
 #[derive(Clone)]
@@ -86,11 +87,7 @@ impl<'a> Values<'a> {
     ///
     /// # Errors
     /// [`ReadError::Broken`].
-    pub(super) fn skip(
-        &mut self,
-        element: &Element,
-        mut each: impl FnMut(&Self, u64) -> Result<(), ReadError>,
-    ) -> Result<(), ReadError> {
+    pub(super) fn skip(&mut self, element: &Element, progress: &Progress) -> Result<(), ReadError> {
         let (size, fixed) = element.least();
         if size == 0 {
             return Ok(());
@@ -100,7 +97,7 @@ impl<'a> Values<'a> {
             return Ok(());
         }
         for i in 0..element.count {
-            each(self, i)?;
+            progress.step(i, || 0.5 * self.fraction())?;
             self.begin(element, i)?;
             if self.encoding == Encoding::Text {
                 continue;

@@ -12,19 +12,12 @@ use glam::Vec4;
 
 use crate::face_builder::linear_color;
 
-/// How the bits after each triangle are read.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum ColorDialect {
-    /// Triangles without a colour are white.
-    VisCam,
-    /// Triangles without a colour have that of the part: bytes of red, green and blue, encoded as sRGB.
-    Magics([u8; 3]),
-}
-
 /// The colours of a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Colors {
-    dialect: ColorDialect,
+    /// The colour of triangles without one as Magics writes it: bytes of red, green and blue, encoded as sRGB. None in the way of VisCAM,
+    /// where they are white.
+    part: Option<[u8; 3]>,
     /// Whether any triangle has a colour of its own.
     pub are_many: bool,
 }
@@ -34,19 +27,18 @@ impl Colors {
     ///
     /// Where a part has a colour and the bits of all triangles are 0, those were never written, and aren't black.
     pub(super) fn new(header: &[u8], mut attributes: impl Iterator<Item = u16> + Clone) -> Option<Self> {
-        if let Some(part) = part_color(header) {
-            let are_many =
-                attributes.clone().any(|bits| bits & FACET_COLOR_BIT == 0) && attributes.any(|bits| bits != 0);
-            return Some(Self { dialect: ColorDialect::Magics(part), are_many });
-        }
-        let are_many = attributes.any(|bits| bits & FACET_COLOR_BIT != 0);
-        are_many.then_some(Self { dialect: ColorDialect::VisCam, are_many })
+        let (part, is_set) = (part_color(header), |bits: u16| bits & FACET_COLOR_BIT != 0);
+        let are_many = match part {
+            Some(_) => !attributes.clone().all(is_set) && attributes.any(|bits| bits != 0),
+            None => attributes.any(is_set),
+        };
+        (part.is_some() || are_many).then_some(Self { part, are_many })
     }
 
     /// The colour of all triangles: linear RGBA. Where triangles have colours of their own, it is white.
     pub(super) fn of_all(&self) -> [f32; 4] {
-        match self.dialect {
-            ColorDialect::Magics([r, g, b]) if !self.are_many => linear_color([r, g, b, 255]).to_array(),
+        match self.part {
+            Some([r, g, b]) if !self.are_many => linear_color([r, g, b, 255]).to_array(),
             _ => [1.0; 4],
         }
     }
@@ -55,11 +47,11 @@ impl Colors {
     pub(super) fn of_triangle(&self, bits: u16) -> Vec4 {
         let is_set = bits & FACET_COLOR_BIT != 0;
         let [low, middle, high] = [0, 5, 10].map(|shift| widened(bits >> shift));
-        let [r, g, b] = match self.dialect {
-            ColorDialect::VisCam if is_set => [high, middle, low],
-            ColorDialect::VisCam => [255; 3],
-            ColorDialect::Magics(part) if is_set => part,
-            ColorDialect::Magics(_) => [low, middle, high],
+        let [r, g, b] = match (self.part, is_set) {
+            (None, true) => [high, middle, low],
+            (None, false) => [255; 3],
+            (Some(part), true) => part,
+            (Some(_), false) => [low, middle, high],
         };
         linear_color([r, g, b, 255])
     }

@@ -36,7 +36,7 @@ pub(super) struct Archive<'a> {
 }
 
 /// A file in the archive.
-struct Entry {
+pub(super) struct Entry {
     name: String,
     is_encrypted: bool,
     method: CompressionMethod,
@@ -86,23 +86,19 @@ impl<'a> Archive<'a> {
         models.fold(0, |sum, entry| sum.saturating_add(entry.place.uncompressed_size_hint()))
     }
 
-    /// Whether there is a part of this name, as [`open`](Self::open) finds it.
-    pub(super) fn has(&self, name: &str) -> bool {
-        self.entry(name.trim_start_matches('/')).is_some()
-    }
-
-    fn entry(&self, name: &str) -> Option<&Entry> {
+    /// Finds a part by its name, whatever its case, with or without the slash that it begins with.
+    pub(super) fn entry(&self, name: &str) -> Option<&Entry> {
+        let name = name.trim_start_matches('/');
         self.entries.iter().find(|entry| entry.name.eq_ignore_ascii_case(name))
     }
 
-    /// Opens a part by its name, whatever its case, with or without the slash that it begins with. Returns none if there is none of
-    /// this name.
+    /// Opens a part, as [`entry`](Self::entry) finds it. Returns none if there is none of this name.
     ///
     /// # Errors
     /// [`ReadError::Broken`], and [`ReadError::TooLarge`] for one that would unpack to too much.
     pub(super) fn open(&self, name: &str) -> Result<Option<Unpacked<'_>>, ReadError> {
-        let name = name.trim_start_matches('/');
         let Some(entry) = self.entry(name) else { return Ok(None) };
+        let name = name.trim_start_matches('/');
         let (packed, unpacked) = (entry.place.compressed_size_hint(), entry.place.uncompressed_size_hint());
         let total = self.unpacked.get().saturating_add(unpacked);
         if total > self.most {
@@ -124,16 +120,16 @@ impl<'a> Archive<'a> {
             ErrorKind::InvalidSignature { .. } => broken(name, "it isn't where the archive says"),
             _ => broken(name, "the archive says that it lies beyond the file's end"),
         })?;
-        let packed = match entry.method {
-            CompressionMethod::STORE => Packed::Stored(own.data()),
-            CompressionMethod::DEFLATE => Packed::Deflated(Box::new(DeflateDecoder::new(own.data()))),
+        let data: Box<dyn Read> = match entry.method {
+            CompressionMethod::STORE => Box::new(own.data()),
+            CompressionMethod::DEFLATE => Box::new(DeflateDecoder::new(own.data())),
             method => {
                 let method = method.as_u16();
                 return Err(broken(name, format!("it is compressed by method {method}, but only 0 and 8 are read")));
             }
         };
         let (sum, wrong_sums) = (own.claim_verifier().crc, &self.wrong_sums);
-        Ok(Some(Unpacked { packed, left: unpacked, crc: Crc::new(), sum, wrong_sums }))
+        Ok(Some(Unpacked { data, left: unpacked, crc: Crc::new(), sum, wrong_sums }))
     }
 
     /// A warning about parts with a wrong checksum, if there are any.
@@ -156,7 +152,7 @@ impl Entry {
 
 /// The bytes of a part, unpacked while they are read.
 pub(super) struct Unpacked<'a> {
-    packed: Packed<'a>,
+    data: Box<dyn Read + 'a>,
     /// How many bytes are missing, by what the archive says.
     pub left: u64,
     crc: Crc,
@@ -165,19 +161,9 @@ pub(super) struct Unpacked<'a> {
     wrong_sums: &'a Cell<usize>,
 }
 
-enum Packed<'a> {
-    Stored(&'a [u8]),
-    Deflated(Box<DeflateDecoder<&'a [u8]>>),
-}
-
 impl Read for Unpacked<'_> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = match &mut self.packed {
-            Packed::Stored(data) => data.read(buffer)?,
-            Packed::Deflated(decoder) => {
-                decoder.read(buffer).map_err(|_| io::Error::other("its compressed data is damaged"))?
-            }
-        };
+        let count = self.data.read(buffer).map_err(|_| io::Error::other("its compressed data is damaged"))?;
         let Some(left) = self.left.checked_sub(count as u64) else {
             return Err(io::Error::other("it unpacks to more than the archive says"));
         };

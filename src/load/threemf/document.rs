@@ -21,9 +21,6 @@ const MODEL: &str = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmode
 /// Where the archive's relationships are.
 const RELATIONSHIPS: &str = "_rels/.rels";
 
-/// How many tags are read before the job asks whether it was cancelled.
-const TAGS: u64 = 4096;
-
 /// All parts of a model.
 pub(super) struct Document {
     /// The first has the build.
@@ -62,13 +59,10 @@ impl Document {
             };
             let mut reader = ModelReader::new(&path, &mut document.geometry, budget, notes);
             let (mut tags, mut end) = (0_u64, 0);
-            xml::walk(&path, bytes, |step, at| {
-                if tags.is_multiple_of(TAGS) {
-                    progress.set((before + at) as f32 / all);
-                    progress.check()?;
-                }
+            xml::walk(&path, bytes, |tag, at| {
+                progress.step(tags, || (before + at) as f32 / all)?;
                 (tags, end) = (tags + 1, at);
-                reader.take(step)
+                reader.take(tag)
             })?;
             before += end;
             let part = reader.finish()?;
@@ -124,8 +118,8 @@ fn key(path: &str) -> String {
 fn root(archive: &Archive, notes: &mut Notes) -> Result<String, ReadError> {
     let mut target = None;
     if let Some(relationships) = archive.open(RELATIONSHIPS)? {
-        let read = xml::walk(RELATIONSHIPS, relationships, |step, _| {
-            if let xml::Step::Open(element) = step
+        let read = xml::walk(RELATIONSHIPS, relationships, |tag, _| {
+            if let Some(element) = tag
                 && target.is_none()
                 && element.text(b"Type").is_some_and(|kind| kind.trim() == MODEL)
             {
@@ -135,7 +129,7 @@ fn root(archive: &Archive, notes: &mut Notes) -> Result<String, ReadError> {
         });
         notes.extend(read.err().map(|error| error.to_string()));
     }
-    if let Some(target) = target.take_if(|target| archive.has(target)) {
+    if let Some(target) = target.take_if(|target| archive.entry(target).is_some()) {
         return Ok(target);
     }
     let model = archive.names().find(|name| name.to_ascii_lowercase().ends_with(".model"));

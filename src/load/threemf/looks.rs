@@ -8,7 +8,7 @@ use super::document::Document;
 use super::model::{Object, TriangleLook};
 use super::properties::{Group, Texture2d, material_color};
 use crate::face_builder::{FaceBuilder, linear_color};
-use crate::notes::counted;
+use crate::notes::counts;
 use crate::read_error::ReadError;
 use geometry::mesh::{Alpha, Look, Material};
 use geometry::names::shown;
@@ -19,33 +19,19 @@ pub(super) struct Resolved {
     pub material: usize,
     pub numbers: [u32; 3],
     pub uvs: [Vec2; 3],
-    pub fault: Option<Fault>,
+    /// Why it isn't shown as the file means it: at most one of these.
+    pub faults: Faults,
 }
 
-/// Why a triangle is shown without its properties, or not as the file means it.
-#[derive(Clone, Copy)]
-pub(super) enum Fault {
-    Absent,
-    Beyond,
-    Combined,
-}
-
-/// Numbers of triangles that aren't shown as the file means them, by [`Fault`].
-#[derive(Default)]
-pub(super) struct Faults([usize; 3]);
-
-impl Faults {
-    pub(super) fn count(&mut self, fault: Option<Fault>) {
-        self.0.iter_mut().skip(fault.map_or(usize::MAX, |fault| fault as usize)).take(1).for_each(|count| *count += 1);
-    }
-
-    pub(super) fn warnings(&self) -> impl Iterator<Item = String> + use<> {
-        counted(self.0.into_iter().zip([
-            "triangles whose material, colour or texture coordinates aren't in the file, shown without",
-            "triangles that go on where their texture ends (tile style none), which show its border there",
+counts! {
+    /// Numbers of triangles that aren't shown as the file means them.
+    #[derive(PartialEq, Eq)]
+    pub(super) struct Faults {
+        absent => "triangles whose material, colour or texture coordinates aren't in the file, shown without";
+        beyond => "triangles that go on where their texture ends (tile style none), which show its border there";
+        combined =>
             "triangles with layers (multiproperties) or mixtures (compositematerials), shown with the lowest layer or the first \
-             material alone",
-        ]))
+             material alone";
     }
 }
 
@@ -88,14 +74,15 @@ impl<'d> Looks<'d> {
             Some(first) => (own.group.or(object.group), Some(first)),
             None => (object.group, object.entry),
         };
-        let Some((group, first)) = group.zip(first) else { return self.unpainted(faces, None) };
+        let Some((group, first)) = group.zip(first) else { return self.colored(faces, [Vec4::ONE; 3]) };
         let corners = own.of_corners(first);
         let Some(Group::Combined { lowest, entries, .. }) = self.document.parts[part].groups.get(&group) else {
             return self.painted(faces, part, group, corners);
         };
         let corners = corners.map(|corner| entries.get(corner as usize).copied().unwrap_or(u32::MAX));
-        let resolved = self.painted(faces, part, *lowest, corners)?;
-        Ok(Resolved { fault: resolved.fault.or(Some(Fault::Combined)), ..resolved })
+        let mut resolved = self.painted(faces, part, *lowest, corners)?;
+        resolved.faults.combined = usize::from(resolved.faults == Faults::default());
+        Ok(resolved)
     }
 
     /// A triangle with entries of a group.
@@ -133,11 +120,8 @@ impl<'d> Looks<'d> {
             }
             Some(Group::Combined { .. }) | None => {}
         }
-        self.unpainted(faces, Some(Fault::Absent))
-    }
-
-    fn unpainted(&mut self, faces: &mut FaceBuilder, fault: Option<Fault>) -> Result<Resolved, ReadError> {
-        Ok(Resolved { fault, ..self.colored(faces, [Vec4::ONE; 3])? })
+        let faults = Faults { absent: 1, ..Faults::default() };
+        Ok(Resolved { faults, ..self.colored(faces, [Vec4::ONE; 3])? })
     }
 
     /// A triangle with colours at its corners, in linear RGBA.
@@ -168,8 +152,9 @@ impl<'d> Looks<'d> {
         if self.materials.len() > known {
             self.textured.push((resolved.material, texture.path.clone()));
         }
-        let fault = uvs.iter().any(|uv| texture.leaves(*uv)).then_some(Fault::Beyond);
-        Ok(Resolved { uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), fault, ..resolved })
+        let beyond = usize::from(uvs.iter().any(|uv| texture.leaves(*uv)));
+        let faults = Faults { beyond, ..Faults::default() };
+        Ok(Resolved { uvs: uvs.map(|[u, v]| Vec2::new(u, 1.0 - v)), faults, ..resolved })
     }
 
     /// A white triangle of a material, which `make` makes when it is first needed.
@@ -184,7 +169,7 @@ impl<'d> Looks<'d> {
             None => *self.materials.entry(key).or_insert(faces.material(make())?),
         };
         let number = faces.number(Vec4::ONE)?;
-        Ok(Resolved { material, numbers: [number; 3], uvs: [Vec2::ZERO; 3], fault: None })
+        Ok(Resolved { material, numbers: [number; 3], uvs: [Vec2::ZERO; 3], faults: Faults::default() })
     }
 }
 

@@ -10,7 +10,7 @@ use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::broken;
 use super::properties::{Group, Texture2d};
-use super::xml::{Element, Step};
+use super::xml::Element;
 use crate::memory_budget::Budget;
 use crate::notes::{Notes, counts};
 use crate::read_error::ReadError;
@@ -178,11 +178,13 @@ impl<'a> ModelReader<'a> {
         }
     }
 
+    /// Takes an opening tag, or none for a closing one.
+    ///
     /// # Errors
     /// [`ReadError::Broken`] and [`ReadError::TooLarge`].
-    pub(super) fn take(&mut self, step: Step) -> Result<(), ReadError> {
-        match step {
-            Step::Open(element) => {
+    pub(super) fn take(&mut self, tag: Option<Element>) -> Result<(), ReadError> {
+        match tag {
+            Some(element) => {
                 self.open.push(b'/');
                 // Elements that mean something have short names.
                 let is_short = element.name().len() < 40 && !element.name().contains(&b'/');
@@ -192,7 +194,7 @@ impl<'a> ModelReader<'a> {
                 self.open = path;
                 entered
             }
-            Step::Close => {
+            None => {
                 match self.open.as_slice() {
                     b"/model/resources/object" => self.end_object(),
                     path if path.strip_prefix(RESOURCES).is_some_and(|name| !name.contains(&b'/')) => self.end_group(),
@@ -358,7 +360,8 @@ impl<'a> ModelReader<'a> {
             *slot = parsed(value.trim_ascii());
         }
         let [Some(a), Some(b), Some(c)] = corners else {
-            let (id, triangle) = self.place();
+            let (id, first) = self.object.as_ref().map_or((0, 0), |(id, object)| (*id, object.triangles.start));
+            let triangle = self.geometry.triangles.len() - first;
             return Err(
                 self.broken(format!("triangle {triangle} of object {id} doesn't have the numbers of three vertices"))
             );
@@ -368,12 +371,6 @@ impl<'a> ModelReader<'a> {
         self.budget.hold(self.geometry.triangles.next_bytes())?;
         self.geometry.triangles.push(Triangle { corners: [a, b, c], look });
         Ok(())
-    }
-
-    /// The number of the open object, and of the triangle that comes next in it, counted from 0.
-    fn place(&self) -> (u32, usize) {
-        let (id, first) = self.object.as_ref().map_or((0, 0), |(id, object)| (*id, object.triangles.start));
-        (id, self.geometry.triangles.len() - first)
     }
 
     /// Reads an item of the build, or a component of an object.

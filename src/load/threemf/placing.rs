@@ -22,9 +22,6 @@ use geometry::progress::Progress;
 /// How deep components may be nested.
 const MAX_NESTING: usize = 64;
 
-/// How many triangles are placed before the job asks whether it was cancelled.
-const TRIANGLES: u64 = 4096;
-
 /// Places everything that the build has, or all objects if it has nothing. Returns which materials show images, and their names.
 pub(super) fn place(
     document: &Document,
@@ -67,7 +64,7 @@ pub(super) fn place(
     let Placer { faces, looks, found, .. } = placer;
     faces.notes.extend(counted([(counter.missing, "components and items whose object isn't in the file, left out")]));
     faces.notes.extend(unread(document, &counter.counted));
-    faces.notes.extend(found.warnings());
+    faces.notes.extend(found.sentences());
     Ok(looks.textured)
 }
 
@@ -176,10 +173,7 @@ impl Placer<'_, '_> {
         let is_mirrored = transform.matrix3.determinant() < 0.0;
         let mut last: Option<(u32, Resolved)> = None;
         for i in object.triangles.clone() {
-            if self.done.is_multiple_of(TRIANGLES) {
-                self.progress.set(self.done as f32 / self.total.max(1) as f32);
-                self.progress.check()?;
-            }
+            self.progress.step(self.done, || self.done as f32 / self.total.max(1) as f32)?;
             self.done += 1;
             let Some(&Triangle { corners, look }) = self.document.geometry.triangles.get(i) else { continue };
             let resolved = match last {
@@ -187,7 +181,7 @@ impl Placer<'_, '_> {
                 _ => self.looks.resolve(self.faces, at.0, object, look)?,
             };
             last = Some((look, resolved));
-            self.found.count(resolved.fault);
+            self.found += resolved.faults;
             self.corners.clear();
             for ((corner, number), uv) in corners.into_iter().zip(resolved.numbers).zip(resolved.uvs) {
                 let vertex = object.vertices.clone().nth(corner as usize);

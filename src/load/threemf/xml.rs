@@ -20,12 +20,6 @@ const MAX_LENGTH: u64 = 1 << 22;
 /// How many bytes are unpacked at a time.
 const PIECE: usize = 1 << 16;
 
-/// A step of the walk through the elements. An element without content opens and closes.
-pub(super) enum Step<'e> {
-    Open(Element<'e>),
-    Close,
-}
-
 /// An opening tag.
 pub(super) struct Element<'e>(BytesStart<'e>);
 
@@ -62,14 +56,15 @@ impl Element<'_> {
     }
 }
 
-/// Calls `take` with every tag of the part called `part`, and with how many bytes have been read.
+/// Calls `take` with every opening tag of the part called `part`, and with none for a closing one, and with how many bytes have been read.
+/// An element without content opens and closes.
 ///
 /// # Errors
 /// [`ReadError::Broken`], and the errors of `take`.
 pub(super) fn walk(
     part: &str,
     bytes: impl Read,
-    mut take: impl FnMut(Step, u64) -> Result<(), ReadError>,
+    mut take: impl FnMut(Option<Element>, u64) -> Result<(), ReadError>,
 ) -> Result<(), ReadError> {
     // One byte more, so that what is too long is told from what ends there.
     let mut limited = BufReader::with_capacity(PIECE, bytes).take(MAX_LENGTH + 1);
@@ -94,15 +89,15 @@ pub(super) fn walk(
                 if depth > MAX_DEPTH {
                     return Err(broken(part, format!("its elements are nested more than {MAX_DEPTH} deep")));
                 }
-                take(Step::Open(Element(start)), at)?;
+                take(Some(Element(start)), at)?;
             }
             Event::Empty(start) => {
-                take(Step::Open(Element(start)), at)?;
-                take(Step::Close, at)?;
+                take(Some(Element(start)), at)?;
+                take(None, at)?;
             }
             Event::End(_) => {
                 depth -= 1;
-                take(Step::Close, at)?;
+                take(None, at)?;
             }
             Event::Eof if depth > 0 => return Err(broken(part, "its XML ends within an element")),
             Event::Eof => return Ok(()),

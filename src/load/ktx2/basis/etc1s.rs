@@ -163,20 +163,15 @@ struct SliceReader<'a> {
     endpoints: Vec<usize>,
     above_left: usize,
     last_endpoint: usize,
-    history: History,
+    /// The selectors that were used lately, those that are used often near the front, and the place of the next one.
+    history: Vec<usize>,
+    next: usize,
     /// For how many blocks the first selector of the history is used.
     run: u32,
 }
 
-/// The selectors that were used lately, those that are used often near the front.
-struct History {
-    selectors: Vec<usize>,
-    next: usize,
-}
-
 impl<'a> SliceReader<'a> {
     fn new(books: &'a Codebooks, slice: &'a [u8], [across, _]: [usize; 2]) -> Self {
-        let history = History { selectors: vec![0; books.history], next: books.history / 2 };
         Self {
             books,
             bits: Bits::new(slice),
@@ -187,7 +182,8 @@ impl<'a> SliceReader<'a> {
             endpoints: vec![0; across],
             above_left: 0,
             last_endpoint: 0,
-            history,
+            history: vec![0; books.history],
+            next: books.history / 2,
             run: 0,
         }
     }
@@ -251,36 +247,26 @@ impl<'a> SliceReader<'a> {
     fn selector(&mut self) -> Option<usize> {
         if self.run > 0 {
             self.run -= 1;
-            return Some(self.history.selectors[0]);
+            return Some(self.history[0]);
         }
         let symbol = self.books.selector_codes.symbol(&mut self.bits)? as usize;
         let Some(place) = symbol.checked_sub(self.books.selectors.len()) else {
-            self.history.add(symbol);
+            // Replaces a selector of the second half.
+            let count = self.history.len();
+            self.history[self.next] = symbol;
+            self.next = if self.next + 1 < count { self.next + 1 } else { count / 2 };
             return Some(symbol);
         };
-        if place == self.history.selectors.len() {
+        if place == self.history.len() {
             let length = self.books.run_lengths.symbol(&mut self.bits)?;
             let length = if length == 63 { self.number(7) } else { length };
             // A run has three blocks more; this is the first.
             self.run = length.saturating_add(2);
-            return Some(self.history.selectors[0]);
+            return Some(self.history[0]);
         }
-        self.history.used(place)
-    }
-}
-
-impl History {
-    /// Replaces a selector of the second half.
-    fn add(&mut self, selector: usize) {
-        let count = self.selectors.len();
-        self.selectors[self.next] = selector;
-        self.next = if self.next + 1 < count { self.next + 1 } else { count / 2 };
-    }
-
-    /// Returns a selector, and moves it half way to the front.
-    fn used(&mut self, place: usize) -> Option<usize> {
-        let selector = *self.selectors.get(place)?;
-        self.selectors.swap(place, place / 2);
+        let selector = *self.history.get(place)?;
+        // It moves half way to the front.
+        self.history.swap(place, place / 2);
         Some(selector)
     }
 }

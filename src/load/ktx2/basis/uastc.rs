@@ -10,35 +10,31 @@ use super::bits::Bits;
 pub(super) const BLOCK: usize = 16;
 
 /// How a block is stored. A block begins with the code of its mode.
-struct Mode {
+struct Mode(
     /// The code and its length in bits.
-    code: (u8, u32),
+    (u8, u32),
     /// Bits for other transcoders, which are passed over.
-    hints: u32,
-    weight_bits: u32,
-    endpoints: Endpoints,
-    /// 2 (luminance and alpha), 3 (RGB) or 4 (RGBA).
-    components: usize,
-    partition: Partition,
-    plane: Plane,
-}
+    u32,
+    /// Bits of a weight.
+    u32,
+    Endpoints,
+    /// The number of components: 2 (luminance and alpha), 3 (RGB) or 4 (RGBA).
+    usize,
+    Partition,
+    Plane,
+);
 
-/// The codes that endpoints have: a trit or a quint, above some bits.
+/// The codes that endpoints have: some bits, and above them a trit or a quint; the number of what may be there.
 #[derive(Clone, Copy)]
-struct Endpoints {
-    bits: u32,
-    /// 3 with trits, 5 with quints, 1 with neither.
-    base: u32,
-}
+struct Endpoints(u32, u32);
 
-/// How texels are divided into subsets, which have endpoints of their own.
-#[derive(Clone, Copy)]
-enum Partition {
-    One,
-    /// Bits of an index, how many subsets there are, and by index the subsets of the texels: one bit each for two, two bits for three, those
-    /// of the first texel lowest.
-    Of(u32, usize, &'static [u32]),
-}
+const NEITHER: u32 = 1;
+const TRIT: u32 = 3;
+const QUINT: u32 = 5;
+
+/// How texels are divided into subsets, which have endpoints of their own: bits of an index, how many subsets there are, and by index the
+/// subsets of the texels: one bit each for two, two bits for three, those of the first texel lowest.
+type Partition = (u32, usize, &'static [u32]);
 
 /// Which component has weights of its own.
 #[derive(Clone, Copy)]
@@ -52,55 +48,32 @@ enum Plane {
 /// The mode of blocks of one colour.
 const SOLID: usize = 8;
 
-const fn bits(bits: u32) -> Endpoints {
-    Endpoints { bits, base: 1 }
-}
-
-const fn trits(bits: u32) -> Endpoints {
-    Endpoints { bits, base: 3 }
-}
-
-const fn quints(bits: u32) -> Endpoints {
-    Endpoints { bits, base: 5 }
-}
-
-const fn mode(
-    code: (u8, u32),
-    hints: u32,
-    weight_bits: u32,
-    endpoints: Endpoints,
-    components: usize,
-    partition: Partition,
-    plane: Plane,
-) -> Mode {
-    Mode { code, hints, weight_bits, endpoints, components, partition, plane }
-}
-
-const TWO: Partition = Partition::Of(5, 2, &TWO_SUBSETS);
-const OTHER_TWO: Partition = Partition::Of(5, 2, &OTHER_TWO_SUBSETS);
-const THREE: Partition = Partition::Of(4, 3, &THREE_SUBSETS);
+const ONE: Partition = (0, 1, &[0]);
+const TWO: Partition = (5, 2, &TWO_SUBSETS);
+const OTHER_TWO: Partition = (5, 2, &OTHER_TWO_SUBSETS);
+const THREE: Partition = (4, 3, &THREE_SUBSETS);
 
 #[rustfmt::skip]
 static MODES: [Mode; 19] = [
-    mode((0x01, 4), 15, 4, trits(6), 3, Partition::One, Plane::None),
-    mode((0x35, 6), 15, 2, bits(8), 3, Partition::One, Plane::None),
-    mode((0x1d, 5), 15, 3, bits(4), 3, TWO, Plane::None),
-    mode((0x03, 5), 15, 2, trits(2), 3, THREE, Plane::None),
-    mode((0x13, 5), 15, 2, quints(3), 3, TWO, Plane::None),
-    mode((0x0b, 5), 15, 3, bits(8), 3, Partition::One, Plane::None),
-    mode((0x1b, 5), 15, 2, quints(5), 3, Partition::One, Plane::Told),
-    mode((0x07, 5), 15, 2, quints(3), 3, OTHER_TWO, Plane::None),
-    mode((0x17, 5), 0, 0, bits(8), 4, Partition::One, Plane::None),
-    mode((0x0f, 5), 23, 2, bits(4), 4, TWO, Plane::None),
-    mode((0x02, 3), 17, 4, trits(4), 4, Partition::One, Plane::None),
-    mode((0x00, 2), 17, 2, trits(4), 4, Partition::One, Plane::Told),
-    mode((0x06, 3), 17, 3, trits(6), 4, Partition::One, Plane::None),
-    mode((0x1f, 5), 23, 1, bits(8), 4, Partition::One, Plane::Told),
-    mode((0x0d, 5), 23, 2, bits(8), 4, Partition::One, Plane::None),
-    mode((0x05, 7), 23, 4, bits(8), 2, Partition::One, Plane::None),
-    mode((0x15, 6), 23, 2, bits(8), 2, TWO, Plane::None),
-    mode((0x25, 6), 23, 2, bits(8), 2, Partition::One, Plane::Alpha),
-    mode((0x09, 4), 15, 5, bits(5), 3, Partition::One, Plane::None),
+    Mode((0x01, 4), 15, 4, Endpoints(6, TRIT), 3, ONE, Plane::None),
+    Mode((0x35, 6), 15, 2, Endpoints(8, NEITHER), 3, ONE, Plane::None),
+    Mode((0x1d, 5), 15, 3, Endpoints(4, NEITHER), 3, TWO, Plane::None),
+    Mode((0x03, 5), 15, 2, Endpoints(2, TRIT), 3, THREE, Plane::None),
+    Mode((0x13, 5), 15, 2, Endpoints(3, QUINT), 3, TWO, Plane::None),
+    Mode((0x0b, 5), 15, 3, Endpoints(8, NEITHER), 3, ONE, Plane::None),
+    Mode((0x1b, 5), 15, 2, Endpoints(5, QUINT), 3, ONE, Plane::Told),
+    Mode((0x07, 5), 15, 2, Endpoints(3, QUINT), 3, OTHER_TWO, Plane::None),
+    Mode((0x17, 5), 0, 0, Endpoints(8, NEITHER), 4, ONE, Plane::None),
+    Mode((0x0f, 5), 23, 2, Endpoints(4, NEITHER), 4, TWO, Plane::None),
+    Mode((0x02, 3), 17, 4, Endpoints(4, TRIT), 4, ONE, Plane::None),
+    Mode((0x00, 2), 17, 2, Endpoints(4, TRIT), 4, ONE, Plane::Told),
+    Mode((0x06, 3), 17, 3, Endpoints(6, TRIT), 4, ONE, Plane::None),
+    Mode((0x1f, 5), 23, 1, Endpoints(8, NEITHER), 4, ONE, Plane::Told),
+    Mode((0x0d, 5), 23, 2, Endpoints(8, NEITHER), 4, ONE, Plane::None),
+    Mode((0x05, 7), 23, 4, Endpoints(8, NEITHER), 2, ONE, Plane::None),
+    Mode((0x15, 6), 23, 2, Endpoints(8, NEITHER), 2, TWO, Plane::None),
+    Mode((0x25, 6), 23, 2, Endpoints(8, NEITHER), 2, ONE, Plane::Alpha),
+    Mode((0x09, 4), 15, 5, Endpoints(5, NEITHER), 3, ONE, Plane::None),
 ];
 
 /// Partitions that ASTC and BC7 have in common.
@@ -131,31 +104,29 @@ static OTHER_TWO_SUBSETS: [u32; 19] = [
 /// Returns the texels of a block as RGBA, row by row; none if it is no block of UASTC.
 pub(super) fn texels(block: &[u8; BLOCK]) -> Option<[[u8; 4]; 16]> {
     let mut bits = Bits::new(block);
-    let is_code = |mode: &Mode| u32::from(block[0]) & ((1 << mode.code.1) - 1) == u32::from(mode.code.0);
+    let is_code = |Mode((code, length), ..): &Mode| u32::from(block[0]) & ((1_u32 << length) - 1) == u32::from(*code);
     let index = MODES.iter().position(is_code)?;
-    let mode = &MODES[index];
-    bits.take(mode.code.1);
+    let Mode((_, length), hints, weight_bits, endpoints, components, partition, plane) = MODES[index];
+    bits.take(length);
     if index == SOLID {
         return Some([[0; 4].map(|_: u8| bits.take(8) as u8); 16]);
     }
-    bits.take(mode.hints);
-    let (count, subsets) = match mode.partition {
-        Partition::One => (1, 0),
-        Partition::Of(width, count, subsets) => (count, *subsets.get(bits.take(width) as usize)?),
-    };
-    let second = match mode.plane {
+    bits.take(hints);
+    let (width, count, subsets) = partition;
+    let subsets = *subsets.get(bits.take(width) as usize)?;
+    let second = match plane {
         Plane::None => None,
         Plane::Told => Some(bits.take(2) as usize),
         Plane::Alpha => Some(3),
     };
-    let ends = mode.ends(&mut bits, count);
+    let ends = ends(&mut bits, endpoints, components, count);
     let mut texels = [[0; 4]; 16];
     let mut seen = [false; 3];
     for (i, texel) in texels.iter_mut().enumerate() {
         let subset = (subsets >> (i * (count - 1))) as usize & ((1 << (count - 1)) - 1);
         // The highest bit of the first weight of a subset is 0, and isn't stored.
         let is_first = !std::mem::replace(&mut seen[subset], true);
-        let mut weight = || unquantized(bits.take(mode.weight_bits - u32::from(is_first)), mode.weight_bits);
+        let mut weight = || unquantized(bits.take(weight_bits - u32::from(is_first)), weight_bits);
         let all = weight();
         let own = second.map(|component| (component, weight()));
         for (component, value) in texel.iter_mut().enumerate() {
@@ -179,42 +150,41 @@ fn unquantized(weight: u32, bits: u32) -> u32 {
     six + u32::from(six > 32)
 }
 
-impl Mode {
-    /// Reads the ends of the lines of colours: for each subset and component the low and the high one, 0 to 255.
-    fn ends(&self, bits: &mut Bits, subsets: usize) -> [[[u32; 2]; 4]; 3] {
-        let count = 2 * self.components * subsets;
-        let mut values = [0; 18];
-        self.endpoints.read(bits, &mut values[..count]);
-        let mut ends = [[[0, 0], [0, 0], [0, 0], [255, 255]]; 3];
-        for (own, values) in ends.iter_mut().zip(values[..count].chunks_exact(2 * self.components)) {
-            let pairs = values.as_chunks::<2>().0;
-            match *pairs {
-                [luminance, alpha] => *own = [luminance, luminance, luminance, alpha],
-                _ => own[..pairs.len()].copy_from_slice(pairs),
-            }
+/// Reads the ends of the lines of colours: for each subset and component the low and the high one, 0 to 255.
+fn ends(bits: &mut Bits, endpoints: Endpoints, components: usize, subsets: usize) -> [[[u32; 2]; 4]; 3] {
+    let count = 2 * components * subsets;
+    let mut values = [0; 18];
+    endpoints.read(bits, &mut values[..count]);
+    let mut ends = [[[0, 0], [0, 0], [0, 0], [255, 255]]; 3];
+    for (own, values) in ends.iter_mut().zip(values[..count].chunks_exact(2 * components)) {
+        let pairs = values.as_chunks::<2>().0;
+        match *pairs {
+            [luminance, alpha] => *own = [luminance, luminance, luminance, alpha],
+            _ => own[..pairs.len()].copy_from_slice(pairs),
         }
-        ends
     }
+    ends
 }
 
 impl Endpoints {
     /// Reads endpoints, from 0 to 255. All groups of trits or quints stand before the bits.
     fn read(self, bits: &mut Bits, values: &mut [u32]) {
+        let Self(width, base) = self;
         // How many values are in a group, and how many bits a group of so many values has.
-        let sizes: &[u32] = match self.base {
-            3 => &[0, 2, 4, 5, 7, 8],
-            5 => &[0, 3, 5, 7],
+        let sizes: &[u32] = match base {
+            TRIT => &[0, 2, 4, 5, 7, 8],
+            QUINT => &[0, 3, 5, 7],
             _ => &[],
         };
         let mut above = [0; 18];
         for group in above[..values.len()].chunks_mut(sizes.len().max(2) - 1) {
             let mut packed = if sizes.is_empty() { 0 } else { bits.take(sizes[group.len()]) };
             for value in group {
-                (*value, packed) = (packed % self.base, packed / self.base);
+                (*value, packed) = (packed % base, packed / base);
             }
         }
         for (value, above) in values.iter_mut().zip(above) {
-            *value = self.unquantized(bits.take(self.bits), above);
+            *value = self.unquantized(bits.take(width), above);
         }
     }
 
@@ -222,15 +192,15 @@ impl Endpoints {
     /// the tables in section 23.13.
     fn unquantized(self, bits: u32, above: u32) -> u32 {
         let x = bits >> 1;
-        let (factor, places) = match (self.base, self.bits) {
-            (1, 8) => return bits,
-            (1, 5) => return bits << 3 | bits >> 2,
-            (1, _) => return bits * 17,
-            (3, 2) => (93, x * 0b1_0001_0110),
-            (3, 4) => (22, x << 6 | x),
-            (3, _) => (5, x << 4 | x >> 4),
-            (_, 3) => (26, x << 7 | x << 1 | x >> 1),
-            (_, _) => (6, x << 5 | x >> 3),
+        let (factor, places) = match self {
+            Self(8, NEITHER) => return bits,
+            Self(5, NEITHER) => return bits << 3 | bits >> 2,
+            Self(_, NEITHER) => return bits * 17,
+            Self(2, TRIT) => (93, x * 0b1_0001_0110),
+            Self(4, TRIT) => (22, x << 6 | x),
+            Self(_, TRIT) => (5, x << 4 | x >> 4),
+            Self(3, _) => (26, x << 7 | x << 1 | x >> 1),
+            Self(..) => (6, x << 5 | x >> 3),
         };
         let lowest = if bits & 1 != 0 { 511 } else { 0 };
         (lowest & 128) | ((above * factor + places) ^ lowest) >> 2
