@@ -144,22 +144,30 @@ fn chosen_weights_of_morph_targets_give_the_shape_of_a_clip_that_has_them() {
 fn the_left_half_of_a_split_may_have_weights_of_its_own() {
     let folder = Folder::new();
     let (file, out) = (file(&folder), folder.path("picture.png"));
-    let draw = |options: &[&str]| {
-        let view = ["--camera", "30,20,3", "--target", "0,0,0", "--size", "160x120", "--factor", "3", "-o", &*out];
-        output(&[&["render", &*file], &view[..], options].concat());
+    let (upright, leaning) = (["--morph", "Swell=0"], ["--morph", "Swell=0", "--morph", "Lean=1"]);
+    let view = ["--target", "0,0,0", "--factor", "3"];
+    // Distances of cameras are in bounding radii, of which the leaning beam has a smaller one.
+    let radius = |options: &[&str]| {
+        let stats = crate::stats(&[&[&*file, "--camera", "30,20,1"], &view[..], options].concat());
+        let eye = stats["camera"]["eye"].as_array().expect("a place");
+        eye.iter().map(|x| x.as_f64().expect("a number").powi(2)).sum::<f64>().sqrt()
+    };
+    let draw = |distance: f64, options: &[&str]| {
+        let camera = format!("30,20,{distance}");
+        let own = ["render", &*file, "--camera", &camera, "--size", "160x120", "-o", &*out];
+        output(&[&own[..], &view, options].concat());
         image::open(&out).expect("a picture").to_rgba8()
     };
-    // Leaning, the beam stays within the bounds that it has otherwise, so that one camera sees both alike.
-    let (upright, leaning) = (["--morph", "Swell=0"], ["--morph", "Swell=0", "--morph", "Lean=1"]);
-    let [left, right] = [draw(&leaning), draw(&upright)];
+    let [left, right] = [draw(3.0 * radius(&upright) / radius(&leaning), &leaning), draw(3.0, &upright)];
     let split = [&upright[..], &["--split", "0.5", "--split-left", "pn-aen", "--split-morph", "Lean=1"]].concat();
-    let both = draw(&split);
-    assert!(left != right);
-    // But for the last column: the software driver lets a sample of the right half in there.
-    for (x, y, pixel) in both.enumerate_pixels().filter(|(x, ..)| *x != 79) {
-        let expected = if x < 80 { left.get_pixel(x, y) } else { right.get_pixel(x, y) };
-        assert_eq!(pixel, expected, "{x}, {y}");
-    }
+    let both = draw(3.0, &split);
+    // Rounding of that distance decides for a sample at an outline now and then.
+    let differing = |alone: &image::RgbaImage, columns: std::ops::Range<u32>| {
+        let places = columns.flat_map(|x| (0..120).map(move |y| (x, y)));
+        places.filter(|&(x, y)| alone[(x, y)].0.iter().zip(both[(x, y)].0).any(|(a, b)| a.abs_diff(b) > 8)).count()
+    };
+    let found = [differing(&left, 0..79), differing(&right, 0..79), differing(&right, 80..160)];
+    assert!(found[0] < 10 && found[1] > 100 && found[2] == 0, "{found:?}");
     let halves = crate::stats(&[&[&*file], &split[..]].concat());
     let triangles = |of: &Value| of["triangles_in"].as_u64().expect("a count");
     assert_eq!((halves["left"]["mesh"].as_str(), triangles(&halves["left"])), (Some(&*file), triangles(&halves)));
