@@ -60,7 +60,12 @@ fn the_left_half_has_weights_of_its_own_which_are_undone_and_copied() {
     harness.get_by_label_contains(unweighed);
     harness.get_by_role_and_label(Role::Slider, "Swell").set_value_accesskit(1.0);
     settle(&mut harness);
-    assert!((least(&harness) + 0.6).abs() < 1e-5 && chosen(&harness).is_empty(), "the right half stays");
+    assert!(
+        (least(&harness) + 0.6).abs() < 1e-5 && chosen(&harness).is_empty(),
+        "the right half stays: {}, {:?}",
+        least(&harness),
+        chosen(&harness)
+    );
     assert_eq!(weight(&harness), Some(1.0));
     let weighed = "Left: Swell 1, untessellated\n";
     harness.get_by_label_contains(weighed);
