@@ -90,15 +90,7 @@ fn targets_without_end_take_no_memory() {
     let mut draft = triangle();
     // Many targets with one long list of zeros, which takes no bytes in the file except for one value.
     let (places, values) = (draft.view(&[0]), draft.view(&[0; 12]));
-    let zeros = json!({
-        "componentType": 5126, "type": "VEC3", "count": 1 << 18,
-        "sparse": {
-            "count": 1,
-            "indices": { "bufferView": places, "componentType": 5121 },
-            "values": { "bufferView": values },
-        },
-    });
-    let zeros = draft.push("accessors", zeros);
+    let zeros = draft.zeros_but_one(1 << 18, places, values);
     let targets: Vec<Value> = (0..1025).map(|_| json!({ "POSITION": zeros })).collect();
     draft.root["meshes"][0]["primitives"][0] = json!({ "attributes": { "POSITION": zeros }, "targets": targets });
     let indices = draft.indices(&[0, 1, 2]);

@@ -119,15 +119,7 @@ fn displaced_tangents_follow_their_joints() {
 fn each_target_displaces_its_own_tangents() {
     let mut draft = sheared();
     let (place, values) = (draft.view(&[1]), draft.view(bytemuck::bytes_of(&[0.0_f32, 2.0, 0.0])));
-    let sparse = json!({
-        "componentType": 5126, "type": "VEC3", "count": 3,
-        "sparse": {
-            "count": 1,
-            "indices": { "bufferView": place, "componentType": 5121 },
-            "values": { "bufferView": values },
-        },
-    });
-    let sparse = json!({ "TANGENT": draft.push("accessors", sparse) });
+    let sparse = json!({ "TANGENT": draft.zeros_but_one(3, place, values) });
     let mut other = draft.root["meshes"][0]["primitives"][0].clone();
     other["targets"] = json!([{}, sparse]);
     draft.root["meshes"][0]["primitives"][0]["targets"] = json!([sparse, {}]);
