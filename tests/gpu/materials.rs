@@ -189,20 +189,33 @@ pub(super) fn metal_and_matte_balls() -> Mesh {
     balls([row(1.0, [1.0, 0.77, 0.34]), row(0.0, [0.8, 0.1, 0.1])].concat(), 4)
 }
 
-/// Checks that a mesh which absorbs nothing can't be told from an even light all around, in a picture of this size.
-fn assert_unseen(mesh: Mesh, size: [u32; 2]) {
-    let gpu = &engine().gpu;
-    // Here a step of a picture's bytes is 0.9 %.
-    let [light, ..] = linear([250; 3]);
-    let mut engine: Engine = engine().clone();
-    let environment = Environment::uniform(gpu, [light; 3]).expect("a device");
-    engine.renderer = Arc::new(Renderer::lit_by(gpu, environment));
+/// An engine on the same device whose studio is an even light all around, so bright in linear numbers.
+pub(super) fn evenly_lit(light: f32) -> Engine {
+    let mut engine = engine().clone();
+    let environment = Environment::uniform(&engine.gpu, [light; 3]).expect("a small environment");
+    engine.renderer = Arc::new(Renderer::lit_by(&engine.gpu, environment));
+    engine
+}
+
+/// The bytes of an even light, of which a step is 0.9 %.
+pub(super) const EVEN_LIGHT: u8 = 250;
+
+/// A picture of a mesh in an even light all around, before as much light.
+pub(super) fn in_even_light(mesh: Mesh, size: [u32; 2]) -> RgbaImage {
+    let [light, ..] = linear([EVEN_LIGHT; 3]);
+    let engine = evenly_lit(light);
     let mut scene = scene_of(mesh, 0.0);
-    let target = Target::new(gpu, size).expect("a small picture");
+    let target = Target::new(&engine.gpu, size).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let settings = Settings { background: Some([srgb(light); 3]), ..of_picture(ToneCurve::None) };
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
-    let picture = target.read(gpu).expect("a readback");
+    target.read(&engine.gpu).expect("a readback")
+}
+
+/// Checks that a mesh which absorbs nothing can't be told from an even light all around, in a picture of this size.
+fn assert_unseen(mesh: Mesh, size: [u32; 2]) {
+    let [light, ..] = linear([EVEN_LIGHT; 3]);
+    let picture = in_even_light(mesh, size);
     let farthest = picture.pixels().flat_map(|pixel| linear([pixel.0[0], pixel.0[1], pixel.0[2]]));
     let farthest = farthest.map(|value| (value / light - 1.0).abs()).fold(0.0, f32::max);
     assert!(farthest < 0.01, "{farthest}");

@@ -1,22 +1,18 @@
 //! Light that goes through: thin surfaces, and bodies, which absorb and bend it.
 
-use std::sync::Arc;
-
 use geometry::mesh::mesh_builder::MeshBuilder;
 use geometry::mesh::{Alpha, Look, MapUv, Material, Mesh, Slot};
 use geometry::progress::Progress;
 use glam::vec3;
-use gpu::Timing;
-use inspect::engine::Engine;
-use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
-use inspect::render::{Camera, Renderer, Target};
+use inspect::render::{Camera, Target};
 use inspect::settings::{Settings, ToneCurve};
 
 use super::{ROUNDING, Sheet, corners, drawn, drawn_by, glass, painted, sheets_of};
 use crate::engine;
 use crate::materials::{
-    PLACES, SIDE, assert_near, at, balls, every_way, image, look_with, map, material, of_picture, studio,
+    EVEN_LIGHT, PLACES, SIDE, assert_near, at, balls, every_way, image, in_even_light, look_with, map, material,
+    of_picture, studio,
 };
 use crate::pictures::differing;
 use crate::stability::{scene_of, seen};
@@ -197,24 +193,14 @@ fn a_map_says_where_light_goes_through_and_metal_lets_none_through() {
 
 #[test]
 fn white_glass_cannot_be_told_from_an_even_light() {
-    let gpu = &engine().gpu;
-    let [light, ..] = linear([250; 3]);
-    let mut engine: Engine = engine().clone();
-    let environment = Environment::uniform(gpu, [light; 3]).expect("a device");
-    engine.renderer = Arc::new(Renderer::lit_by(gpu, environment));
     let pane = |roughness, transmission, clearcoat| {
         let look = Look { roughness, transmission, clearcoat, ..Look::default() };
         material([1.0; 3], look)
     };
     let panes = [pane(0.0, 1.0, 0.0), pane(0.5, 1.0, 0.0), pane(0.0, 0.5, 0.0), pane(0.2, 1.0, 1.0)];
-    let mut scene = scene_of(balls(panes.into(), 2), 0.0);
-    let target = Target::new(gpu, [160, 160]).expect("a small picture");
-    let camera = Camera::framing(&scene.bounds, target.viewport());
-    let settings = Settings { background: Some([srgb(light); 3]), ..of_picture(ToneCurve::None) };
-    engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
-    let picture = target.read(gpu).expect("a readback");
+    let picture = in_even_light(balls(panes.into(), 2), [160, 160]);
     let farthest = picture.pixels().flat_map(|pixel| [pixel.0[0], pixel.0[1], pixel.0[2]]);
-    let farthest = farthest.map(|byte| byte.abs_diff(250)).max();
+    let farthest = farthest.map(|byte| byte.abs_diff(EVEN_LIGHT)).max();
     assert!(farthest <= Some(3), "{farthest:?} steps");
 }
 
