@@ -12,6 +12,11 @@ use crate::{Folder, assert_says, failure, number, output, run, write_corners};
 
 const VIEW: [&str; 2] = ["--size", "160x120"];
 
+/// The stats that a command has written.
+fn written(stats: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(stats).expect("stats")).expect("JSON")
+}
+
 /// Draws a mesh with gates. Returns the exit code, standard error, and the gates of the stats.
 fn drawn(arguments: &[&str]) -> (Option<i32>, String, Vec<Value>) {
     let folder = Folder::new();
@@ -20,17 +25,14 @@ fn drawn(arguments: &[&str]) -> (Option<i32>, String, Vec<Value>) {
         [&["render"], arguments, &VIEW, &["-o", &picture, "--stats", &stats, "--measure-error", "false"]].concat();
     let ran = run(&all);
     assert!(Path::new(&picture).exists(), "the picture is written whatever gates say");
-    let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
-    let gates = stats["gates"].as_array().expect("an array").clone();
+    let gates = written(&stats)["gates"].as_array().expect("an array").clone();
     (ran.status.code(), String::from_utf8_lossy(&ran.stderr).into_owned(), gates)
 }
 
 /// Writes a mesh of three triangles: a square's half, and beside its long edge two that meet in its middle. `extra` is appended.
 fn write_junction(folder: &Folder, extra: &str) -> String {
-    let path = folder.path("junction.obj");
     let text = "v 0 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 0.5 0.5 0\nf 1 2 3\nf 1 4 5\nf 5 4 2\n";
-    std::fs::write(&path, format!("{text}{extra}")).expect("a writable folder");
-    path
+    folder.write("junction.obj", format!("{text}{extra}"))
 }
 
 /// Writes a triangle whose normals lean so that its patch turns over.
@@ -174,7 +176,7 @@ fn the_tolerance_of_given_factors_is_that_of_the_command() {
         let judged = |tolerance: &str| {
             let options = ["--tolerance", tolerance, "--fail-on", "above-tolerance", "-o", &folder.path("x.png")];
             let ran = run(&[&["render", "shape:torus", "--stats", &stats], &given[..], &VIEW, &options].concat());
-            let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
+            let stats = written(&stats);
             let said = String::from_utf8_lossy(&ran.stderr).into_owned();
             (ran.status.code(), said, number(&stats, "/settings/tolerance"))
         };

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::{VIEW, write_junction};
+use super::{VIEW, write_junction, written};
 use crate::{Folder, failure, number, output};
 
 #[test]
@@ -56,9 +56,7 @@ fn write_torn_at_the_back(folder: &Folder, shell: bool) -> String {
             text += &format!("f{}\n", corners.concat());
         }
     }
-    let path = folder.path(if shell { "shell.obj" } else { "back.obj" });
-    std::fs::write(&path, text).expect("a writable folder");
-    path
+    folder.write(if shell { "shell.obj" } else { "back.obj" }, text)
 }
 
 /// How many px of a picture have the colour of cracks that nothing hides: see src/render/layout.rs.
@@ -83,7 +81,7 @@ fn evidence_is_seen_from_where_nothing_hides_it() {
                 let marked = red(&Path::new(&evidence).join(name));
                 assert!(marked > 60, "{name} of {mesh} with {view:?} has {marked} red px");
             }
-            let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
+            let stats = written(&stats);
             let leak = stats.pointer("/gates/0/where").expect("a place");
             let [x, y, z] = [0, 1, 2].map(|axis| number(leak, &format!("/at/{axis}")));
             assert!(z < -0.8 && (x < -0.8 || y < -0.8), "on one of the two torn edges: {leak}");
@@ -124,7 +122,7 @@ fn evidence_of_an_engines_frame_comes_closer_too_and_px_are_those_of_its_picture
     let judged = |camera: &[&str]| {
         let gates = ["--fail-on", "leaks", "--evidence", &evidence];
         failure(&[&base[..], &VIEW, &gates, camera].concat(), 1);
-        let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
+        let stats = written(&stats);
         let [x, y] = [0, 1].map(|axis| number(&stats, &format!("/gates/0/where/px/{axis}")));
         (x, y, red(&Path::new(&evidence).join("it-leaks.png")), stats)
     };

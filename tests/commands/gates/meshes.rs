@@ -5,13 +5,6 @@ use std::path::Path;
 use super::drawn;
 use crate::{Folder, assert_says, failure, number, vase, write_corners};
 
-/// Writes an OBJ file of these corners and faces.
-fn write_obj(folder: &Folder, name: &str, text: &str) -> String {
-    let path = folder.path(name);
-    std::fs::write(&path, text).expect("a writable folder");
-    path
-}
-
 #[test]
 fn a_mesh_is_judged_by_what_decides_how_it_tessellates() {
     let folder = Folder::new();
@@ -33,7 +26,7 @@ fn a_mesh_is_judged_by_what_decides_how_it_tessellates() {
         ),
     ];
     for (gate, faces, words) in cases {
-        let mesh = write_obj(&folder, &format!("{gate}.obj"), &format!("{square}{faces}"));
+        let mesh = folder.write(&format!("{gate}.obj"), format!("{square}{faces}"));
         let evidence = folder.path(gate);
         let (code, said, gates) = drawn(&[&mesh, "--fail-on", gate, "--evidence", &evidence]);
         assert_eq!(code, Some(1), "{gate}: {said}");
