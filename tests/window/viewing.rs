@@ -24,6 +24,13 @@ fn pixels_of(harness: &Harness<App>, color: [u8; 3]) -> usize {
     picture.pixels().filter(|pixel| (0..3).all(|c| pixel.0[c].abs_diff(color[c]) <= 4)).count()
 }
 
+/// The least and the most red in the window's picture within four points to the left and right of a place.
+fn extremes_across(harness: &mut Harness<App>, at: egui::Pos2) -> (u8, u8) {
+    let picture = harness.render().expect("a picture of the window");
+    let row = (at.x as u32 - 4..=at.x as u32 + 4).map(|x| picture.get_pixel(x, at.y as u32).0[0]);
+    row.fold((255, 0), |(least, most), value| (least.min(value), most.max(value)))
+}
+
 const BARYCENTRIC: &str = "Legend: Barycentric, weights in the patch";
 
 #[test]
@@ -154,10 +161,7 @@ fn the_divider_is_seen_on_a_light_background() {
     settle(&mut harness);
     press(&mut harness, Key::S);
     let divider = harness.get_by_label("Split divider").rect();
-    let picture = harness.render().expect("a picture of the window");
-    let row = (divider.center().x as u32 - 4..=divider.center().x as u32 + 4)
-        .map(|x| picture.get_pixel(x, divider.bottom() as u32 - 6).0[0]);
-    let (least, most) = row.fold((255, 0), |(least, most), value: u8| (least.min(value), most.max(value)));
+    let (least, most) = extremes_across(&mut harness, egui::pos2(divider.center().x, divider.bottom() - 6.0));
     assert!(most - least > 60, "{least} to {most}");
 }
 

@@ -9,6 +9,7 @@ use inspect::settings::SectionAxis;
 use load::Source;
 use pnaen::app::App;
 
+use super::extremes_across;
 use crate::editing::press_with;
 use crate::{choose, press, settle, uniform};
 
@@ -126,9 +127,7 @@ fn the_sections_arrow_is_seen_in_both_themes() {
         harness.ctx.set_theme(theme);
         choose(&mut harness, "Section", "-Y");
         let middle = arrow(&harness).center();
-        let picture = harness.render().expect("a picture of the window");
-        let row = (middle.x as u32 - 4..=middle.x as u32 + 4).map(|x| picture.get_pixel(x, middle.y as u32).0[0]);
-        let (least, most) = row.fold((255, 0), |(least, most), value: u8| (least.min(value), most.max(value)));
+        let (least, most) = extremes_across(&mut harness, middle);
         assert!(most - least > 60, "{theme:?}: {least} to {most}");
     }
 }
