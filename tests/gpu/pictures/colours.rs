@@ -2,9 +2,11 @@
 
 use geometry::mesh::Shape;
 use geometry::tessellate::{
-    Convention, FACTOR_ODD, FIXED_ONE, Lod, Partitioning, Surface, Tessellation, domain_side, triangle_count,
+    Convention, FACTOR_ODD, FIXED_ONE, Lod, Partitioning, PatchFactors, Surface, Tessellation, domain_side,
+    triangle_count,
 };
 use geometry::view::project;
+use glam::{Mat4, Vec2, Vec3};
 use image::RgbaImage;
 use inspect::render::layout::WASTE_COLOR;
 use inspect::render::{Camera, EXCESS_SCALE, FACTOR_SCALE, Scene, Target};
@@ -53,7 +55,7 @@ fn barycentric_colours_are_red_green_and_blue_at_the_corners() {
 }
 
 /// Whether a px is a factor's colour: it may be a little darker where the surface is slanted, but has its hue.
-fn shows(picture: &RgbaImage, at: glam::Vec2, factor: f32) -> bool {
+fn shows(picture: &RgbaImage, at: Vec2, factor: f32) -> bool {
     let [r, g, b, _] = picture.get_pixel(at.x as u32, at.y as u32).0;
     let hue = |c: [u8; 3]| c.map(|x| f32::from(x) / f32::from(c[0].max(c[1]).max(c[2])));
     let (found, expected) = (hue([r, g, b]), hue(FACTOR_SCALE.color(FACTOR_SCALE.place(factor))));
@@ -63,6 +65,38 @@ fn shows(picture: &RgbaImage, at: glam::Vec2, factor: f32) -> bool {
 /// The factor that the tessellator works with.
 fn value(word: u32) -> f32 {
     (word & !FACTOR_ODD) as f32 / FIXED_ONE as f32
+}
+
+/// A large picture of a scene, with the factors of its patches.
+struct Shown {
+    picture: RgbaImage,
+    factors: Vec<PatchFactors>,
+    clip_from_object: Mat4,
+    viewport: Vec2,
+}
+
+impl Shown {
+    /// Draws a scene as the camera that frames it sees it, turned.
+    fn new(scene: &mut Scene, settings: &Settings, turned: impl Fn(Camera) -> Camera) -> Self {
+        let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
+        let viewport = target.viewport();
+        let camera = turned(Camera::framing(&scene.bounds, viewport));
+        let picture = seen(scene, &target, settings, &camera);
+        let factors = engine().patch_factors(scene).expect("a readback");
+        Self { picture, factors, clip_from_object: camera.clip_from_object(viewport, &scene.bounds), viewport }
+    }
+
+    /// The place in px of a point of the scene.
+    fn place(&self, point: Vec3) -> Vec2 {
+        project(self.clip_from_object, self.viewport, point).expect("in front of the eye")
+    }
+}
+
+/// Flat patches of one factor, with these colours.
+fn flat(factor: f32, colors: Colors) -> Settings {
+    let (surface, partitioning) = (Surface::Flat, Partitioning::Integer);
+    let tessellation = Tessellation { surface, partitioning, factor, ..Tessellation::default() };
+    Settings { overlays: Overlays { colors, ..Overlays::default() }, ..Settings::from(tessellation) }
 }
 
 /// A camera that looks straight at a cube's front face.
@@ -75,14 +109,8 @@ fn factors_have_the_colours_of_their_scale_on_edges_and_inside() {
     let (_, mut cube) = scene(Shape::CubeSplit);
     let target = Target::new(&engine().gpu, [400, 400]).expect("a small picture");
     let camera = Camera { orthographic: true, ..in_front(&cube, &target) };
-    let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
     for (stop, factor) in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0].into_iter().enumerate() {
-        let flat = Settings::from(Tessellation {
-            surface: Surface::Flat,
-            partitioning: Partitioning::Integer,
-            ..Tessellation::default()
-        });
-        let settings = Settings { tessellation: Tessellation { factor, ..flat.tessellation }, overlays, ..flat };
+        let settings = flat(factor, Colors::Factors);
         let found = pixels_of(&seen(&mut cube, &target, &settings, &camera), FACTOR_SCALE.colors[stop]);
         assert!(found > 10_000, "{factor}: {found} px");
     }
@@ -91,19 +119,15 @@ fn factors_have_the_colours_of_their_scale_on_edges_and_inside() {
 #[test]
 fn every_edge_has_the_colour_of_its_own_factor() {
     let (loaded, mut saddle) = scene(Shape::Saddle);
-    let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
-    let camera = Camera { elevation: 70.0, ..Camera::framing(&saddle.bounds, target.viewport()) };
     let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
     let settings = Settings {
         tessellation: Tessellation { surface: Surface::Flat, lod: Lod::EdgeLength, ..Tessellation::default() },
         overlays,
         ..Settings::default()
     };
-    let picture = seen(&mut saddle, &target, &settings, &camera);
-    let factors = engine().patch_factors(&saddle).expect("a readback");
-    let clip = camera.clip_from_object(target.viewport(), &saddle.bounds);
+    let shown = Shown::new(&mut saddle, &settings, |camera| Camera { elevation: 70.0, ..camera });
     let (mut wrong, mut differ) = (Vec::new(), 0);
-    for (patch, factors) in loaded.topology.patches.iter().zip(&factors) {
+    for (patch, factors) in loaded.topology.patches.iter().zip(&shown.factors) {
         let corners = loaded.topology.corners(patch).map(|corner| loaded.mesh.corners[corner as usize].position);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let sides = (0..3).map(|i| {
@@ -113,8 +137,8 @@ fn every_edge_has_the_colour_of_its_own_factor() {
         let words: Vec<_> = sides.chain([(middle, value(factors.inside))]).collect();
         differ += usize::from(words.iter().any(|(_, factor)| *factor != words[0].1));
         for (place, factor) in words {
-            let at = project(clip, target.viewport(), place).expect("in front of the eye");
-            if !shows(&picture, at, factor) {
+            let at = shown.place(place);
+            if !shows(&shown.picture, at, factor) {
                 wrong.push((factor, at));
             }
         }
@@ -126,23 +150,19 @@ fn every_edge_has_the_colour_of_its_own_factor() {
 #[test]
 fn every_patch_has_the_colour_of_its_excess_triangles() {
     let (loaded, mut saddle) = scene(Shape::Saddle);
-    let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
-    let camera = Camera { elevation: 70.0, ..Camera::framing(&saddle.bounds, target.viewport()) };
     let settings = Settings {
         tessellation: Tessellation { lod: Lod::EdgeLength, tolerance: 0.5, ..Tessellation::default() },
         overlays: Overlays { colors: Colors::Excess, ..Overlays::default() },
         ..Settings::default()
     };
-    let picture = seen(&mut saddle, &target, &settings, &camera);
-    let factors = engine().patch_factors(&saddle).expect("a readback");
+    let shown = Shown::new(&mut saddle, &settings, |camera| Camera { elevation: 70.0, ..camera });
     let least = engine().minimum(&mut saddle).expect("a readback");
-    let clip = camera.clip_from_object(target.viewport(), &saddle.bounds);
-    let times = |patch: usize| triangle_count(factors[patch]) as f32 / least[patch] as f32;
+    let times = |patch: usize| triangle_count(shown.factors[patch]) as f32 / least[patch] as f32;
     let mut largest = 0.0f32;
     for (patch, corners) in loaded.topology.patches.iter().map(|patch| loaded.topology.corners(patch)).enumerate() {
         let [a, b, c] = corners.map(|corner| loaded.mesh.corners[corner as usize].position);
-        let at = project(clip, target.viewport(), (a + b + c) / 3.0).expect("in front of the eye");
-        let colour = picture.get_pixel(at.x as u32, at.y as u32).0;
+        let at = shown.place((a + b + c) / 3.0);
+        let colour = shown.picture.get_pixel(at.x as u32, at.y as u32).0;
         let expected = EXCESS_SCALE.color(EXCESS_SCALE.place(times(patch)));
         // Slopes are a little darker: see `shade_flat`.
         let bright = (0..3).filter(|&k| expected[k] > 40);
@@ -158,8 +178,6 @@ fn every_patch_has_the_colour_of_its_excess_triangles() {
 fn patches_of_every_slab_have_the_colours_of_their_own_factors() {
     let loaded = sheet(600, 500);
     let mut scene = engine().scene(&loaded, ARENA_BYTES).expect("it fits");
-    let target = Target::new(&engine().gpu, [800, 800]).expect("a small picture");
-    let camera = Camera { elevation: 40.0, azimuth: 90.0, ..Camera::framing(&scene.bounds, target.viewport()) };
     let overlays = Overlays { colors: Colors::Factors, ..Overlays::default() };
     let by_distance = Settings {
         tessellation: Tessellation { lod: Lod::Distance, factor: 4.0, near: 2.0, far: 3.5, ..Tessellation::default() },
@@ -171,19 +189,17 @@ fn patches_of_every_slab_have_the_colours_of_their_own_factors() {
         surface: Surface::Flat,
         ..by_distance.tessellation
     });
-    let picture = seen(&mut scene, &target, &settings, &camera);
-    let factors = engine().patch_factors(&scene).expect("a readback");
-    let clip = camera.clip_from_object(target.viewport(), &scene.bounds);
-    let sampled: Vec<_> = (0..factors.len()).step_by(1009).collect();
+    let shown = Shown::new(&mut scene, &settings, |camera| Camera { elevation: 40.0, azimuth: 90.0, ..camera });
+    let sampled: Vec<_> = (0..shown.factors.len()).step_by(1009).collect();
     let wrong = sampled.iter().filter(|&&patch| {
         let corners = loaded.topology.patch_corners(patch as u32).map(|c| loaded.mesh.corners[c as usize].position);
-        let at = project(clip, target.viewport(), (corners[0] + corners[1] + corners[2]) / 3.0);
-        !shows(&picture, at.expect("in front of the eye"), value(factors[patch].inside))
+        let at = shown.place((corners[0] + corners[1] + corners[2]) / 3.0);
+        !shows(&shown.picture, at, value(shown.factors[patch].inside))
     });
     // Some lie where one factor ends and another starts.
     let (wrong, all) = (wrong.count(), sampled.len());
     assert!(wrong < all / 25, "{wrong} of {all}");
-    let different: std::collections::HashSet<_> = sampled.iter().map(|&patch| factors[patch].inside).collect();
+    let different: std::collections::HashSet<_> = sampled.iter().map(|&patch| shown.factors[patch].inside).collect();
     assert!(different.len() > 2, "{different:?}");
 }
 
@@ -192,21 +208,7 @@ fn small_triangles_and_low_factors_are_marked_and_others_are_not() {
     let (_, mut cube) = scene(Shape::CubeSplit);
     let target = Target::new(&engine().gpu, [400, 400]).expect("a small picture");
     let camera = Camera { orthographic: true, ..in_front(&cube, &target) };
-    let mut marked = |colors, factor| {
-        let overlays = Overlays { colors, ..Overlays::default() };
-        let flat = Settings::from(Tessellation {
-            surface: Surface::Flat,
-            partitioning: Partitioning::Integer,
-            ..Tessellation::default()
-        });
-        let picture = seen(
-            &mut cube,
-            &target,
-            &Settings { tessellation: Tessellation { factor, ..flat.tessellation }, overlays, ..flat },
-            &camera,
-        );
-        pixels_of(&picture, WASTE_COLOR)
-    };
+    let mut marked = |colors, factor| pixels_of(&seen(&mut cube, &target, &flat(factor, colors), &camera), WASTE_COLOR);
     // The face is some 230 px wide, and its rings of triangles are smaller than a square grid's.
     assert_eq!(marked(Colors::TriangleSize, 16.0), 0);
     assert!(marked(Colors::TriangleSize, 64.0) > 10_000);
