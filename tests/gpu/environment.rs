@@ -17,7 +17,7 @@ use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::punctual::PunctualLight;
 use inspect::render::studio::studio_light;
-use inspect::render::{Camera, Renderer, Scene, Target};
+use inspect::render::{Camera, Scene, Target};
 use inspect::settings::{Colors, FileLights, Lighting, NormalsAt, Overlays, Settings, ToneCurve};
 use load::environment_file::EnvironmentFile;
 use load::files::Limits;
@@ -25,7 +25,7 @@ use load::panorama::Panorama;
 
 use crate::engine;
 use crate::looks::square_of;
-use crate::materials::{every_way, white_balls};
+use crate::materials::{evenly_lit, every_way, white_balls};
 use crate::pictures::differing;
 use crate::stability::{scene_of, seen};
 
@@ -209,10 +209,7 @@ fn three_lights() -> Vec<Light> {
 
 /// The engine with a studio that is dark, so that nothing but the lights of a file shines.
 pub(super) fn unlit_engine() -> Engine {
-    let mut engine = engine().clone();
-    let black = Environment::uniform(&engine.gpu, [0.0; 3]).expect("a small environment");
-    engine.renderer = Arc::new(Renderer::lit_by(&engine.gpu, black));
-    engine
+    evenly_lit(0.0)
 }
 
 /// The width and height of pictures of a square, in px.

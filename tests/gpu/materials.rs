@@ -1,23 +1,22 @@
 //! Materials in light from all around: each part of a material against a picture that must be the same, and pictures of all of them.
 
+mod coats;
+mod maps;
+
 use std::sync::Arc;
 
 use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
-use geometry::mesh::{
-    Alpha, CornerDetail, HeightMap, Heights, Look, Map, MapUv, Material, Mesh, Sampling, Shape, Slot, Texture,
-};
+use geometry::mesh::{CornerDetail, Look, Map, MapUv, Material, Mesh, Sampling, Shape, Slot, Texture};
 use geometry::progress::Progress;
-use geometry::tessellate::{Displacement, Surface, Tessellation};
-use glam::{Vec2, Vec3, Vec4, vec2, vec3};
+use geometry::tessellate::{Surface, Tessellation};
+use glam::{Vec2, Vec3, vec3};
 use gpu::Timing;
 use image::RgbaImage;
 use inspect::engine::Engine;
 use inspect::render::environment::Environment;
 use inspect::render::layout::{linear, srgb};
 use inspect::render::{Camera, Renderer, Target};
-use inspect::settings::{Lighting, NormalMaps, NormalsAt, Overlays, Settings, ToneCurve};
-use load::Budget;
-use load::HeightSource;
+use inspect::settings::{Lighting, NormalsAt, Overlays, Settings, ToneCurve};
 
 use crate::engine;
 use crate::looks::{square_of, square_picture};
@@ -122,117 +121,6 @@ fn glossy() -> Look {
 }
 
 #[test]
-fn a_normal_map_tilts_normals_as_a_tilted_normal_does_and_mirrored_tangents_mirror_it() {
-    let texel = [180, 90, 230];
-    let own = texel.map(|byte| 2.0 * f32::from(byte) / 255.0 - 1.0);
-    let normals = image([1, 1], &[[texel[0], texel[1], texel[2], 255]]);
-    for (scale, tangent, sign) in
-        [(1.0, Vec3::X, 1.0), (1.0, Vec3::X, -1.0), (0.5, Vec3::Y, 1.0), (1.5, Vec3::NEG_X, -1.0)]
-    {
-        let look = look_with(Slot::Normal, map(normals.clone(), MapUv::Own), Look { normal_scale: scale, ..glossy() });
-        let detail = CornerDetail { tangent, bitangent_sign: sign, ..CornerDetail::default() };
-        let mapped = with_details(square(Vec3::Z, material([0.8, 0.5, 0.2], look)), |_| detail);
-        let bitangent = sign * Vec3::Z.cross(tangent);
-        let normal = (scale * own[0] * tangent + scale * own[1] * bitangent + own[2] * Vec3::Z).normalize();
-        let tilted = square(normal, material([0.8, 0.5, 0.2], glossy()));
-        assert_same(&mapped, &tilted, &format!("scale {scale}, tangent {tangent}, sign {sign}"));
-    }
-}
-
-#[test]
-fn a_tangent_is_made_perpendicular_to_the_shading_normal_and_none_leaves_it() {
-    let normals = image([1, 1], &[[200, 128, 220, 255]]);
-    let look = look_with(Slot::Normal, map(normals, MapUv::Own), glossy());
-    let own = |tangent: Vec3| {
-        let detail = CornerDetail { tangent, ..CornerDetail::default() };
-        with_details(square(Vec3::Z, material([0.8; 3], look.clone())), |_| detail)
-    };
-    assert_same(&own(vec3(0.6, 0.0, 0.8)), &own(Vec3::X), "a tangent that isn't perpendicular");
-    assert_same(&own(Vec3::ZERO), &square(Vec3::Z, material([0.8; 3], glossy())), "no tangent");
-}
-
-/// Four colours.
-fn quarters() -> Arc<Texture> {
-    image([2, 2], &[[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 255]])
-}
-
-#[test]
-fn maps_are_read_at_their_own_texture_coordinates() {
-    // Nothing but what it emits.
-    let dark = Look { emissive: [0.5; 3], specular: 0.0, ..Look::default() };
-    let of = |uv| square(Vec3::Z, material([0.0; 3], look_with(Slot::Emissive, map(quarters(), uv), dark.clone())));
-    let expected = of(MapUv::Own);
-    for (place, color) in [([0.2, 0.2], [188, 0, 0]), ([0.7, 0.2], [0, 188, 0]), ([0.7, 0.7], [188; 3])] {
-        assert_near(at(&picture(&expected, &studio(), 0.0), place), color, 1, "half of the image's colour");
-    }
-    let second = with_details(of(MapUv::Set(1, [1.0, 0.0, 0.0, 0.0, 1.0, 0.0])), |uv| CornerDetail {
-        uvs: [Vec2::ZERO, uv],
-        ..CornerDetail::default()
-    });
-    assert_same(&second, &expected, "the second set");
-    // The transform takes back what the file's coordinates have too much: a quarter of a turn, a scale and an offset.
-    let turned = with_details(of(MapUv::Set(0, [0.0, 0.5, 0.25, -0.25, 0.0, 1.0])), |uv| CornerDetail {
-        uvs: [vec2(4.0 * (1.0 - uv.y), 2.0 * (uv.x - 0.25)), Vec2::ZERO],
-        ..CornerDetail::default()
-    });
-    assert_same(&turned, &expected, "a transform");
-}
-
-#[test]
-fn metalness_roughness_and_occlusion_are_read_from_their_channels() {
-    let texel = |texel: [u8; 4], slot, look| look_with(slot, map(image([1, 1], &[texel]), MapUv::Own), look);
-    let full = Look { metallic: 1.0, roughness: 1.0, ..Look::default() };
-    let mapped = square(Vec3::Z, material([0.7, 0.4, 0.2], texel([255, 51, 204, 255], Slot::MetallicRoughness, full)));
-    let numbers = Look { metallic: 0.8, roughness: 0.2, ..Look::default() };
-    assert_same(&mapped, &square(Vec3::Z, material([0.7, 0.4, 0.2], numbers)), "metalness and roughness");
-    // Without reflection, occlusion only darkens: half of it, of a strength of a half.
-    let matte = Look { specular: 0.0, occlusion_strength: 0.5, ..Look::default() };
-    let occluded = square(Vec3::Z, material([0.8; 3], texel([51, 255, 255, 255], Slot::Occlusion, matte.clone())));
-    assert_same(&occluded, &square(Vec3::Z, material([0.8 * 0.6; 3], matte)), "occlusion");
-}
-
-#[test]
-fn colours_of_corners_multiply_the_base_colour() {
-    let color = [0.5, 0.25, 1.0];
-    let detail = CornerDetail { color: Vec4::new(color[0], color[1], color[2], 1.0), ..CornerDetail::default() };
-    let colored = with_details(square(Vec3::Z, material([0.6, 0.8, 0.4], Look::default())), |_| detail);
-    assert_same(&colored, &square(Vec3::Z, material([0.3, 0.2, 0.4], Look::default())), "one colour");
-    let unlit = Look { unlit: true, ..Look::default() };
-    let gradient = with_details(square(Vec3::Z, material([1.0; 3], unlit)), |uv| CornerDetail {
-        color: Vec4::new(uv.x, uv.y, 0.0, 1.0),
-        ..CornerDetail::default()
-    });
-    for settings in every_way(studio()) {
-        let picture = picture(&gradient, &settings, 0.0);
-        for place in PLACES {
-            let middle = place.map(|part| ((part * SIDE as f32).floor() + 0.5) / SIDE as f32);
-            let expected = [srgb(middle[0]), srgb(middle[1]), 0];
-            assert_near(at(&picture, place), expected, 1, "linear between corners");
-        }
-    }
-}
-
-#[test]
-fn a_mask_leaves_out_where_alpha_is_below_the_cutoff() {
-    let alphas = image([2, 1], &[[255, 255, 255, 100], [255, 255, 255, 180]]);
-    let background = [10, 20, 30];
-    for (cutoff, alpha, seen) in [(0.5, 1.0, [false, true]), (0.3, 1.0, [true; 2]), (0.5, 0.6, [false; 2])] {
-        let mut leaf = material([0.0, 0.5, 0.0], Look { alpha: Alpha::Mask(cutoff), unlit: true, ..Look::default() });
-        leaf.base_color[3] = alpha;
-        leaf.texture = Some(alphas.clone());
-        leaf.sampling = map(alphas.clone(), MapUv::Own).sampling;
-        let mesh = square(Vec3::Z, leaf);
-        for settings in every_way(studio()) {
-            let picture = picture(&mesh, &Settings { background: Some(background), ..settings }, 0.0);
-            for (place, is_seen) in [[0.2, 0.45], [0.9, 0.6]].into_iter().zip(seen) {
-                let expected = if is_seen { [0, 188, 0] } else { background };
-                assert_near(at(&picture, place), expected, 1, &format!("cutoff {cutoff} with {settings:?}"));
-            }
-        }
-    }
-}
-
-#[test]
 fn what_is_emitted_is_exposed_and_what_is_unlit_is_shown_as_it_is() {
     let glowing =
         square(Vec3::Z, material([0.0; 3], Look { emissive: [0.1, 0.2, 0.05], specular: 0.0, ..Look::default() }));
@@ -301,20 +189,33 @@ pub(super) fn metal_and_matte_balls() -> Mesh {
     balls([row(1.0, [1.0, 0.77, 0.34]), row(0.0, [0.8, 0.1, 0.1])].concat(), 4)
 }
 
-/// Checks that a mesh which absorbs nothing can't be told from an even light all around, in a picture of this size.
-fn assert_unseen(mesh: Mesh, size: [u32; 2]) {
-    let gpu = &engine().gpu;
-    // Here a step of a picture's bytes is 0.9 %.
-    let [light, ..] = linear([250; 3]);
-    let mut engine: Engine = engine().clone();
-    let environment = Environment::uniform(gpu, [light; 3]).expect("a device");
-    engine.renderer = Arc::new(Renderer::lit_by(gpu, environment));
+/// An engine on the same device whose studio is an even light all around, so bright in linear numbers.
+pub(super) fn evenly_lit(light: f32) -> Engine {
+    let mut engine = engine().clone();
+    let environment = Environment::uniform(&engine.gpu, [light; 3]).expect("a small environment");
+    engine.renderer = Arc::new(Renderer::lit_by(&engine.gpu, environment));
+    engine
+}
+
+/// The bytes of an even light, of which a step is 0.9 %.
+pub(super) const EVEN_LIGHT: u8 = 250;
+
+/// A picture of a mesh in an even light all around, before as much light.
+pub(super) fn in_even_light(mesh: Mesh, size: [u32; 2]) -> RgbaImage {
+    let [light, ..] = linear([EVEN_LIGHT; 3]);
+    let engine = evenly_lit(light);
     let mut scene = scene_of(mesh, 0.0);
-    let target = Target::new(gpu, size).expect("a small picture");
+    let target = Target::new(&engine.gpu, size).expect("a small picture");
     let camera = Camera::framing(&scene.bounds, target.viewport());
     let settings = Settings { background: Some([srgb(light); 3]), ..of_picture(ToneCurve::None) };
     engine.draw(&mut scene, &target, &camera, &settings, &mut Timing::Off).expect("a draw");
-    let picture = target.read(gpu).expect("a readback");
+    target.read(&engine.gpu).expect("a readback")
+}
+
+/// Checks that a mesh which absorbs nothing can't be told from an even light all around, in a picture of this size.
+fn assert_unseen(mesh: Mesh, size: [u32; 2]) {
+    let [light, ..] = linear([EVEN_LIGHT; 3]);
+    let picture = in_even_light(mesh, size);
     let farthest = picture.pixels().flat_map(|pixel| linear([pixel.0[0], pixel.0[1], pixel.0[2]]));
     let farthest = farthest.map(|value| (value / light - 1.0).abs()).fold(0.0, f32::max);
     assert!(farthest < 0.01, "{farthest}");
@@ -323,119 +224,6 @@ fn assert_unseen(mesh: Mesh, size: [u32; 2]) {
 #[test]
 fn white_balls_cannot_be_told_from_an_even_light() {
     assert_unseen(white_balls(), [320, 160]);
-}
-
-/// The picture of a sheen whose maps say what its numbers say.
-#[test]
-fn maps_of_a_sheen_multiply_its_numbers() {
-    let numbers = Look { sheen_color: [0.5, 0.25, 1.0], sheen_roughness: 0.5, roughness: 1.0, ..Look::default() };
-    let texel = |color: [f32; 3], alpha: u8| {
-        let [r, g, b] = color.map(srgb);
-        image([1, 1], &[[r, g, b, alpha]])
-    };
-    let color = texel([1.0, 0.5, 0.2], 7);
-    let base = Look { sheen_color: [0.5, 0.5, 1.0], sheen_roughness: 1.0, ..numbers.clone() };
-    let mapped = look_with(Slot::SheenColor, map(color, MapUv::Own), base.clone());
-    let of_color = material([0.1; 3], Look { sheen_roughness: 0.5, ..mapped });
-    let expected = Look { sheen_color: [0.5, 0.25, 0.2], ..numbers.clone() };
-    let of_roughness = look_with(Slot::SheenRoughness, map(texel([0.0; 3], 128), MapUv::Own), base);
-    let tilted = vec3(0.8, 0.0, 0.6);
-    for settings in every_way(studio()) {
-        let seen = |own: Material| at(&picture(&square(tilted, own), &settings, 0.0), PLACES[0]);
-        assert_near(seen(of_color.clone()), seen(material([0.1; 3], expected.clone())), 1, "colour");
-        let plain = Look { sheen_color: [0.5, 0.5, 1.0], ..numbers.clone() };
-        assert_near(seen(material([0.1; 3], of_roughness.clone())), seen(material([0.1; 3], plain)), 1, "roughness");
-        assert!(seen(of_color.clone()) != seen(material([0.1; 3], Look { sheen_color: [0.0; 3], ..numbers.clone() })));
-    }
-}
-
-/// The pictures of a coat and of a reflection whose maps say what their numbers say.
-#[test]
-fn maps_of_a_coat_and_of_a_reflection_multiply_their_numbers() {
-    let base = Look { roughness: 0.9, clearcoat: 1.0, clearcoat_roughness: 1.0, ior: 2.0, ..Look::default() };
-    let texel =
-        |slot, texel: [u8; 4], look: &Look| look_with(slot, map(image([1, 1], &[texel]), MapUv::Own), look.clone());
-    let half = 128.0 / 255.0;
-    let of_coat = texel(Slot::Clearcoat, [128, 9, 9, 9], &Look { clearcoat_roughness: 0.1, ..base.clone() });
-    let of_roughness = texel(Slot::ClearcoatRoughness, [9, 51, 9, 9], &base);
-    let [red, green, blue] = [1.0, 0.5, 0.2].map(srgb);
-    let uncoated = Look { clearcoat: 0.0, roughness: 0.2, ..base.clone() };
-    let of_color = texel(Slot::SpecularColor, [red, green, blue, 7], &uncoated);
-    let of_strength = texel(Slot::Specular, [9, 9, 9, 128], &uncoated);
-    for (mapped, numbers) in [
-        (of_coat, Look { clearcoat: half, clearcoat_roughness: 0.1, ..base.clone() }),
-        (of_roughness, Look { clearcoat_roughness: 0.2, ..base.clone() }),
-        (of_color, Look { specular_color: [1.0, 0.5, 0.2], ..uncoated.clone() }),
-        (of_strength, Look { specular: half, ..uncoated.clone() }),
-    ] {
-        let tilted = vec3(0.6, 0.3, 0.7).normalize();
-        let [mapped, numbers] = [mapped, numbers].map(|look| square(tilted, material([0.1, 0.2, 0.3], look)));
-        assert_same(&mapped, &numbers, &format!("{:?}", mapped.materials[0].look));
-    }
-}
-
-/// Only the coat reflects light here.
-#[test]
-fn the_normals_of_a_coat_are_its_own() {
-    let texel = [190, 70, 225];
-    let own = texel.map(|byte| 2.0 * f32::from(byte) / 255.0 - 1.0);
-    let normals = map(image([1, 1], &[[texel[0], texel[1], texel[2], 255]]), MapUv::Own);
-    for scale in [1.0, 0.5] {
-        let coat = Look {
-            specular: 0.0,
-            clearcoat: 1.0,
-            clearcoat_roughness: 0.2,
-            clearcoat_normal_scale: scale,
-            ..Look::default()
-        };
-        let detail = CornerDetail { tangent: Vec3::Y, ..CornerDetail::default() };
-        let mapped = look_with(Slot::ClearcoatNormal, normals.clone(), coat.clone());
-        let mapped = with_details(square(Vec3::Z, material([0.0; 3], mapped)), |_| detail);
-        let normal = (scale * own[0] * Vec3::Y - scale * own[1] * Vec3::X + own[2] * Vec3::Z).normalize();
-        assert_same(&mapped, &square(normal, material([0.0; 3], coat)), &format!("scale {scale}"));
-    }
-}
-
-/// A square with highlights that are longer along a direction of these tangents.
-fn brushed(look: Look, tangent: Vec3, bitangent_sign: f32) -> Mesh {
-    let detail = CornerDetail { tangent, bitangent_sign, ..CornerDetail::default() };
-    with_details(square(vec3(0.4, 0.0, 0.9).normalize(), material([0.9, 0.7, 0.4], look)), |_| detail)
-}
-
-#[test]
-fn long_highlights_go_along_the_tangent_that_is_turned() {
-    let long = |angle: f32, anisotropy| Look {
-        metallic: 1.0,
-        anisotropy,
-        anisotropy_rotation: angle.to_radians(),
-        ..glossy()
-    };
-    let along_x = brushed(long(0.0, 0.8), Vec3::X, 1.0);
-    assert_same(&brushed(long(90.0, 0.8), Vec3::NEG_Y, 1.0), &along_x, "a quarter of a turn from below");
-    assert_same(&brushed(long(180.0, 0.8), Vec3::X, 1.0), &along_x, "back");
-    let turned = brushed(long(35.0, 0.8), Vec3::X, 1.0);
-    assert_same(&brushed(long(-35.0, 0.8), Vec3::X, -1.0), &turned, "mirrored");
-    // Red and green are the cosine and the sine of 35 degrees, and blue is 0.8.
-    let texel = [35.0_f32.to_radians().cos(), 35.0_f32.to_radians().sin()].map(|part| (127.5 + 127.5 * part) as u8);
-    let texel = map(image([1, 1], &[[texel[0], texel[1], 204, 255]]), MapUv::Own);
-    assert_same(&brushed(look_with(Slot::Anisotropy, texel.clone(), long(0.0, 1.0)), Vec3::X, 1.0), &turned, "a map");
-    let both = look_with(Slot::Anisotropy, texel, long(-35.0, 1.0));
-    assert_same(&brushed(both, Vec3::X, 1.0), &along_x, "a map that is turned");
-    let round = brushed(long(0.0, 0.0), Vec3::X, 1.0);
-    assert_same(&brushed(long(20.0, 0.8), Vec3::ZERO, 1.0), &round, "no tangent");
-    assert_same(&square(vec3(0.4, 0.0, 0.9).normalize(), along_x.materials[0].clone()), &round, "no details");
-    let color = |mesh: &Mesh| at(&picture(mesh, &studio(), 0.0), PLACES[0]);
-    let colors = [&round, &along_x, &brushed(long(90.0, 0.8), Vec3::X, 1.0)].map(color);
-    assert!(colors[0] != colors[1] && colors[1] != colors[2], "{colors:?}");
-}
-
-#[test]
-fn white_metal_with_long_highlights_cannot_be_told_from_an_even_light() {
-    let long = |roughness| {
-        let look = Look { metallic: 1.0, roughness, anisotropy: 0.8, ..Look::default() };
-        material([1.0; 3], look)
-    };
-    assert_unseen(with_tangents(balls([0.0, 0.25, 0.5, 1.0].map(long).into(), 4)), [320, 100]);
 }
 
 /// In a normal map, directions may point below the surface. Their mirror images above it are seen, not what would be reflected where
@@ -449,48 +237,6 @@ fn a_normal_that_faces_away_is_seen_as_its_mirror_image() {
         with_details(square(Vec3::Z, material([0.2; 3], look_with(Slot::Normal, normals, look))), |_| detail)
     };
     assert_same(&leaning(75), &leaning(180), "a normal below the surface");
-}
-
-/// The relief of a normal map is that of the heights, if these come from the base colour's image: here a plain.
-#[test]
-fn a_normal_map_is_left_out_where_its_own_image_displaces_the_surface() {
-    let leaning = map(image([1, 1], &[[200, 90, 220, 255]]), MapUv::Own);
-    let gray = image([2, 2], &[[128, 128, 128, 255]; 4]);
-    type Made<'a> = &'a dyn Fn(&Mesh) -> Heights;
-    let of_colors: Made = &|mesh| {
-        HeightSource::Materials
-            .load(mesh, &[], &mut Vec::new(), &Budget::unlimited(), &Progress::default())
-            .expect("an image")
-    };
-    let of_file: Made = &|mesh| Heights::everywhere(mesh, HeightMap::new([2, 2], vec![0.5; 4]));
-    let square_with = |look: Look, heights: Made| {
-        let own = Material { texture: Some(gray.clone()), ..material([0.8; 3], look) };
-        let detail = CornerDetail { tangent: Vec3::X, ..CornerDetail::default() };
-        let mut mesh = with_details(square(Vec3::Z, own), |_| detail);
-        mesh.heights = Some(Arc::new(heights(&mesh)));
-        mesh
-    };
-    let mapped = look_with(Slot::Normal, leaning, glossy());
-    let tessellation = Tessellation { displacement: Displacement::On, ..studio().tessellation };
-    for settings in every_way(studio().with(tessellation)) {
-        let seen = |look: &Look, heights: Made, normal_maps| {
-            let settings = Settings { normal_maps, ..settings };
-            at(&picture(&square_with(look.clone(), heights), &settings, 0.0), PLACES[0])
-        };
-        let plain = seen(&glossy(), of_file, NormalMaps::On);
-        for (heights, normal_maps, is_drawn) in [
-            (of_colors, NormalMaps::Auto, false),
-            (of_colors, NormalMaps::On, true),
-            (of_file, NormalMaps::Auto, true),
-            (of_file, NormalMaps::Off, false),
-        ] {
-            let found = seen(&mapped, heights, normal_maps);
-            // The mesh without tessellation isn't displaced.
-            let is_drawn = is_drawn || settings.split.is_some();
-            let differs = found.iter().zip(plain).any(|(a, b)| a.abs_diff(b) > 2);
-            assert_eq!(differs, is_drawn, "{found:?} and {plain:?}: {normal_maps:?} {settings:?}");
-        }
-    }
 }
 
 /// Bumps, as a normal map.

@@ -3,20 +3,16 @@
 //! draws is used for the sums.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use geometry::mesh::{Look, MapUv, Slot};
 use glam::{DVec3, Vec2, dvec3, vec3};
 use gpu::Timing;
-use inspect::engine::Engine;
-use inspect::render::environment::Environment;
+use inspect::render::Target;
 use inspect::render::layout::{linear, srgb};
-use inspect::render::{Renderer, Target};
 
-use crate::engine;
 use crate::layers::camera_of;
 use crate::looks::square_of;
-use crate::materials::{SIDE, assert_near, at, image, look_with, map, material, studio};
+use crate::materials::{SIDE, assert_near, at, evenly_lit, image, look_with, map, material, studio};
 
 /// How bright the light is on all sides.
 const LIGHT: f32 = 0.5;
@@ -76,16 +72,13 @@ fn reflected(told: &Told, cosine: f64) -> DVec3 {
 
 /// The colour of a surface that is seen at that cosine, in an even light.
 fn seen(look: &Look, base_color: [f32; 3], cosine: f32) -> [u8; 3] {
-    let gpu = &engine().gpu;
-    let mut engine: Engine = engine().clone();
-    let environment = Environment::uniform(gpu, [LIGHT; 3]).expect("a device");
-    engine.renderer = Arc::new(Renderer::lit_by(gpu, environment));
+    let engine = evenly_lit(LIGHT);
     let normal = vec3((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let mesh = square_of(material(base_color, look.clone()), normal, Vec2::ONE);
-    let target = Target::new(gpu, [SIDE; 2]).expect("a small picture");
+    let target = Target::new(&engine.gpu, [SIDE; 2]).expect("a small picture");
     let (mut scene, camera) = camera_of(&engine, &mesh, &target);
     engine.draw(&mut scene, &target, &camera, &studio(), &mut Timing::Off).expect("a draw");
-    at(&target.read(gpu).expect("a readback"), [0.45, 0.52])
+    at(&target.read(&engine.gpu).expect("a readback"), [0.45, 0.52])
 }
 
 #[test]

@@ -85,6 +85,12 @@ impl Draft {
         self.root["meshes"][0]["primitives"].as_array_mut().unwrap().push(primitive);
     }
 
+    /// Adds a list of vectors, which are zeros but for one of the first 256. Its index and value are in these views.
+    fn zeros_but_one(&mut self, count: usize, index: usize, value: usize) -> usize {
+        let sparse = one_replaced(index, value);
+        self.push("accessors", json!({ "componentType": 5126, "type": "VEC3", "count": count, "sparse": sparse }))
+    }
+
     fn document(&self) -> Value {
         let uri = format!("data:application/octet-stream;base64,{}", BASE64_STANDARD.encode(&self.bytes));
         let mut root = self.root.clone();
@@ -112,6 +118,15 @@ impl Draft {
         let header = [&b"glTF"[..], &2_u32.to_le_bytes(), &total.to_le_bytes()].concat();
         [&header, &length(&json)[..], b"JSON", &json, &length(&bin), b"BIN\0", &bin].concat()
     }
+}
+
+/// What replaces one element of a list. Its index, below 256, and its value are in these views.
+fn one_replaced(index: usize, value: usize) -> Value {
+    json!({
+        "count": 1,
+        "indices": { "bufferView": index, "componentType": 5121 },
+        "values": { "bufferView": value },
+    })
 }
 
 /// Reads a document that names no files.
@@ -219,25 +234,17 @@ fn normalised_integers_and_strides() {
 fn sparse_values_replace_the_base_and_zeros() {
     let mut draft = triangle();
     let (places, values) = (draft.view(&[2]), draft.view(&[0, 0, 0, 0, 0, 0, 64, 64, 0, 0, 0, 0]));
-    let sparse = |place: usize| {
-        json!({
-            "count": 1,
-            "indices": { "bufferView": place, "componentType": 5121 },
-            "values": { "bufferView": values },
-        })
-    };
-    draft.root["accessors"][0]["sparse"] = sparse(places);
+    draft.root["accessors"][0]["sparse"] = one_replaced(places, values);
     assert_eq!(positions(&draft.read().unwrap())[2], [0.0, 3.0, 0.0]);
     // A morph target that moves one vertex only.
-    let target = json!({ "componentType": 5126, "type": "VEC3", "count": 3, "sparse": sparse(places) });
-    let target = draft.push("accessors", target);
+    let target = draft.zeros_but_one(3, places, values);
     draft.root["meshes"][0]["primitives"][0]["targets"] = json!([{ "POSITION": target }]);
     draft.root["meshes"][0]["weights"] = json!([2.0]);
     assert_eq!(positions(&draft.read().unwrap())[2], [0.0, 9.0, 0.0]);
     draft.root["nodes"][0]["weights"] = json!([0.0]);
     assert_eq!(positions(&draft.read().unwrap())[2], [0.0, 3.0, 0.0], "the node's weights come first");
     let far = draft.view(&[9]);
-    draft.root["accessors"][0]["sparse"] = sparse(far);
+    draft.root["accessors"][0]["sparse"] = one_replaced(far, values);
     assert!(
         message(&draft)
             .contains("/accessors/0 (POSITION of /meshes/0/primitives/0 (\"thing\")) replaces element 9 by /sparse/indices, but has 3 elements")
