@@ -89,7 +89,7 @@ impl App {
             Action::Prepare(preparing) => self.prepare_as(context, *preparing),
             Action::Undo => self.undo(context),
             Action::Redo => self.redo(context),
-            Action::CopyAsCommand => self.copy_command(context, &PictureChoices::default()),
+            Action::CopyAsCommand => self.copy_command(context, &PictureChoices::default(), None),
             Action::CopyPicture => self.copy_picture(context),
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),
