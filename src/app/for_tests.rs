@@ -1,11 +1,15 @@
 //! What only tests ask the window, and what they start without its dialogs.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::App;
+use super::dialogs::purpose::AskedFile;
 use super::jobs::job_list::Work;
 use crate::commands::{Action, Written};
 use inspect::measure::Sizes;
+use inspect::settings::SplitSide;
+use inspect::shot::ShotError;
+use lab::chart::{Effort, Plan, Probe, save};
 
 impl App {
     pub fn last_action(&self) -> Option<&Action> {
@@ -35,6 +39,44 @@ impl App {
     /// The path has another ending; as a sentence.
     pub fn export_mesh(&mut self, context: &egui::Context, path: PathBuf) -> Result<(), String> {
         self.write_as(context, Written::Mesh, path)
+    }
+
+    /// The title of the window in which a path is typed, and why it is shown if a dialog was asked for.
+    pub fn path_asked_for(&self) -> Option<(&'static str, Option<&'static str>)> {
+        self.dialogs.typed_path.as_ref().map(|typed| (AskedFile::new(typed.purpose).title, typed.why))
+    }
+
+    /// Changes the settings that the chart tries, and its effort.
+    pub fn chart_with(&mut self, plan: Plan, effort: Effort) {
+        (self.panels.chart.plan, self.panels.chart.effort) = (plan, effort);
+    }
+
+    /// The measurement of the window's settings, if the chart doesn't list them.
+    pub fn chart_current(&self) -> Option<Probe> {
+        self.panels.chart.charted.as_ref()?.current?.1
+    }
+
+    /// Writes the chart as an SVG, PNG or CSV file.
+    ///
+    /// # Errors
+    /// The path has another ending, or can't be written. Without a chart nothing is written.
+    pub fn save_chart(&self, path: &Path) -> Result<(), ShotError> {
+        self.panels.chart.charted.as_ref().map_or(Ok(()), |charted| save(path, std::slice::from_ref(&charted.subject)))
+    }
+
+    /// A number that no distance of a half exceeds for certain, once it is known; infinite against a limit surface.
+    pub fn deviation_at_most(&self, half: SplitSide) -> Option<f64> {
+        Some(self.known_deviation(half)?.largest.at_most)
+    }
+
+    /// How many previews have been drawn while the camera moved.
+    pub fn previews(&self) -> u64 {
+        self.viewport.preview.drawings
+    }
+
+    /// Whether the line of help of a first start is over the picture.
+    pub fn greets(&self) -> bool {
+        self.viewport.greets
     }
 
     /// Why the newest version of the LOD shader can't be used, in a sentence.

@@ -193,11 +193,6 @@ impl App {
         self.viewport.picture.pictures
     }
 
-    /// How many previews have been drawn while the camera moved.
-    pub fn previews(&self) -> u64 {
-        self.viewport.preview.drawings
-    }
-
     pub fn switch_previews(&mut self) {
         self.viewport.preview.is_on = !self.viewport.preview.is_on;
     }
@@ -205,11 +200,6 @@ impl App {
     /// Whether a preview is shown in place of the full picture.
     pub fn shows_preview(&self) -> bool {
         self.viewport.preview.shown(&self.viewport.picture).is_some()
-    }
-
-    /// Whether the line of help of a first start is over the picture.
-    pub fn greets(&self) -> bool {
-        self.viewport.greets
     }
 
     /// Whether something is still being loaded, drawn or measured.
@@ -270,7 +260,7 @@ impl eframe::App for App {
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui, has_measurements));
         self.windows(ui.ctx());
         // Measuring the chart waits while the window draws or measures.
-        self.panels.chart.charting.hold(self.is_busy());
+        self.panels.chart.hold(self.is_busy());
         self.note_state(ui.ctx());
         self.keep(ui.ctx());
         if self.is_lost() {

@@ -11,7 +11,7 @@ use load::format::{extensions, known_extensions};
 type Kind = (&'static str, Vec<&'static str>);
 
 /// What is said about a file that is asked for.
-pub(super) struct AskedFile {
+pub(in crate::app) struct AskedFile {
     /// The title of the window in which a path is typed.
     pub title: &'static str,
     /// The files that can be typed, in a sentence.
@@ -23,7 +23,7 @@ pub(super) struct AskedFile {
 }
 
 impl AskedFile {
-    pub(super) fn new(purpose: Purpose) -> Self {
+    pub(in crate::app) fn new(purpose: Purpose) -> Self {
         let of = |title, takes: &str, kinds: Vec<Kind>, ending| Self { title, takes: takes.to_owned(), kinds, ending };
         let only = |(name, ending)| (name, vec![ending]);
         let beside =

@@ -16,13 +16,13 @@ use geometry::names::shown_path;
 use load::{FileError, Source};
 
 pub(crate) struct TypedPath {
-    purpose: Purpose,
+    pub purpose: Purpose,
     path: String,
     completion: (String, Completion),
     /// Whether it is said which names begin like the path, since Tab can't choose one of them. Then Tab leaves the field.
     lists_names: bool,
     /// Why the path must be typed, if a dialog was asked for.
-    why: Option<&'static str>,
+    pub why: Option<&'static str>,
     /// Events of keys that were pressed before the field had the focus; none once it has had the focus.
     early: Option<Vec<Event>>,
 }
@@ -139,11 +139,6 @@ impl TypedPath {
 }
 
 impl App {
-    /// The title of the window in which a path is typed, and why it is shown if a dialog was asked for.
-    pub fn path_asked_for(&self) -> Option<(&'static str, Option<&'static str>)> {
-        self.dialogs.typed_path.as_ref().map(|typed| (AskedFile::new(typed.purpose).title, typed.why))
-    }
-
     /// Opens the window in which a path is typed, with a proposed path.
     pub(in crate::app) fn type_path(&mut self, purpose: Purpose) {
         if self.dialogs.typed_path.as_ref().is_some_and(|typed| typed.purpose == purpose) {

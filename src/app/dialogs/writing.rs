@@ -62,7 +62,7 @@ impl App {
         let plain = || self.shot_parts(theme, &PictureChoices::default());
         Some(match what {
             Written::Chart => {
-                let subject = self.panels.chart.charted()?.subject.clone();
+                let subject = self.panels.chart.charted.as_ref()?.subject.clone();
                 without_warnings(move |path, _| {
                     save(path, std::slice::from_ref(&subject)).map_err(|error| error.to_string())
                 })

@@ -1,7 +1,7 @@
 //! The panels around the viewport: settings on the left, statistics and details on the right, the chart and the status line
 //! below.
 
-pub(super) mod chart;
+mod chart;
 mod chart_diagram;
 mod chart_panel;
 pub(super) mod clip_moments;
@@ -37,8 +37,8 @@ use geometry::tessellate::Displacement;
 use inspect::settings::SplitSide;
 use load::MorphWeights;
 
+use crate::app::jobs::chart_job::Chart;
 use crate::app::sections::OpenSections;
-use chart::Chart;
 use sides::Side;
 
 /// What the panels remember from one frame to the next.
