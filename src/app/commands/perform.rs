@@ -132,9 +132,7 @@ impl App {
         match action {
             FileAction::Ask(purpose) => self.ask_for(context, *purpose),
             FileAction::OpenPath => self.type_path(Purpose::Open),
-            FileAction::OpenRecent(path) => self.open(context, Source::File(path.clone())),
-            FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
-            FileAction::OpenVase => self.open(context, Source::Vase),
+            FileAction::OpenSource(source) => self.open(context, source.clone()),
             FileAction::Reload => self.reload(context),
             FileAction::CompareWithBefore => self.compare_with_before(),
             FileAction::CompareWithOwnLimit => self.read_reference(context, None, true),
