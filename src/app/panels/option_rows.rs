@@ -96,7 +96,7 @@ fn number_entry(option: &Declaration) -> Option<Description> {
 fn choice_row(
     ui: &mut egui::Ui,
     option: &Declaration,
-    mut name: Option<&'static str>,
+    name: Option<&'static str>,
     settings: &mut Settings,
     hover: &str,
 ) {
@@ -109,9 +109,7 @@ fn choice_row(
         let shown = all.iter().find(|(value, ..)| *value == name).map_or("", |(_, label, _)| label);
         return fixed(ui, option.label, shown, why);
     }
-    let before = name;
-    chooser(ui, option.label, hover, &mut name, &all);
-    if name != before {
+    if let Some(name) = chooser(ui, option.label, hover, name, &all) {
         let is_number = |name: &str| number.is_some_and(|number| number.name == name);
         let value = match name {
             Some(name) if is_number(name) => Value::Number(1.0),
