@@ -43,6 +43,13 @@ pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings:
     }
 }
 
+/// A row that is there only where the option has an effect.
+pub(super) fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings) {
+    if (option.no_effect)(settings).is_none() {
+        option_row(ui, option, settings, "");
+    }
+}
+
 /// The hover text of an option: its text, its key and its name on the command line.
 pub(super) fn option_hover(option: &Declaration, key: &str) -> String {
     let name = format!("--{}", option.name);

@@ -1,6 +1,6 @@
 //! The settings in the left panel.
 
-use super::option_rows::{option_hover, option_row};
+use super::option_rows::{option_hover, option_row, shown_option_row};
 use crate::app::App;
 use crate::app::jobs::companion_files::LeftMesh;
 use crate::app::jobs::job_list::Work;
@@ -281,43 +281,6 @@ impl App {
         self.prepare(ui.ctx(), |preparation| preparation.weld = chosen);
     }
 
-    fn look_rows(&mut self, ui: &mut egui::Ui) {
-        for option in [
-            &options::CURVATURE_KIND,
-            &options::CURVATURE_SCALE,
-            &options::ZEBRA_STRIPES,
-            &options::ZEBRA_DIRECTION,
-            &options::CHECKER_SQUARES,
-            &options::TEXEL_DENSITY_PER,
-        ] {
-            shown_option_row(ui, option, &mut self.settings);
-        }
-        self.matcap_row(ui);
-        self.light_rows(ui);
-        self.background_row(ui);
-        option_row(ui, &options::SECTION, &mut self.settings, "");
-        shown_option_row(ui, &options::SECTION_AT, &mut self.settings);
-    }
-
-    fn background_row(&mut self, ui: &mut egui::Ui) {
-        let label = ui.label(options::BACKGROUND.label);
-        ui.horizontal(|ui| {
-            let mut color = self.settings_in(ui.ctx().theme()).background_color();
-            // Narrow, so that the switch beside it has room in any size of the text.
-            ui.spacing_mut().interact_size.x = 36.0;
-            let response = ui.color_edit_button_srgb(&mut color).labelled_by(label.id);
-            if response.has_focus() {
-                let stroke = ui.visuals().selection.stroke;
-                ui.painter().rect_stroke(response.rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
-            }
-            if response.on_hover_text(option_hover(&options::BACKGROUND, "")).changed() {
-                self.settings.background = Some(color);
-            }
-            self.background_switch(ui);
-        });
-        ui.end_row();
-    }
-
     pub(in crate::app) fn toggle_split(&mut self) {
         // A half that blinks shows alone: then the divider comes back.
         let shows_both = self.settings.split.is_some_and(|split| split > 0.0 && split < 1.0);
@@ -333,13 +296,6 @@ fn options_of_lods() -> impl Iterator<Item = &'static Declaration> {
         (1..Lod::ALL.len()).contains(&idle)
     };
     options::TESSELLATION.into_iter().filter(depends_on_lod).filter(|option| option.name != options::FACTOR.name)
-}
-
-/// A row that is there only where the option has an effect.
-fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings) {
-    if (option.no_effect)(settings).is_none() {
-        option_row(ui, option, settings, "");
-    }
 }
 
 /// The hover text of an overlay: what it shows, and its key.
