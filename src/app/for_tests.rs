@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use super::App;
 use super::dialogs::purpose::AskedFile;
 use super::jobs::job_list::Work;
-use crate::commands::{Action, Written};
+use crate::commands::{Action, CompanionFile, Written};
 use inspect::measure::Sizes;
 use inspect::settings::SplitSide;
 use inspect::shot::ShotError;
 use lab::chart::{Effort, Plan, Probe, save};
+use load::Source;
 
 impl App {
     pub fn last_action(&self) -> Option<&Action> {
@@ -77,6 +78,26 @@ impl App {
     /// Whether the line of help of a first start is over the picture.
     pub fn greets(&self) -> bool {
         self.viewport.greets
+    }
+
+    /// Starts to load a reference surface. Until it is loaded, the one before it stays.
+    pub fn open_reference_shape(&mut self, context: &egui::Context, source: Source) {
+        self.open_companion(context, CompanionFile::ReferenceShape, source);
+    }
+
+    /// Starts to read the light of a file, which then shines on the mesh. Until it is read, the light before it stays.
+    pub fn open_environment(&mut self, context: &egui::Context, path: PathBuf) {
+        self.open_companion(context, CompanionFile::Environment, Source::File(path));
+    }
+
+    /// Opens a file with functions of the user's own, which take the place of LOD once they can be used, and watches it.
+    pub fn open_lod_shader(&mut self, context: &egui::Context, path: PathBuf) {
+        self.open_companion(context, CompanionFile::LodShader, Source::File(path));
+    }
+
+    /// The same for a function that takes the place of the surface.
+    pub fn open_surface_shader(&mut self, context: &egui::Context, path: PathBuf) {
+        self.open_companion(context, CompanionFile::SurfaceShader, Source::File(path));
     }
 
     /// Why the newest version of the LOD shader can't be used, in a sentence.

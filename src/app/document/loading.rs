@@ -270,7 +270,7 @@ impl App {
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
         let (environments, others): (Vec<_>, Vec<_>) = dropped.into_iter().partition(|path| is_environment(path));
         if let Some(path) = environments.into_iter().next() {
-            self.open_environment(context, path);
+            self.read_environment(context, path, true);
         }
         let meshes: Vec<_> = others.iter().filter(|path| Format::from_name(path).is_some()).cloned().collect();
         let Some(path) = meshes.first().or(others.first()).cloned() else { return };

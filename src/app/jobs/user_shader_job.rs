@@ -143,18 +143,8 @@ fn read<S: UserShaderSlot>(engine: &Engine, path: &Path) -> Read<S> {
 }
 
 impl App {
-    /// Opens a file with functions of the user's own, which take the place of LOD once they can be used, and watches it.
-    pub fn open_lod_shader(&mut self, context: &egui::Context, path: PathBuf) {
-        self.forget_factors();
-        self.open_shader::<LodShader>(context, path);
-    }
-
-    /// The same for a function that takes the place of the surface.
-    pub fn open_surface_shader(&mut self, context: &egui::Context, path: PathBuf) {
-        self.open_shader::<SurfaceShader>(context, path);
-    }
-
-    fn open_shader<S: UserShaderSlot>(&mut self, context: &egui::Context, path: PathBuf) {
+    /// Opens a file with functions of the user's own, which take the place of a setting once they can be used, and watches it.
+    pub(super) fn open_shader<S: UserShaderSlot>(&mut self, context: &egui::Context, path: PathBuf) {
         self.forget_shader::<S>();
         let replaced = *S::setting(&mut self.settings.tessellation);
         *S::slot(self) =
