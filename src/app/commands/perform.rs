@@ -8,7 +8,6 @@ use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::panels::destinations::{Destination, Step};
 use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
-use gpu::{LodShader, SurfaceShader};
 use inspect::settings::{ColorSource, Declaration, Settings, SplitSide, options};
 use load::format::Format;
 use load::{HeightSource, Import, Source};
@@ -160,9 +159,7 @@ impl App {
         let Settings { tessellation: Tessellation { displacement, .. }, import, .. } = self.settings;
         let usual = Settings::opening();
         let import = Import { up: import.up, unit: import.unit, ..usual.import };
-        self.settings = Settings { import, ..usual.with(Tessellation { displacement, ..usual.tessellation }) };
-        self.replace_again::<LodShader>();
-        self.replace_again::<SurfaceShader>();
+        self.put_settings(Settings { import, ..usual.with(Tessellation { displacement, ..usual.tessellation }) });
     }
 
     /// Closes the windows over the picture; or if there are none, stops what is under way; or if nothing is, ends the measuring of

@@ -3,8 +3,8 @@
 pub(super) mod loading;
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::jobs::companion_files::new_generation;
 use super::jobs::deviation_job::DeviationJob;
 use super::jobs::explain_job::Explanation;
 use super::jobs::file_watch::Stamped;
@@ -93,7 +93,6 @@ impl Measurements {
 
 impl Document {
     fn new(loaded: Loaded, scene: Scene, files: Stamped) -> Self {
-        static GENERATION: AtomicU64 = AtomicU64::new(0);
         let exact = loaded.source.shape().and_then(ReferenceShape::from_shape).map(Arc::new);
         Self {
             files,
@@ -108,7 +107,7 @@ impl Document {
             diagonal: scene.bounds.diagonal(),
             has_texture_coordinates: loaded.mesh.has_texture_coordinates(),
             exact,
-            generation: GENERATION.fetch_add(1, Ordering::Relaxed),
+            generation: new_generation(),
             halves: Default::default(),
             leaks: LeakJob::default(),
             silhouette: SilhouetteJob::default(),

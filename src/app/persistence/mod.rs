@@ -15,7 +15,6 @@ use crate::app::dialogs::Forgetting;
 use crate::app::jobs::job_list::{Jobs, Work};
 use crate::app::sections::OpenSections;
 use crate::commands::CompanionFile;
-use gpu::{LodShader, SurfaceShader};
 use inspect::render::Camera;
 use inspect::settings::Settings;
 use load::{Import, Source};
@@ -272,11 +271,11 @@ impl App {
     /// Goes back to the state of a first start. The mesh stays open, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = WindowGeometry::default();
-        // LOD and surface before them come back, and are reset as well.
-        self.forget_shader::<LodShader>();
-        self.forget_shader::<SurfaceShader>();
+        // LOD, surface and light before them come back, and are reset as well.
+        for (companion, _) in KEPT {
+            self.close_companion(companion);
+        }
         self.reset_settings();
-        self.close_companion(CompanionFile::Environment);
         self.history = Default::default();
         self.view_history = Default::default();
         self.viewport.bookmarks.clear();
