@@ -2,17 +2,58 @@
 
 use std::path::{Path, PathBuf};
 
+use glam::Vec3;
+
 use super::App;
 use super::dialogs::purpose::AskedFile;
 use super::jobs::job_list::Work;
 use crate::commands::{Action, CompanionFile, Written};
-use inspect::measure::Sizes;
-use inspect::settings::SplitSide;
+use inspect::engine::{Engine, Loaded};
+use inspect::measure::{Cracks, Sizes};
+use inspect::render::Camera;
+use inspect::settings::{Settings, SplitSide};
 use inspect::shot::ShotError;
 use lab::chart::{Effort, Plan, Probe, save};
 use load::Source;
 
 impl App {
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    pub fn camera(&self) -> &Camera {
+        &self.viewport.camera
+    }
+
+    /// Cracks of what is shown, once they are measured.
+    pub fn cracks(&self) -> Option<&Cracks> {
+        self.found(SplitSide::Right).map(|found| &found.cracks)
+    }
+
+    pub fn loaded(&self) -> Option<&Loaded> {
+        self.document.as_ref().map(|document| &document.loaded)
+    }
+
+    /// The engine that everything is made and drawn with.
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    /// How many pictures have been drawn.
+    pub fn pictures(&self) -> u64 {
+        self.viewport.picture.pictures
+    }
+
+    /// The ends of the distance that is measured, in object units.
+    pub fn ruler(&self) -> Option<[Option<Vec3>; 2]> {
+        self.viewport.ruler.map(|ruler| ruler.ends)
+    }
+
+    /// The largest distance of a half from the reference surface, once it is known.
+    pub fn deviation(&self, half: SplitSide) -> Option<f64> {
+        Some(self.known_deviation(half)?.worst?.value)
+    }
+
     pub fn last_action(&self) -> Option<&Action> {
         self.commands.last.as_ref()
     }

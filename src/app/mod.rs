@@ -1,4 +1,5 @@
-//! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
+//! The window. It edits [`Settings`] and a [`Camera`](inspect::render::Camera), and shows what the engine makes of them; it holds no
+//! mathematics.
 
 mod commands;
 mod dialogs;
@@ -25,10 +26,9 @@ use image::RgbaImage;
 
 use geometry::mesh::Texture;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
-use inspect::engine::{Engine, Loaded};
-use inspect::measure::Cracks;
-use inspect::render::{Camera, WindowPipelines, lay_over};
-use inspect::settings::{Settings, SplitSide};
+use inspect::engine::Engine;
+use inspect::render::{WindowPipelines, lay_over};
+use inspect::settings::Settings;
 use load::Source;
 use load::files::Limits;
 
@@ -137,26 +137,9 @@ impl App {
         Ok(app)
     }
 
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    pub fn camera(&self) -> &Camera {
-        &self.viewport.camera
-    }
-
-    /// Cracks of what is shown, once they are measured.
-    pub fn cracks(&self) -> Option<&Cracks> {
-        self.found(SplitSide::Right).map(|found| &found.cracks)
-    }
-
     /// The selected edge: an index into the topology's edges.
     pub fn selected_edge(&self) -> Option<u32> {
         self.document.as_ref()?.selection.edge
-    }
-
-    pub fn loaded(&self) -> Option<&Loaded> {
-        self.document.as_ref().map(|document| &document.loaded)
     }
 
     /// Vertices and triangles of what is shown.
@@ -170,11 +153,6 @@ impl App {
         self.document.as_ref().map(|document| &document.loaded.source)
     }
 
-    /// The engine that everything is made and drawn with.
-    pub fn engine(&self) -> &Engine {
-        &self.engine
-    }
-
     /// The viewport's picture as it is shown, without the texts over it; none before the first one.
     ///
     /// # Errors
@@ -186,11 +164,6 @@ impl App {
             lay_over(picture, &outlines.picture, &self.settings);
         }
         Ok(picture)
-    }
-
-    /// How many pictures have been drawn.
-    pub fn pictures(&self) -> u64 {
-        self.viewport.picture.pictures
     }
 
     pub fn switch_previews(&mut self) {

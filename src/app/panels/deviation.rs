@@ -49,11 +49,6 @@ impl App {
         }
     }
 
-    /// The largest distance of a half from the reference surface, once it is known.
-    pub fn deviation(&self, half: SplitSide) -> Option<f64> {
-        Some(self.known_deviation(half)?.worst?.value)
-    }
-
     pub(in crate::app) fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
         self.settings.half(half)?;
         let of = self.deviation_of(half)?;

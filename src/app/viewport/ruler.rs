@@ -43,11 +43,6 @@ impl Ruler {
 }
 
 impl App {
-    /// The ends of the distance that is measured, in object units.
-    pub fn ruler(&self) -> Option<[Option<Vec3>; 2]> {
-        self.viewport.ruler.map(|ruler| ruler.ends)
-    }
-
     pub(in crate::app) fn ruler_lines(&self) -> Vec<LineSegment> {
         self.viewport.ruler.map_or_else(Vec::new, |ruler| ruler.lines())
     }
