@@ -202,8 +202,7 @@ impl eframe::App for App {
         self.window.fitting.fit(context);
         self.take_found(context);
         self.compare_again(context);
-        self.stop_slow_shader::<LodShader>();
-        self.stop_slow_shader::<SurfaceShader>();
+        self.stop_slow_shaders();
         self.measure_current(context);
         self.take_device_problem();
         self.take_dropped(context);
