@@ -41,8 +41,6 @@ pub struct Persistence {
     changed: Option<f64>,
     /// The problem with the file, which is shown only once.
     said: Option<String>,
-    /// The path of the file that is open, if it is among the saved ones.
-    open: Option<String>,
 }
 
 impl Persistence {
@@ -69,8 +67,7 @@ impl Persistence {
     /// Puts the file of an opened mesh at the front of the recent files. Returns the camera that the mesh was last seen
     /// with, if it still fits, and its bookmarks that fit.
     pub(in crate::app) fn opened(&mut self, source: &Source, diagonal: f32) -> (Option<Camera>, Vec<Camera>) {
-        self.open = path_of(source);
-        let Some(path) = self.open.clone() else { return Default::default() };
+        let Some(path) = path_of(source) else { return Default::default() };
         let files = &mut self.kept.files;
         let known = files.iter().position(|file| file.path == path);
         let mut file = known.map_or_else(|| SavedFile::new(path), |index| files.remove(index));
@@ -93,11 +90,6 @@ impl Persistence {
     /// Removes a file that no longer exists from the list. Returns whether it was listed. Its camera is kept.
     pub(in crate::app) fn gone(&mut self, source: &Source) -> bool {
         self.known(source).is_some_and(|file| !std::mem::replace(&mut file.is_gone, true))
-    }
-
-    /// Lists a file again that was loaded, in case it was gone before.
-    pub(in crate::app) fn is_back(&mut self, source: &Source) {
-        self.known(source).into_iter().for_each(|file| file.is_gone = false);
     }
 
     fn known(&mut self, source: &Source) -> Option<&mut SavedFile> {
@@ -194,7 +186,8 @@ impl App {
     pub(in crate::app) fn look_as_before(&mut self, keep_view: bool) {
         let Some(document) = &self.document else { return };
         if keep_view {
-            return self.persistence.is_back(&document.loaded.source);
+            // It may have been gone before.
+            return self.persistence.known(&document.loaded.source).into_iter().for_each(|file| file.is_gone = false);
         }
         let (camera, bookmarks) = self.persistence.opened(&document.loaded.source, document.diagonal);
         self.viewport.camera = camera.unwrap_or(self.viewport.camera);
@@ -209,7 +202,8 @@ impl App {
             _ => None,
         });
         let settings = self.settings_without_files();
-        let Persistence { kept, open, .. } = &mut self.persistence;
+        let open = self.source().and_then(path_of);
+        let kept = &mut self.persistence.kept;
         kept.take_settings(&settings);
         (kept.open, kept.companions) = (self.panels.open, files);
         kept.frame = frame_now(context, &kept.frame);
@@ -289,6 +283,5 @@ impl App {
         context.send_viewport_cmd(ViewportCommand::Maximized(frame.is_maximized));
         context.send_viewport_cmd(ViewportCommand::InnerSize(frame.size.into()));
         self.persistence.kept.files.clear();
-        self.persistence.open = None;
     }
 }
