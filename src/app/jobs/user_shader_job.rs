@@ -112,20 +112,17 @@ type Read<S> = Result<Arc<S>, String>;
 /// Reads and compiles the file, and again after every change, until nobody wants it any more.
 fn read_versions<S: UserShaderSlot>(engine: &Engine, path: &Path, take: &dyn Fn(Read<S>) -> bool, wanted: &Progress) {
     let files = Stamped::now([path.to_owned()]);
+    let read = || {
+        let shader = read_user_shader(path).map_err(|error| error.to_string())?;
+        S::prepare(engine, &shader).map(|()| shader).map_err(|error| error.to_string())
+    };
     let send = || {
-        let version = caught(|| read(engine, path));
+        let version = caught(read);
         take(version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path)))))
     };
     if send() {
         watch(files, wanted, send);
     }
-}
-
-/// Reads the file, and lets the driver compile it.
-fn read<S: UserShaderSlot>(engine: &Engine, path: &Path) -> Read<S> {
-    let shader = read_user_shader(path).map_err(|error| error.to_string())?;
-    S::prepare(engine, &shader).map_err(|error| error.to_string())?;
-    Ok(shader)
 }
 
 impl App {
