@@ -90,7 +90,7 @@ pub(crate) enum LeftChoice {
 pub(crate) struct Jobs {
     jobs: Vec<Job>,
     /// Whether some were started by a window that is closed.
-    of_another_window: bool,
+    pub of_another_window: bool,
     pub limits: Limits,
     /// What is being loaded, or was loaded last.
     pub last_load: Option<Load>,
@@ -221,11 +221,6 @@ impl Jobs {
             }
         }
         self.stop(work);
-    }
-
-    /// Lets jobs go on in another window.
-    pub(crate) fn move_to_another_window(&mut self) {
-        self.of_another_window = true;
     }
 
     /// Takes what a job has found. The scene of the left half waits until no picture is under way.

@@ -38,8 +38,15 @@ impl App {
 
     /// Why the chart is out of date; none if it isn't.
     pub(in crate::app) fn chart_outdated(&self) -> Option<&'static str> {
-        let (charted, now) = (self.panels.chart.charted.as_ref()?, self.chart_of()?);
-        charted.of.other_than(&now)
+        let (of, now) = (self.panels.chart.charted.as_ref()?.of, self.chart_of()?);
+        let respects = [
+            (of.document != now.document, "another mesh is shown"),
+            (of.moment != now.moment, "another pose is shown"),
+            (of.reference_shape != now.reference_shape, "another reference surface is chosen"),
+            ((of.camera, of.size) != (now.camera, now.size), "the view has changed"),
+            (of.base != now.base, "other settings have changed"),
+        ];
+        respects.into_iter().find_map(|(differs, why)| differs.then_some(why))
     }
 
     /// Starts to measure the settings that the chart lacks. Measures all anew if it lacks none, or is out of date.
@@ -103,20 +110,6 @@ impl App {
             return;
         }
         self.start_charting(context, of, Some(current), Vec::new());
-    }
-}
-
-impl ChartBasis {
-    /// Says in which respect this differs from `now`; none if they are equal.
-    fn other_than(&self, now: &Self) -> Option<&'static str> {
-        let respects = [
-            (self.document != now.document, "another mesh is shown"),
-            (self.moment != now.moment, "another pose is shown"),
-            (self.reference_shape != now.reference_shape, "another reference surface is chosen"),
-            ((self.camera, self.size) != (now.camera, now.size), "the view has changed"),
-            (self.base != now.base, "other settings have changed"),
-        ];
-        respects.into_iter().find_map(|(differs, why)| differs.then_some(why))
     }
 }
 

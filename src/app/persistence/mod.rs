@@ -38,7 +38,7 @@ pub struct Persistence {
     /// The state that the file has, or will have once it is written.
     written: SavedState,
     /// Since when `kept` differs from `written`, on the window's clock in s.
-    changed: Option<f64>,
+    pub(in crate::app) changed: Option<f64>,
     /// The problem with the file, which is shown only once.
     said: Option<String>,
 }
@@ -120,11 +120,6 @@ impl Persistence {
                 }
             });
         }
-    }
-
-    /// Goes on in another window, which has another clock.
-    pub(in crate::app) fn move_to_another_window(&mut self) {
-        self.changed = None;
     }
 }
 
