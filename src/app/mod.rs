@@ -21,6 +21,7 @@ pub mod window;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use image::RgbaImage;
 
@@ -232,7 +233,7 @@ impl eframe::App for App {
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui, has_measurements));
         self.windows(ui.ctx());
         // Measuring the chart waits while the window draws or measures.
-        self.panels.chart.hold(self.is_busy());
+        self.panels.chart.held.store(self.is_busy(), Ordering::Relaxed);
         self.note_state(ui.ctx());
         self.keep(ui.ctx());
         if self.is_lost() {

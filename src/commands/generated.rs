@@ -13,7 +13,7 @@ use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
 use geometry::tessellate::Surface;
 use inspect::settings::{Choice, ColorSource, Colors, Control, Declaration, Overlay, Overlays, options};
-use load::Source;
+use load::{HeightSource, Source};
 
 /// The greatest number of clips that are listed.
 const CLIPS: usize = 1000;
@@ -148,9 +148,9 @@ fn mesh() -> Vec<Command> {
     all.extend(declared! {
         "Crease band: On" needs Document => Preparing::CreaseBand(CREASE_BAND), on;
         "Crease band: Off" needs Document => Preparing::CreaseBand(0.0), "Leaves creases as the mesh has them.";
-        "Height map: None" needs Document => Preparing::NoHeights,
+        "Height map: None" needs Document => Preparing::Heights(None),
             "Removes the height map; those of the file stay.";
-        "Height map: Material" needs Document => Preparing::HeightsFromMaterials,
+        "Height map: Material" needs Document => Preparing::Heights(Some(HeightSource::Materials)),
             "Displaces the mesh by the brightness of each material's base colour image.";
     });
     all

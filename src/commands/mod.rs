@@ -17,7 +17,7 @@ use glam::IVec2;
 use geometry::choice::texts;
 use geometry::names::every;
 use inspect::render::Standpoint;
-use load::Source;
+use load::{HeightSource, Source};
 
 pub use availability::{Availability, Need};
 pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS};
@@ -174,10 +174,10 @@ pub enum CameraAction {
 }
 
 /// A change of how the mesh is prepared when it is loaded.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Preparing {
-    NoHeights,
-    HeightsFromMaterials,
+    /// The height map; none for those of the file.
+    Heights(Option<HeightSource>),
     /// As a part of the bounding diagonal; 0 joins equal positions only.
     Weld(f32),
     /// The width of the crease band as a part of the bounding diagonal; 0 is none.

@@ -10,7 +10,7 @@ use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BO
 use geometry::tessellate::Tessellation;
 use inspect::settings::{ColorSource, Declaration, Settings, SplitSide, options};
 use load::format::Format;
-use load::{HeightSource, Import, Source};
+use load::{Import, Source};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 
@@ -85,7 +85,11 @@ impl App {
             Action::Camera(action) => self.move_camera_by(context, *action),
             Action::Setting(Change::SwapHalves) => self.swap_halves(),
             Action::Setting(change) => self.settings.change_half_looks(self.panels.edited, |own| change.apply(own)),
-            Action::Prepare(preparing) => self.prepare_as(context, *preparing),
+            Action::Prepare(preparing) => self.prepare(context, |own| match preparing.clone() {
+                Preparing::Heights(heights) => own.heights = heights,
+                Preparing::Weld(tolerance) => own.weld = tolerance,
+                Preparing::CreaseBand(width) => own.crease_band = width,
+            }),
             Action::Undo => self.undo(context),
             Action::Redo => self.redo(context),
             Action::CopyAsCommand => self.copy_command(context, &PictureChoices::default(), None),
@@ -142,16 +146,6 @@ impl App {
             FileAction::SaveTurntable => self.dialogs.turntable.is_open = true,
             FileAction::Quit => context.send_viewport_cmd(ViewportCommand::Close),
         }
-    }
-
-    /// Loads the mesh again with another preparation, unless it has that preparation already.
-    fn prepare_as(&mut self, context: &Context, preparing: Preparing) {
-        self.prepare(context, |preparation| match preparing {
-            Preparing::NoHeights => preparation.heights = None,
-            Preparing::HeightsFromMaterials => preparation.heights = Some(HeightSource::Materials),
-            Preparing::Weld(tolerance) => preparation.weld = tolerance,
-            Preparing::CreaseBand(width) => preparation.crease_band = width,
-        });
     }
 
     /// Goes back to the settings of a first start. Whether displacement is on depends on the mesh, and so do axis and unit: they stay.

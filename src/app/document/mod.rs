@@ -80,10 +80,6 @@ pub(crate) struct Measurements {
 }
 
 impl Measurements {
-    fn is_busy(&self) -> bool {
-        self.measure.is_busy() || self.deviation.is_busy()
-    }
-
     /// Forgets the measurements of a scene that no longer exists.
     pub(crate) fn forget(&mut self) {
         self.measure.forget();
@@ -141,7 +137,7 @@ impl Document {
 
     /// Whether something of what is shown is being measured or found.
     pub(crate) fn is_busy(&self) -> bool {
-        self.halves.iter().any(Measurements::is_busy)
+        self.halves.iter().any(|half| half.measure.is_busy() || half.deviation.is_busy())
             || self.leaks.is_busy()
             || self.silhouette.is_busy()
             || self.selection.is_busy()

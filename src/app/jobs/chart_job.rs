@@ -88,7 +88,7 @@ pub(crate) struct Chart {
     /// How many settings of the last run are done, and how many there are.
     progress: (usize, usize),
     /// While this is set, no new setting is measured.
-    held: Arc<AtomicBool>,
+    pub held: Arc<AtomicBool>,
     /// A run that was cancelled may not have ended yet; the next one waits for it.
     last: Option<JoinHandle<()>>,
     pub charted: Option<Charted>,
@@ -101,13 +101,6 @@ enum ChartMessage {
     Current(Box<Settings>, Option<Probe>),
     /// Why, in a sentence.
     Failed(String),
-}
-
-impl Chart {
-    /// Makes the run wait before its next setting, or lets it go on.
-    pub(crate) fn hold(&self, hold: bool) {
-        self.held.store(hold, Ordering::Relaxed);
-    }
 }
 
 impl App {
