@@ -1,4 +1,5 @@
-//! The window. It edits [`Settings`] and a [`Camera`], and shows what the engine makes of them; it holds no mathematics.
+//! The window. It edits [`Settings`] and a [`Camera`](inspect::render::Camera), and shows what the engine makes of them; it holds no
+//! mathematics.
 
 mod commands;
 mod dialogs;
@@ -20,15 +21,15 @@ pub mod window;
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 use image::RgbaImage;
 
 use geometry::mesh::Texture;
 use gpu::{Gpu, GpuError, LodShader, SurfaceShader};
-use inspect::engine::{Engine, Loaded};
-use inspect::measure::Cracks;
-use inspect::render::{Camera, WindowPipelines, lay_over};
-use inspect::settings::{Settings, SplitSide};
+use inspect::engine::Engine;
+use inspect::render::{WindowPipelines, lay_over};
+use inspect::settings::Settings;
 use load::Source;
 use load::files::Limits;
 
@@ -137,26 +138,9 @@ impl App {
         Ok(app)
     }
 
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    pub fn camera(&self) -> &Camera {
-        &self.viewport.camera
-    }
-
-    /// Cracks of what is shown, once they are measured.
-    pub fn cracks(&self) -> Option<&Cracks> {
-        self.found(SplitSide::Right).map(|found| &found.cracks)
-    }
-
     /// The selected edge: an index into the topology's edges.
     pub fn selected_edge(&self) -> Option<u32> {
         self.document.as_ref()?.selection.edge
-    }
-
-    pub fn loaded(&self) -> Option<&Loaded> {
-        self.document.as_ref().map(|document| &document.loaded)
     }
 
     /// Vertices and triangles of what is shown.
@@ -168,11 +152,6 @@ impl App {
     /// The source of the mesh that is open, not of one that is being loaded.
     pub fn source(&self) -> Option<&Source> {
         self.document.as_ref().map(|document| &document.loaded.source)
-    }
-
-    /// The engine that everything is made and drawn with.
-    pub fn engine(&self) -> &Engine {
-        &self.engine
     }
 
     /// The viewport's picture as it is shown, without the texts over it; none before the first one.
@@ -188,16 +167,6 @@ impl App {
         Ok(picture)
     }
 
-    /// How many pictures have been drawn.
-    pub fn pictures(&self) -> u64 {
-        self.viewport.picture.pictures
-    }
-
-    /// How many previews have been drawn while the camera moved.
-    pub fn previews(&self) -> u64 {
-        self.viewport.preview.drawings
-    }
-
     pub fn switch_previews(&mut self) {
         self.viewport.preview.is_on = !self.viewport.preview.is_on;
     }
@@ -205,11 +174,6 @@ impl App {
     /// Whether a preview is shown in place of the full picture.
     pub fn shows_preview(&self) -> bool {
         self.viewport.preview.shown(&self.viewport.picture).is_some()
-    }
-
-    /// Whether the line of help of a first start is over the picture.
-    pub fn greets(&self) -> bool {
-        self.viewport.greets
     }
 
     /// Whether something is still being loaded, drawn or measured.
@@ -239,8 +203,7 @@ impl eframe::App for App {
         self.window.fitting.fit(context);
         self.take_found(context);
         self.compare_again(context);
-        self.stop_slow_shader::<LodShader>();
-        self.stop_slow_shader::<SurfaceShader>();
+        self.stop_slow_shaders();
         self.measure_current(context);
         self.take_device_problem();
         self.take_dropped(context);
@@ -270,7 +233,7 @@ impl eframe::App for App {
         egui::CentralPanel::no_frame().show(ui, |ui| self.viewport_panel(ui, has_measurements));
         self.windows(ui.ctx());
         // Measuring the chart waits while the window draws or measures.
-        self.panels.chart.charting.hold(self.is_busy());
+        self.panels.chart.held.store(self.is_busy(), Ordering::Relaxed);
         self.note_state(ui.ctx());
         self.keep(ui.ctx());
         if self.is_lost() {

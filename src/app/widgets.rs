@@ -22,20 +22,22 @@ pub(super) fn title(ui: &mut egui::Ui, text: &str, hover: &str) {
     ui.label(text).on_hover_text(hover);
 }
 
-/// A row with a name and a list to choose from.
+/// A row with a name and a list to choose from. Returns what is chosen in place of a value.
 pub(super) fn chooser<T: Copy + PartialEq>(
     ui: &mut egui::Ui,
     name: &str,
     hover: &str,
-    value: &mut T,
+    value: T,
     choices: &[(T, &str, &str)],
-) {
-    let shown = choices.iter().find(|(choice, ..)| choice == value).map_or("", |(_, text, _)| text);
+) -> Option<T> {
+    let shown = choices.iter().find(|(choice, ..)| *choice == value).map_or("", |(_, text, _)| text);
+    let mut chosen = value;
     list_row(ui, name, hover, shown, |ui| {
         for (choice, text, hover) in choices {
-            ui.selectable_value(value, *choice, *text).on_hover_text(*hover);
+            ui.selectable_value(&mut chosen, *choice, *text).on_hover_text(*hover);
         }
     });
+    (chosen != value).then_some(chosen)
 }
 
 /// A row with a name and a list, of which `shown` is chosen.

@@ -5,11 +5,8 @@ use std::io::Write;
 use super::{CliError, refuse};
 use gpu::{AdapterChoice, GpuError, adapters, best_adapter, driver, kind};
 
-#[derive(Debug, clap::Args)]
-pub struct Args {}
-
 /// Prints a line for each adapter.
-pub(super) fn run(_: &Args) -> Result<(), CliError> {
+pub(super) fn run() -> Result<(), CliError> {
     let all = adapters();
     if all.is_empty() {
         return Err(GpuError::NoAdapter.into());

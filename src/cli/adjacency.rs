@@ -60,7 +60,11 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let loaded = load_apart(&args.file, &preparation, &written)?;
     args.weld.parts.say_idle(|own| own.is_of_tessellation(), "a surface or detail of --part has no effect on indices");
     if let Some(path) = &args.corners {
-        write_corners(&loaded, path)?;
+        // What displacement needs of every corner: 32-bit floating-point numbers, little-endian.
+        let corners = displaced_corners(&loaded.mesh, &loaded.topology);
+        let corners = corners.ok_or_else(|| CliError::NotOneImage { file: loaded.source.to_string() })?;
+        let bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+        write_bytes(path, &bytes)?;
     }
     let computed = args.indices.indices(&loaded.topology);
     if let Some(path) = &args.output {
@@ -78,14 +82,6 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         Some((path, bytes)) => compare_with(args.indices, path, &bytes, &loaded, &computed),
         None => Ok(()),
     }
-}
-
-/// Writes what displacement needs of every corner: 32-bit floating-point numbers, little-endian.
-fn write_corners(loaded: &Loaded, path: &Path) -> Result<(), CliError> {
-    let corners = displaced_corners(&loaded.mesh, &loaded.topology);
-    let corners = corners.ok_or_else(|| CliError::NotOneImage { file: loaded.source.to_string() })?;
-    let bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
-    Ok(write_bytes(path, &bytes)?)
 }
 
 /// Reports on standard error where a file's indices differ from those of the mesh.

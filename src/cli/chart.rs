@@ -96,11 +96,6 @@ impl Args {
         Ok(settings)
     }
 
-    /// The meshes of the command line, or those of a report by default.
-    fn meshes(&self) -> Vec<Source> {
-        if self.files.is_empty() { report::usual() } else { self.files.clone() }
-    }
-
     fn plan(&self) -> Plan {
         Plan {
             surfaces: self.surfaces.clone(),
@@ -135,7 +130,7 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
         let exact = || Some(("the exact surface".to_owned(), ReferenceShape::from_shape(source.shape()?)?));
         Ok((loaded, chosen.or_else(exact)))
     };
-    let sources = args.meshes();
+    let sources = if args.files.is_empty() { report::usual() } else { args.files.clone() };
     let meshes: Vec<Loading> = sources.iter().map(load_one).collect::<Result<_, CliError>>()?;
     // Before anything is measured, so that a command that takes minutes doesn't fail at its end.
     args.report.as_deref().map_or(Ok(()), make_folder)?;

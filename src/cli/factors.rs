@@ -9,10 +9,8 @@ use super::view_files::{View, ViewFiles};
 use super::{
     AdapterOption, CliError, LodShaderOption, SurfaceOptions, file_of, files_of_heights, keep_apart, write_text,
 };
-use geometry::tessellate::{HullFactors, LodView, hull_factors};
-use gpu::Given;
+use geometry::tessellate::hull_factors;
 use inspect::engine::Engine;
-use inspect::render::Scene;
 use inspect::shot::files::computed;
 use inspect::shot::report_user_lod;
 use load::Source;
@@ -56,42 +54,30 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let lod_views = views.iter().map(lod_view).collect::<Result<Vec<_>, CliError>>()?;
     let mut on_gpu = match args.device {
         Device::Cpu => None,
-        Device::Gpu => Some(args.uploaded(&mesh, user_lod)?),
+        Device::Gpu => {
+            // The mesh on the device, in its pose, and what takes the place of LOD there.
+            let engine = Engine::chosen(&args.adapter.choice())?;
+            let mut scene = engine.scene(&mesh.loaded, args.surface.arena_bytes())?;
+            scene.tessellator.give(user_lod)?;
+            scene.set_moment(mesh.moment)?;
+            Some((engine, scene))
+        }
     };
     files.make_folder()?;
     for (index, (view, lod_view)) in views.iter().zip(lod_views).enumerate() {
         let factors = match &mut on_gpu {
             None => hull_factors(&mesh.posed.mesh, topology, &mesh.inputs(lod_view)?),
-            Some((engine, scene)) => args.factors_on_gpu(engine, scene, lod_view, index == 0)?,
+            Some((engine, scene)) => {
+                let settings = args.surface.within_budget_on(engine, scene, lod_view)?;
+                let factors = computed(engine, scene, &settings.inputs(lod_view))?;
+                // The first view's are reported on, if a shader of the user's own gives them.
+                if index == 0 {
+                    report_user_lod(engine, scene)?;
+                }
+                factors
+            }
         };
         write_text(&view.file, &to_csv(topology, &factors, args.surface.tessellation().partitioning))?;
     }
     Ok(())
-}
-
-impl Args {
-    /// A mesh on the device, in its pose, and what takes the place of LOD there.
-    fn uploaded(&self, mesh: &Posed, user_lod: Option<Given>) -> Result<(Engine, Scene), CliError> {
-        let engine = Engine::chosen(&self.adapter.choice())?;
-        let mut scene = engine.scene(&mesh.loaded, self.surface.arena_bytes())?;
-        scene.tessellator.give(user_lod)?;
-        scene.set_moment(mesh.moment)?;
-        Ok((engine, scene))
-    }
-
-    /// The factors of a view, computed on the device. The first view's are reported on, if a shader of the user's own gives them.
-    fn factors_on_gpu(
-        &self,
-        engine: &Engine,
-        scene: &mut Scene,
-        lod_view: LodView,
-        is_first: bool,
-    ) -> Result<Vec<HullFactors>, CliError> {
-        let settings = self.surface.within_budget_on(engine, scene, lod_view)?;
-        let factors = computed(engine, scene, &settings.inputs(lod_view))?;
-        if is_first {
-            report_user_lod(engine, scene)?;
-        }
-        Ok(factors)
-    }
 }

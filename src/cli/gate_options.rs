@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValue, TypedValueParser};
 
-use super::options::listed;
+use super::options::Listed;
 use super::{CliError, make_folder, refuse};
 use geometry::progress::Progress;
 use inspect::gates::{Gate, GateKind, Judgement};
@@ -31,7 +31,7 @@ pub struct FailOnOption {
 
 fn gate() -> impl TypedValueParser<Value = Gate> {
     let names = GateKind::ALL.map(|kind| PossibleValue::new(kind.placeholder()).help(kind.label()));
-    listed(str::parse::<Gate>, names.into())
+    Listed { parser: str::parse::<Gate>, names: names.into() }
 }
 
 impl FailOnOption {

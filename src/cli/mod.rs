@@ -127,7 +127,7 @@ pub enum Command {
     /// Print what a file holds, and which parts of it are left out
     Info(info::Args),
     /// List the graphics adapters
-    Adapters(adapters::Args),
+    Adapters,
 }
 
 /// Why a command failed, in one sentence.
@@ -228,7 +228,7 @@ pub fn run(command: Command) -> ExitCode {
         Command::Chart(args) => chart::run(&args),
         Command::Check(args) => check::run(&args),
         Command::Info(args) => info::run(&args),
-        Command::Adapters(args) => adapters::run(&args),
+        Command::Adapters => adapters::run(),
     };
     let Err(error) = result else { return ExitCode::SUCCESS };
     let code = match &error {

@@ -29,7 +29,7 @@ use load::{HeightSource, ShownParts, Source};
 pub(crate) use cameras::{CamerasOption, NamedView, check_view_name, said};
 use declared::GivenTessellation;
 pub(crate) use declared::{
-    Declared, ImportOptions, PictureOptions, TessellationOptions, choice, listed, named, number_of,
+    Declared, ImportOptions, Listed, PictureOptions, TessellationOptions, choice, named, number_of,
 };
 pub(crate) use opening::OpeningOptions;
 pub(crate) use values::{

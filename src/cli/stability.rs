@@ -74,15 +74,11 @@ impl Args {
         self.gates.check(self.device == Some(Device::Cpu))
     }
 
-    fn cases(&self) -> impl Iterator<Item = Subject> {
-        let all = self.cases.is_empty() && self.files.is_empty();
-        let chosen = CASES.iter().filter(move |case| all || self.cases.iter().any(|name| name == case.name));
-        chosen.map(Case::subject)
-    }
-
     /// The chosen cases, then the files as cases of their own. All are loaded before the first one runs.
     fn subjects(&self) -> Result<Vec<Subject>, CliError> {
-        let mut subjects: Vec<_> = self.cases().collect();
+        let all = self.cases.is_empty() && self.files.is_empty();
+        let chosen = CASES.iter().filter(|case| all || self.cases.iter().any(|name| name == case.name));
+        let mut subjects: Vec<_> = chosen.map(Case::subject).collect();
         for source in &self.files {
             let loaded = super::load(source, &self.weld.preparation())?;
             let name = free_name(&source.title(), &subjects);

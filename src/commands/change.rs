@@ -31,7 +31,14 @@ impl Change {
         match self {
             Self::FactorUp => settings.tessellation.factor = factor(settings.tessellation.factor + 1.0),
             Self::FactorDown => settings.tessellation.factor = factor(settings.tessellation.factor - 1.0),
-            Self::AdaptiveLod => settings.tessellation.lod = switched_lod(settings),
+            Self::AdaptiveLod => {
+                let own = &mut settings.tessellation;
+                own.lod = match (own.lod, own.edges) {
+                    (Lod::Uniform, Edges::AsPublished) => Lod::Paper,
+                    (Lod::Uniform, Edges::PerEdge) => Lod::Error,
+                    _ => Lod::Uniform,
+                };
+            }
             Self::ToggleEdges => {
                 let is_shared = settings.tessellation.edges == Edges::PerEdge;
                 settings.tessellation.edges = if is_shared { Edges::AsPublished } else { Edges::PerEdge };
@@ -50,15 +57,6 @@ impl Change {
                 }
             }
         }
-    }
-}
-
-/// The LOD that follows when adaptive LOD is switched.
-fn switched_lod(settings: &Settings) -> Lod {
-    match (settings.tessellation.lod, settings.tessellation.edges) {
-        (Lod::Uniform, Edges::AsPublished) => Lod::Paper,
-        (Lod::Uniform, Edges::PerEdge) => Lod::Error,
-        _ => Lod::Uniform,
     }
 }
 

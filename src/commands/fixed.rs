@@ -1,14 +1,16 @@
 //! Commands that don't depend on the window's state.
 
 use egui::{Key, ThemePreference};
+use glam::IVec2;
 
 use super::{
-    Action, CameraAction, Change, Command, CompanionFile, Direction, FileAction, Menu, Need, Place, Purpose, QUIT,
-    Submenu, Written, ctrl, ctrl_shift, plain, shift,
+    Action, CameraAction, Change, Command, CompanionFile, FileAction, Menu, Need, Place, Purpose, QUIT, Submenu,
+    Written, ctrl, ctrl_shift, plain, shift,
 };
 use geometry::mesh::Shape;
 use inspect::render::Standpoint;
 use inspect::settings::Choice;
+use load::Source;
 
 pub(crate) const HEIGHT_IMAGE: &str = "Displaces the mesh by the brightness of a PNG, JPEG, WebP, TGA, KTX2, TIFF or EXR image, \
                                        which covers all materials.";
@@ -96,7 +98,7 @@ fn file() -> Vec<Command> {
         let name = format!("Shape: {}", shape.title());
         Command {
             place: Some(Place::Submenu(Submenu::Shapes)),
-            ..Command::new(FileAction::OpenShape(shape), name, text)
+            ..Command::new(FileAction::OpenSource(Source::Shape(shape)), name, text)
         }
     }));
     commands.extend(writing());
@@ -107,7 +109,7 @@ fn file() -> Vec<Command> {
 fn writing() -> Vec<Command> {
     let write = |what| FileAction::Ask(Purpose::Write(what));
     declared! {
-        "Shape: Vase" below Shapes => FileAction::OpenVase,
+        "Shape: Vase" below Shapes => FileAction::OpenSource(Source::Vase),
             "Opens the painted vase that the window opens at a first start.";
         "Save picture…" [ctrl(Key::S)] in File 4 needs Picture NoWriting => FileAction::SavePicture,
             "Writes the picture as a PNG file, or a report on it as a page, in any size, with or without background, overlays \
@@ -211,17 +213,17 @@ fn standpoints() -> Vec<Command> {
 
 fn camera() -> Vec<Command> {
     use CameraAction::{Orbit, Pan};
-    use Direction::{Down, Left, Right, Up};
+    let [left, right, up, down] = [IVec2::NEG_X, IVec2::X, IVec2::Y, IVec2::NEG_Y];
     let (orbits, pans) = ("Turns the camera around the mesh by 7.5 degrees.", "Moves the camera by 40 points.");
     declared! {
-        "Orbit left" [plain(Key::ArrowLeft)] => Orbit(Left), orbits;
-        "Pan left" [shift(Key::ArrowLeft)] => Pan(Left), pans;
-        "Orbit right" [plain(Key::ArrowRight)] => Orbit(Right), orbits;
-        "Pan right" [shift(Key::ArrowRight)] => Pan(Right), pans;
-        "Orbit up" [plain(Key::ArrowUp)] => Orbit(Up), orbits;
-        "Pan up" [shift(Key::ArrowUp)] => Pan(Up), pans;
-        "Orbit down" [plain(Key::ArrowDown)] => Orbit(Down), orbits;
-        "Pan down" [shift(Key::ArrowDown)] => Pan(Down), pans;
+        "Orbit left" [plain(Key::ArrowLeft)] => Orbit(left), orbits;
+        "Pan left" [shift(Key::ArrowLeft)] => Pan(left), pans;
+        "Orbit right" [plain(Key::ArrowRight)] => Orbit(right), orbits;
+        "Pan right" [shift(Key::ArrowRight)] => Pan(right), pans;
+        "Orbit up" [plain(Key::ArrowUp)] => Orbit(up), orbits;
+        "Pan up" [shift(Key::ArrowUp)] => Pan(up), pans;
+        "Orbit down" [plain(Key::ArrowDown)] => Orbit(down), orbits;
+        "Pan down" [shift(Key::ArrowDown)] => Pan(down), pans;
         "Zoom in" [plain(Key::PageUp)] => CameraAction::ZoomIn, "Moves the camera closer.";
         "Zoom out" [plain(Key::PageDown)] => CameraAction::ZoomOut, "Moves the camera away.";
     }

@@ -13,6 +13,7 @@ use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
 use geometry::tessellate::Surface;
 use inspect::settings::{Choice, ColorSource, Colors, Control, Declaration, Overlay, Overlays, options};
+use load::{HeightSource, Source};
 
 /// The greatest number of clips that are listed.
 const CLIPS: usize = 1000;
@@ -147,9 +148,9 @@ fn mesh() -> Vec<Command> {
     all.extend(declared! {
         "Crease band: On" needs Document => Preparing::CreaseBand(CREASE_BAND), on;
         "Crease band: Off" needs Document => Preparing::CreaseBand(0.0), "Leaves creases as the mesh has them.";
-        "Height map: None" needs Document => Preparing::NoHeights,
+        "Height map: None" needs Document => Preparing::Heights(None),
             "Removes the height map; those of the file stay.";
-        "Height map: Material" needs Document => Preparing::HeightsFromMaterials,
+        "Height map: Material" needs Document => Preparing::Heights(Some(HeightSource::Materials)),
             "Displaces the mesh by the brightness of each material's base colour image.";
     });
     all
@@ -172,7 +173,7 @@ fn recent(now: &Availability) -> Vec<Command> {
         let name = format!("Recent: {}", path.file_name().unwrap_or_default().to_string_lossy());
         let text = format!("Opens {}.", path.display());
         let place = Some(Place::Submenu(Submenu::OpenRecent));
-        Command { place, ..Command::new(FileAction::OpenRecent(path.clone()), name, text) }
+        Command { place, ..Command::new(FileAction::OpenSource(Source::File(path.clone())), name, text) }
     };
     now.recent.iter().map(open).collect()
 }

@@ -9,15 +9,15 @@ mod generated;
 mod page_tests;
 
 use std::borrow::Cow;
-use std::path::PathBuf;
 use std::sync::LazyLock;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
+use glam::IVec2;
 
 use geometry::choice::texts;
-use geometry::mesh::Shape;
 use geometry::names::every;
 use inspect::render::Standpoint;
+use load::{HeightSource, Source};
 
 pub use availability::{Availability, Need};
 pub(crate) use availability::{BACKS_ARE_SEEN, MADE_IN_CODE, MOST_BOOKMARKS};
@@ -92,9 +92,8 @@ pub enum FileAction {
     /// With the desktop's dialog, or a typed path where there is none.
     Ask(Purpose),
     OpenPath,
-    OpenRecent(PathBuf),
-    OpenShape(Shape),
-    OpenVase,
+    /// A shape, or a file that was opened before.
+    OpenSource(Source),
     Reload,
     /// The next mesh of the folder, or of those that were dropped together.
     NextMesh,
@@ -167,30 +166,22 @@ pub enum CameraAction {
     OfFile(usize),
     ThroughFrozen,
     Orthographic,
-    Orbit(Direction),
-    Pan(Direction),
+    /// By so many steps to the right and upwards.
+    Orbit(IVec2),
+    Pan(IVec2),
     ZoomIn,
     ZoomOut,
 }
 
 /// A change of how the mesh is prepared when it is loaded.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Preparing {
-    NoHeights,
-    HeightsFromMaterials,
+    /// The height map; none for those of the file.
+    Heights(Option<HeightSource>),
     /// As a part of the bounding diagonal; 0 joins equal positions only.
     Weld(f32),
     /// The width of the crease band as a part of the bounding diagonal; 0 is none.
     CreaseBand(f32),
-}
-
-/// A direction in which the camera turns or moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Direction {
-    Left,
-    Right,
-    Up,
-    Down,
 }
 
 texts! {

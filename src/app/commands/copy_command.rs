@@ -16,9 +16,19 @@ const DRAWS_RIGHT: &str = "This command draws the right half without a window. T
                            name the earlier version of a file:";
 
 impl App {
-    /// Copies the command that draws what is shown with these choices, and shows that command in a window.
-    pub(in crate::app) fn copy_command(&mut self, context: &egui::Context, choices: &PictureChoices) {
-        self.copy_line(context, self.command_of(context.theme(), choices, &self.viewport.camera, None, None));
+    /// Copies the command that draws what is shown with these choices, and shows that command in a window. A turn makes it a turntable,
+    /// as a GIF or not.
+    pub(in crate::app) fn copy_command(
+        &mut self,
+        context: &egui::Context,
+        choices: &PictureChoices,
+        turn: Option<(Turn, bool)>,
+    ) {
+        let command = self.command_of(context.theme(), choices, &self.viewport.camera, None, turn);
+        let Some(command) = command else { return };
+        context.copy_text(command.clone());
+        let lacks_left = self.settings.split.is_some() && self.shows_before();
+        self.commands.copied = Some((command, if lacks_left { DRAWS_RIGHT } else { DRAWS_IT }));
     }
 
     /// Copies the picture that is shown.
@@ -33,16 +43,8 @@ impl App {
         }
     }
 
-    pub(in crate::app) fn copy_line(&mut self, context: &egui::Context, command: Option<String>) {
-        let Some(command) = command else { return };
-        context.copy_text(command.clone());
-        let lacks_left = self.settings.split.is_some() && self.shows_before();
-        self.commands.copied = Some((command, if lacks_left { DRAWS_RIGHT } else { DRAWS_IT }));
-    }
-
     /// The command that draws what is shown, with these choices, as this camera sees it; none without a mesh. Without an
-    /// output, the file is named after the mesh. A turn makes it a turntable, as a GIF or not. A left half that shows the earlier
-    /// version of a file is left out.
+    /// output, the file is named after the mesh. A left half that shows the earlier version of a file is left out.
     pub(in crate::app) fn command_of(
         &self,
         theme: egui::Theme,

@@ -9,6 +9,7 @@ use crate::app::text::shortened;
 use crate::commands::{
     Action, Availability, CameraAction, Change, Command, FileAction, Menu, Place, Submenu, all, shown_key,
 };
+use load::Source;
 
 impl App {
     pub(in crate::app) fn menu_bar(&mut self, ui: &mut egui::Ui) {
@@ -96,7 +97,7 @@ impl App {
         let (why_not, name) = (command.why_not(now), command.value_name());
         let key = command.keys.first().map(|key| shown_key(ui.ctx(), key)).unwrap_or_default();
         let show = |ui: &mut egui::Ui| match (&command.action, self.is_on(ui.ctx(), &command.action)) {
-            (Action::File(FileAction::OpenRecent(path)), _) => ui.add(recent_button(path)),
+            (Action::File(FileAction::OpenSource(Source::File(path))), _) => ui.add(recent_button(path)),
             (Action::Theme(_), Some(is_on)) => ui.radio(is_on, name),
             (_, Some(mut is_on)) => with_key_beside(ui, &key, |ui| ui.checkbox(&mut is_on, name)),
             (_, None) if key.is_empty() => ui.button(name),

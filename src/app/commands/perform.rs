@@ -8,10 +8,9 @@ use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::panels::destinations::{Destination, Step};
 use crate::commands::{Action, Availability, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Purpose};
 use geometry::tessellate::Tessellation;
-use gpu::{LodShader, SurfaceShader};
 use inspect::settings::{ColorSource, Declaration, Settings, SplitSide, options};
 use load::format::Format;
-use load::{HeightSource, Import, Source};
+use load::{Import, Source};
 
 const WHITE_PAPER: &str = "https://developer.download.nvidia.com/whitepapers/2010/PN-AEN-Triangles-Whitepaper.pdf";
 
@@ -86,10 +85,14 @@ impl App {
             Action::Camera(action) => self.move_camera_by(context, *action),
             Action::Setting(Change::SwapHalves) => self.swap_halves(),
             Action::Setting(change) => self.settings.change_half_looks(self.panels.edited, |own| change.apply(own)),
-            Action::Prepare(preparing) => self.prepare_as(context, *preparing),
+            Action::Prepare(preparing) => self.prepare(context, |own| match preparing.clone() {
+                Preparing::Heights(heights) => own.heights = heights,
+                Preparing::Weld(tolerance) => own.weld = tolerance,
+                Preparing::CreaseBand(width) => own.crease_band = width,
+            }),
             Action::Undo => self.undo(context),
             Action::Redo => self.redo(context),
-            Action::CopyAsCommand => self.copy_command(context, &PictureChoices::default()),
+            Action::CopyAsCommand => self.copy_command(context, &PictureChoices::default(), None),
             Action::CopyPicture => self.copy_picture(context),
             Action::ResetSettings => self.reset_settings(),
             Action::ForgetEverything => self.dialogs.asks_to_forget = Some(Forgetting::Everything),
@@ -132,9 +135,7 @@ impl App {
         match action {
             FileAction::Ask(purpose) => self.ask_for(context, *purpose),
             FileAction::OpenPath => self.type_path(Purpose::Open),
-            FileAction::OpenRecent(path) => self.open(context, Source::File(path.clone())),
-            FileAction::OpenShape(shape) => self.open(context, Source::Shape(*shape)),
-            FileAction::OpenVase => self.open(context, Source::Vase),
+            FileAction::OpenSource(source) => self.open(context, source.clone()),
             FileAction::Reload => self.reload(context),
             FileAction::CompareWithBefore => self.compare_with_before(),
             FileAction::CompareWithOwnLimit => self.read_reference(context, None, true),
@@ -147,24 +148,12 @@ impl App {
         }
     }
 
-    /// Loads the mesh again with another preparation, unless it has that preparation already.
-    fn prepare_as(&mut self, context: &Context, preparing: Preparing) {
-        self.prepare(context, |preparation| match preparing {
-            Preparing::NoHeights => preparation.heights = None,
-            Preparing::HeightsFromMaterials => preparation.heights = Some(HeightSource::Materials),
-            Preparing::Weld(tolerance) => preparation.weld = tolerance,
-            Preparing::CreaseBand(width) => preparation.crease_band = width,
-        });
-    }
-
     /// Goes back to the settings of a first start. Whether displacement is on depends on the mesh, and so do axis and unit: they stay.
     pub(in crate::app) fn reset_settings(&mut self) {
         let Settings { tessellation: Tessellation { displacement, .. }, import, .. } = self.settings;
         let usual = Settings::opening();
         let import = Import { up: import.up, unit: import.unit, ..usual.import };
-        self.settings = Settings { import, ..usual.with(Tessellation { displacement, ..usual.tessellation }) };
-        self.replace_again::<LodShader>();
-        self.replace_again::<SurfaceShader>();
+        self.put_settings(Settings { import, ..usual.with(Tessellation { displacement, ..usual.tessellation }) });
     }
 
     /// Closes the windows over the picture; or if there are none, stops what is under way; or if nothing is, ends the measuring of

@@ -2,9 +2,8 @@
 
 mod background;
 mod desktop_dialog;
-pub(super) mod picture_window;
 pub(super) mod purpose;
-mod turntable_window;
+mod save_window;
 pub(super) mod typed_path;
 mod typed_text;
 mod under_way;
@@ -12,8 +11,7 @@ pub(super) mod windows;
 mod writing;
 
 use crate::commands::Purpose;
-use picture_window::PictureWindow;
-use turntable_window::TurntableWindow;
+use save_window::SaveWindow;
 use typed_path::{PendingDialog, TypedPath};
 use windows::Notice;
 
@@ -42,9 +40,9 @@ pub(super) struct Dialogs {
     /// Whether the window for the background colour is open.
     pub chooses_background: bool,
     /// The window that chooses how a picture is saved.
-    pub picture: PictureWindow,
+    pub picture: SaveWindow,
     /// The window that chooses how a turntable is saved.
-    pub turntable: TurntableWindow,
+    pub turntable: SaveWindow,
     /// Whether the list of the mesh's warnings is open.
     pub shows_warnings: bool,
     /// What is forgotten if the window that asks for it is answered with yes; none if it isn't open.

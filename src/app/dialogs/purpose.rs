@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::app::jobs::companion_files::absolute_path;
 use crate::commands::{CompanionFile, Purpose, Written};
 use load::Source;
 use load::environment_file::ENVIRONMENT_EXTENSIONS;
@@ -11,7 +12,7 @@ use load::format::{extensions, known_extensions};
 type Kind = (&'static str, Vec<&'static str>);
 
 /// What is said about a file that is asked for.
-pub(super) struct AskedFile {
+pub(in crate::app) struct AskedFile {
     /// The title of the window in which a path is typed.
     pub title: &'static str,
     /// The files that can be typed, in a sentence.
@@ -23,7 +24,7 @@ pub(super) struct AskedFile {
 }
 
 impl AskedFile {
-    pub(super) fn new(purpose: Purpose) -> Self {
+    pub(in crate::app) fn new(purpose: Purpose) -> Self {
         let of = |title, takes: &str, kinds: Vec<Kind>, ending| Self { title, takes: takes.to_owned(), kinds, ending };
         let only = |(name, ending)| (name, vec![ending]);
         let beside =
@@ -111,7 +112,8 @@ pub(super) fn proposed_name(purpose: Purpose, open: Option<&Source>) -> Option<S
 /// The path that the text field starts with. `folder` is where a file was written last.
 pub(super) fn proposed(purpose: Purpose, open: Option<&Source>, folder: Option<&Path>) -> String {
     if let Some(name) = proposed_name(purpose, open) {
-        return unused(folder.map_or_else(|| absolute(&name), |folder| folder.join(&name).display().to_string()));
+        let path = folder.map_or_else(|| absolute_path(name.clone().into()), |folder| folder.join(&name));
+        return unused(path.display().to_string());
     }
     match (purpose, open) {
         (
@@ -130,11 +132,6 @@ fn unused(path: String) -> String {
     };
     let numbered = (2..).map(|number| format!("{stem}-{number}{ending}"));
     std::iter::once(path.clone()).chain(numbered).find(|path| !Path::new(path).exists()).unwrap_or(path.clone())
-}
-
-/// The path of a name in the working folder.
-pub(crate) fn absolute(name: &str) -> String {
-    std::path::absolute(name).map_or_else(|_| name.to_owned(), |path| path.display().to_string())
 }
 
 /// The name of a file that is made from a mesh with this title: the title's ending is replaced by `ending`.

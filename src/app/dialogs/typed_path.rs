@@ -16,13 +16,13 @@ use geometry::names::shown_path;
 use load::{FileError, Source};
 
 pub(crate) struct TypedPath {
-    purpose: Purpose,
+    pub purpose: Purpose,
     path: String,
     completion: (String, Completion),
     /// Whether it is said which names begin like the path, since Tab can't choose one of them. Then Tab leaves the field.
     lists_names: bool,
     /// Why the path must be typed, if a dialog was asked for.
-    why: Option<&'static str>,
+    pub why: Option<&'static str>,
     /// Events of keys that were pressed before the field had the focus; none once it has had the focus.
     early: Option<Vec<Event>>,
 }
@@ -49,13 +49,7 @@ impl PendingDialog {
 const NO_DIALOG: &str = "This desktop has no file dialog (neither a portal nor zenity). Type the path instead.";
 
 impl TypedPath {
-    /// Shows the window. Returns true if the path is accepted, and false if the window is closed.
-    fn show(&mut self, context: &egui::Context) -> Option<bool> {
-        let window = egui::Window::new(AskedFile::new(self.purpose).title).resizable(false).collapsible(false);
-        let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
-        window.show(context, |ui| self.rows(ui)).and_then(|shown| shown.inner).flatten()
-    }
-
+    /// Shows the window's content. Returns true if the path is accepted, and false if the window is closed.
     fn rows(&mut self, ui: &mut egui::Ui) -> Option<bool> {
         if let Some(why) = self.why {
             ui.label(why);
@@ -139,11 +133,6 @@ impl TypedPath {
 }
 
 impl App {
-    /// The title of the window in which a path is typed, and why it is shown if a dialog was asked for.
-    pub fn path_asked_for(&self) -> Option<(&'static str, Option<&'static str>)> {
-        self.dialogs.typed_path.as_ref().map(|typed| (AskedFile::new(typed.purpose).title, typed.why))
-    }
-
     /// Opens the window in which a path is typed, with a proposed path.
     pub(in crate::app) fn type_path(&mut self, purpose: Purpose) {
         if self.dialogs.typed_path.as_ref().is_some_and(|typed| typed.purpose == purpose) {
@@ -154,15 +143,6 @@ impl App {
         let (completion, early) = Default::default();
         let (why, lists_names) = (None, false);
         self.dialogs.typed_path = Some(TypedPath { purpose, path, completion, lists_names, why, early: Some(early) });
-    }
-
-    /// The same, if the desktop has no dialog.
-    fn type_path_instead(&mut self, purpose: Purpose, early: Vec<Event>) {
-        self.type_path(purpose);
-        if let Some(typed) = &mut self.dialogs.typed_path {
-            typed.why = Some(NO_DIALOG);
-            typed.early = Some(early);
-        }
     }
 
     /// Keeps the keys of this frame from event `place` on for the text field: they were pressed after the key that opened it.
@@ -192,7 +172,10 @@ impl App {
     }
 
     pub(in crate::app) fn path_window(&mut self, context: &egui::Context) {
-        match self.dialogs.typed_path.as_mut().and_then(|typed| typed.show(context)) {
+        let Some(typed) = &mut self.dialogs.typed_path else { return };
+        let window = egui::Window::new(AskedFile::new(typed.purpose).title).resizable(false).collapsible(false);
+        let window = window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO);
+        match window.show(context, |ui| typed.rows(ui)).and_then(|shown| shown.inner).flatten() {
             Some(true) => self.take_typed(context),
             Some(false) => self.dialogs.typed_path = None,
             None => {}
@@ -275,7 +258,12 @@ impl App {
                 self.dialogs.error = taken.err().or(self.dialogs.error.take());
             }
             Ok(Asked::Cancelled) => {}
-            Ok(Asked::NoDialog) => self.type_path_instead(purpose, early),
+            Ok(Asked::NoDialog) => {
+                self.type_path(purpose);
+                if let Some(typed) = &mut self.dialogs.typed_path {
+                    (typed.why, typed.early) = (Some(NO_DIALOG), Some(early));
+                }
+            }
             Err(stopped) => {
                 self.dialogs.error =
                     Some(format!("the desktop's file dialog {stopped}; type a path instead with File > Open path…"));

@@ -34,8 +34,8 @@ impl App {
         self.palette_window(context);
         self.forget_window(context);
         self.background_window(context);
-        self.picture_window(context);
-        self.turntable_window(context);
+        self.save_window(context, false);
+        self.save_window(context, true);
         self.warnings_window(context);
         self.message_window(context);
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::Theme;
 
 use super::purpose::AskedFile;
-use super::turntable_window::TurntableWindow;
+use super::save_window::SaveWindow;
 use super::windows::Notice;
 use crate::app::App;
 use crate::app::jobs::job_list::Work;
@@ -62,7 +62,7 @@ impl App {
         let plain = || self.shot_parts(theme, &PictureChoices::default());
         Some(match what {
             Written::Chart => {
-                let subject = self.panels.chart.charted()?.subject.clone();
+                let subject = self.panels.chart.charted.as_ref()?.subject.clone();
                 without_warnings(move |path, _| {
                     save(path, std::slice::from_ref(&subject)).map_err(|error| error.to_string())
                 })
@@ -74,7 +74,7 @@ impl App {
                 without_warnings(move |path, progress| parts.save(&command, path, progress))
             }
             Written::Folder | Written::Gif => {
-                let TurntableWindow { choices, turn, .. } = self.dialogs.turntable;
+                let SaveWindow { choices, turn, .. } = self.dialogs.turntable;
                 let command = |frame| {
                     let (camera, name) = (turn.camera(&self.viewport.camera, frame), frame_name(frame));
                     self.command_of(theme, &choices, &camera, Some(Path::new(&name)), None)

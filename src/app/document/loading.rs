@@ -1,6 +1,5 @@
 //! Opens meshes and loads them again. A new load cancels the one before it.
 
-use std::io::ErrorKind;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -17,47 +16,28 @@ use inspect::engine::{self, Engine, Preparation};
 use inspect::render::Camera;
 use inspect::settings::Settings;
 use load::environment_file::is_environment;
-use load::files::FileError;
 use load::format::Format;
-use load::{Contents, Import, LoadError, Source};
+use load::{Contents, Import, Source};
 
-/// Why a mesh could not be loaded.
-struct NotLoaded {
-    /// The reason, as a sentence.
-    why: String,
-    /// Whether the file doesn't exist.
-    is_gone: bool,
-}
-
-impl NotLoaded {
-    fn because(why: String) -> Self {
-        Self { why, is_gone: false }
-    }
-
-    fn panicked(source: &Source, stopped: &Stopped) -> Self {
-        Self::because(format!("{}: loading it {stopped}; the file may be damaged", source.title()))
-    }
+fn panicked(source: &Source, stopped: &Stopped) -> String {
+    format!("{}: loading it {stopped}; the file may be damaged", source.title())
 }
 
 /// The part of a load that reading the mesh counts as. Compiling shaders, of which no part is known, is the rest.
 const READ: f32 = 0.8;
 
 /// Loads a mesh, and makes the pipelines that a picture with these settings needs, so that the first picture doesn't wait for the
-/// driver's compiler.
+/// driver's compiler. Fails with a sentence.
 fn load(
     engine: &Engine,
     source: &Source,
     preparation: &Preparation,
     settings: &Settings,
     progress: &Progress,
-) -> Result<Document, NotLoaded> {
+) -> Result<Document, String> {
     let read_from = Stamped::now(sources(source, preparation.heights.as_ref()));
-    let loaded = engine::load(source, preparation, &progress.part(0.0, READ)).map_err(|error| {
-        let is_gone =
-            matches!(&error, LoadError::File(FileError::Io { source, .. }) if source.kind() == ErrorKind::NotFound);
-        NotLoaded { why: error.to_string(), is_gone }
-    })?;
-    let no_room = |error: GpuError| NotLoaded::because(format!("{}: {error}", source.title()));
+    let loaded = engine::load(source, preparation, &progress.part(0.0, READ)).map_err(|error| error.to_string())?;
+    let no_room = |error: GpuError| format!("{}: {error}", source.title());
     progress.enter(Stage::Device);
     progress.set(READ);
     let scene = scene_of(engine, &loaded).map_err(no_room)?;
@@ -167,12 +147,13 @@ impl App {
         source.into_iter().for_each(|source| self.open(context, source));
     }
 
-    fn take_loaded(&mut self, context: &egui::Context, ended: Result<Result<Document, NotLoaded>, Stopped>) {
+    fn take_loaded(&mut self, context: &egui::Context, ended: Result<Result<Document, String>, Stopped>) {
         let Some(Load { source, keep_view, has_changed, .. }) = self.jobs.last_load.take() else { return };
-        match ended.unwrap_or_else(|stopped| Err(NotLoaded::panicked(&source, &stopped))) {
+        match ended.unwrap_or_else(|stopped| Err(panicked(&source, &stopped))) {
             Ok(document) => self.take_document(context, Document { has_changed, ..document }, keep_view),
-            Err(NotLoaded { mut why, is_gone }) => {
-                if is_gone && self.persistence.gone(&source) {
+            Err(mut why) => {
+                let is_there = |path: &PathBuf| path.try_exists().unwrap_or(true);
+                if matches!(&source, Source::File(path) if !is_there(path)) && self.persistence.gone(&source) {
                     why += "; it was removed from the recent files";
                 }
                 self.dialogs.error = Some(why);
@@ -270,7 +251,7 @@ impl App {
             context.input(|input| input.raw.dropped_files.iter().map(|file| file.path().to_owned()).collect());
         let (environments, others): (Vec<_>, Vec<_>) = dropped.into_iter().partition(|path| is_environment(path));
         if let Some(path) = environments.into_iter().next() {
-            self.open_environment(context, path);
+            self.read_environment(context, path, true);
         }
         let meshes: Vec<_> = others.iter().filter(|path| Format::from_name(path).is_some()).cloned().collect();
         let Some(path) = meshes.first().or(others.first()).cloned() else { return };
@@ -288,7 +269,7 @@ mod tests {
     fn a_load_that_panics_returns_an_error_that_names_the_file() {
         let indices: &[u32] = std::hint::black_box(&[]);
         let stopped = caught::<()>(|| panic!("index {} of {}", 7, indices.len())).expect_err("it panicked");
-        let said = NotLoaded::panicked(&Source::File("models/odd.glb".into()), &stopped).why;
+        let said = panicked(&Source::File("models/odd.glb".into()), &stopped);
         assert_eq!(said, "odd.glb: loading it stopped unexpectedly (index 7 of 0); the file may be damaged");
     }
 }

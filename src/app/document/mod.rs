@@ -3,8 +3,8 @@
 pub(super) mod loading;
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
+use super::jobs::companion_files::new_generation;
 use super::jobs::deviation_job::DeviationJob;
 use super::jobs::explain_job::Explanation;
 use super::jobs::file_watch::Stamped;
@@ -80,10 +80,6 @@ pub(crate) struct Measurements {
 }
 
 impl Measurements {
-    fn is_busy(&self) -> bool {
-        self.measure.is_busy() || self.deviation.is_busy()
-    }
-
     /// Forgets the measurements of a scene that no longer exists.
     pub(crate) fn forget(&mut self) {
         self.measure.forget();
@@ -93,7 +89,6 @@ impl Measurements {
 
 impl Document {
     fn new(loaded: Loaded, scene: Scene, files: Stamped) -> Self {
-        static GENERATION: AtomicU64 = AtomicU64::new(0);
         let exact = loaded.source.shape().and_then(ReferenceShape::from_shape).map(Arc::new);
         Self {
             files,
@@ -108,7 +103,7 @@ impl Document {
             diagonal: scene.bounds.diagonal(),
             has_texture_coordinates: loaded.mesh.has_texture_coordinates(),
             exact,
-            generation: GENERATION.fetch_add(1, Ordering::Relaxed),
+            generation: new_generation(),
             halves: Default::default(),
             leaks: LeakJob::default(),
             silhouette: SilhouetteJob::default(),
@@ -142,7 +137,7 @@ impl Document {
 
     /// Whether something of what is shown is being measured or found.
     pub(crate) fn is_busy(&self) -> bool {
-        self.halves.iter().any(Measurements::is_busy)
+        self.halves.iter().any(|half| half.measure.is_busy() || half.deviation.is_busy())
             || self.leaks.is_busy()
             || self.silhouette.is_busy()
             || self.selection.is_busy()

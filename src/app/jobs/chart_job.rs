@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::background_job::caught;
-use super::job_list::{Jobs, Work};
+use super::job_list::Work;
 use crate::app::App;
 use geometry::mesh::Moment;
 use geometry::progress::Progress;
@@ -16,7 +16,7 @@ use inspect::engine::{Engine, Loaded};
 use inspect::reference_shape::ReferenceShape;
 use inspect::render::{Camera, Target};
 use inspect::settings::{ARENA_BYTES, Settings};
-use lab::chart::{Bench, Effort, Probe, Row, Setting, Subject};
+use lab::chart::{Bench, Cost, Effort, Plan, Probe, Row, Setting, Subject};
 
 /// What all points of a chart have in common: mesh, pose, reference surface, view and settings that aren't tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,15 +33,15 @@ pub(crate) struct ChartBasis {
 }
 
 /// What a run needs.
-pub(crate) struct Job {
-    pub adapter: wgpu::Adapter,
-    pub loaded: Loaded,
-    pub of: ChartBasis,
-    pub reference_shape: Option<Arc<ReferenceShape>>,
+struct Job {
+    adapter: wgpu::Adapter,
+    loaded: Loaded,
+    of: ChartBasis,
+    reference_shape: Option<Arc<ReferenceShape>>,
     /// The window's settings, if the list doesn't have them.
-    pub current: Option<Settings>,
-    pub settings: Vec<Setting>,
-    pub effort: Effort,
+    current: Option<Settings>,
+    settings: Vec<Setting>,
+    effort: Effort,
 }
 
 pub(crate) struct Charted {
@@ -73,15 +73,22 @@ impl Charted {
     }
 }
 
-/// Measures one list of settings at a time.
+/// The chart, which measures one list of settings at a time.
 #[derive(Default)]
-pub(crate) struct ChartJob {
+pub(crate) struct Chart {
+    pub is_open: bool,
+    pub cost: Cost,
+    /// The surfaces and LODs that are tried. Normals are those of the window.
+    pub plan: Plan,
+    pub effort: Effort,
+    /// The window's settings, if they aren't in the chart, and since when they are unchanged, on the window's clock in s.
+    pub still: Option<(Settings, f64)>,
     /// Kept while the chart is open, because making its pipelines takes longer than measuring a setting.
     engine: Option<Engine>,
     /// How many settings of the last run are done, and how many there are.
     progress: (usize, usize),
     /// While this is set, no new setting is measured.
-    held: Arc<AtomicBool>,
+    pub held: Arc<AtomicBool>,
     /// A run that was cancelled may not have ended yet; the next one waits for it.
     last: Option<JoinHandle<()>>,
     pub charted: Option<Charted>,
@@ -96,12 +103,25 @@ enum ChartMessage {
     Failed(String),
 }
 
-impl ChartJob {
-    /// Starts a run, whose results are added to those so far.
-    pub(crate) fn start(&mut self, jobs: &mut Jobs, context: &egui::Context, job: Job) {
-        self.progress = (0, job.settings.len() + usize::from(job.current.is_some()));
-        self.held = Arc::default();
-        let (engine, last, held) = (self.engine.clone(), self.last.take(), self.held.clone());
+impl App {
+    /// Starts to measure settings and the window's own, with the effort of the command's chart, but with one core left for the window. The
+    /// results are added to those so far.
+    pub(in crate::app) fn start_charting(
+        &mut self,
+        context: &egui::Context,
+        of: ChartBasis,
+        current: Option<Settings>,
+        settings: Vec<Setting>,
+    ) {
+        let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
+        let (adapter, reference_shape) = (self.render_state.adapter.clone(), self.yardstick().1);
+        let chart = &mut self.panels.chart;
+        let mut effort = chart.effort;
+        effort.accuracy.threads = effort.accuracy.threads.saturating_sub(1).max(1);
+        chart.progress = (0, settings.len() + usize::from(current.is_some()));
+        chart.held = Arc::default();
+        let (engine, last, held) = (chart.engine.clone(), chart.last.take(), chart.held.clone());
+        let job = Job { adapter, loaded, of, reference_shape, current, settings, effort };
         let run = move |wanted: &Progress, say: &dyn Fn(ChartMessage) -> bool| {
             // If the last run failed, it has reported that itself.
             let _ = last.map(JoinHandle::join);
@@ -111,31 +131,24 @@ impl ChartJob {
             };
             failed.into_iter().for_each(|why| _ = say(ChartMessage::Failed(why)));
         };
-        self.last = jobs.follow(context, Work::Chart, run, |app, _, message| app.take_charted(message));
+        chart.last = self.jobs.follow(context, Work::Chart, run, |app, _, message| app.take_charted(message));
     }
 
-    /// Makes the run wait before its next setting, or lets it go on.
-    pub(crate) fn hold(&self, hold: bool) {
-        self.held.store(hold, Ordering::Relaxed);
-    }
-}
-
-impl App {
     /// How many of the chart's settings are done, and how many there are; none if it isn't measuring.
     pub fn charting(&self) -> Option<(usize, usize)> {
-        self.jobs.has(Work::Chart).then_some(self.panels.chart.charting.progress)
+        self.jobs.has(Work::Chart).then_some(self.panels.chart.progress)
     }
 
     /// Stops measuring and frees the chart's device. The results so far stay.
     pub(in crate::app) fn close_chart(&mut self) {
         self.jobs.stop(Work::Chart);
         self.panels.chart.still = None;
-        self.panels.chart.charting.engine = None;
+        self.panels.chart.engine = None;
     }
 
     /// Takes what a run has found; none if it has ended.
     fn take_charted(&mut self, message: Option<ChartMessage>) {
-        let ChartJob { engine, progress, charted, .. } = &mut self.panels.chart.charting;
+        let Chart { engine, progress, charted, .. } = &mut self.panels.chart;
         match (message, charted) {
             (Some(ChartMessage::Engine(made)), _) => return *engine = Some(*made),
             (Some(ChartMessage::Row(row)), Some(charted)) => charted.add(*row),

@@ -135,13 +135,16 @@ impl App {
     /// Starts to open a file beside the mesh, or a shape as the reference surface or in the left half. Until it is read, what is open stays.
     pub(in crate::app) fn open_companion(&mut self, context: &egui::Context, companion: CompanionFile, source: Source) {
         match (companion, source) {
-            (CompanionFile::ReferenceShape, source) => self.open_reference_shape(context, source),
+            (CompanionFile::ReferenceShape, source) => self.read_reference(context, Some(source), true),
             (CompanionFile::LeftMesh, source) => self.read_left(context, Some(source), MorphWeights::new()),
             (CompanionFile::Factors, Source::File(path)) => self.open_factors(context, path),
-            (CompanionFile::LodShader, Source::File(path)) => self.open_lod_shader(context, path),
-            (CompanionFile::SurfaceShader, Source::File(path)) => self.open_surface_shader(context, path),
+            (CompanionFile::LodShader, Source::File(path)) => {
+                self.forget_factors();
+                self.open_shader::<LodShader>(context, path);
+            }
+            (CompanionFile::SurfaceShader, Source::File(path)) => self.open_shader::<SurfaceShader>(context, path),
             (CompanionFile::Matcap, Source::File(path)) => self.open_matcap(context, path),
-            (CompanionFile::Environment, Source::File(path)) => self.open_environment(context, path),
+            (CompanionFile::Environment, Source::File(path)) => self.read_environment(context, path, true),
             // Shapes are surfaces, and nothing else.
             _ => {}
         }
@@ -150,12 +153,8 @@ impl App {
 
 /// The reference surface that the mesh is compared with.
 impl App {
-    /// Starts to load a reference surface. Until it is loaded, the one before it stays.
-    pub fn open_reference_shape(&mut self, context: &egui::Context, source: Source) {
-        self.read_reference(context, Some(source), true);
-    }
-
-    /// The same, also for the limit of the mesh's own cage. `is_chosen` says whether deviation is shown once it is read.
+    /// Starts to load a reference surface, or without a source the limit of the mesh's own cage. Until it is loaded, the one before it
+    /// stays. `is_chosen` says whether deviation is shown once it is read.
     pub(in crate::app) fn read_reference(&mut self, context: &egui::Context, from: Option<Source>, is_chosen: bool) {
         let (own, preparation) = (self.source().cloned().unwrap_or_default(), self.preparation());
         let subdivide = if from.is_some() { Subdivide::File } else { self.own_scheme() };
@@ -298,12 +297,8 @@ impl App {
 
 /// The file whose light shines on the mesh.
 impl App {
-    /// Starts to read the light of a file, which then shines on the mesh. Until it is read, the light before it stays.
-    pub fn open_environment(&mut self, context: &egui::Context, path: PathBuf) {
-        self.read_environment(context, path, true);
-    }
-
-    /// The same; `is_chosen` says whether the file's light shines once it is read, in the half that is edited now.
+    /// Starts to read the light of a file. Until it is read, the light before it stays. `is_chosen` says whether the file's light shines
+    /// once it is read, in the half that is edited now.
     pub(in crate::app) fn read_environment(&mut self, context: &egui::Context, path: PathBuf, is_chosen: bool) {
         let path = absolute_path(path);
         let (wanted, limits, gpu, half) = (path.clone(), self.jobs.limits, self.engine.gpu.clone(), self.panels.edited);

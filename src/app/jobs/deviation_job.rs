@@ -1,10 +1,10 @@
 //! Measures the distance of what is shown from its reference surface, on a thread of its own, for the deviation overlay.
 
 use super::measure_job::MeasureError;
-use super::walk::{Parts, Walk};
+use super::walk::Walk;
 use geometry::near::Interval;
-use geometry::tessellate::{PosedMesh, Surface};
-use gpu::{Gpu, GpuError};
+use geometry::tessellate::Surface;
+use gpu::Gpu;
 use inspect::measure::{DeviationField, DeviationMeasurement, DeviationTarget, WorstPoint};
 use inspect::render::{DEVIATION_PX_SCALE, Scene, deviation_scale};
 
@@ -86,7 +86,14 @@ impl DeviationJob {
         if self.of != Some(of) {
             self.of = Some(of);
             self.walk = None;
-            self.walk = Some(start(gpu, scene, target())?);
+            let (posed, triangles) = (scene.tessellator.posed().clone(), scene.tessellator.totals().1);
+            let target = target();
+            self.walk = Some(Walk::start(gpu, scene, None, move |parts| {
+                let (mesh, topology) = posed.deformed();
+                let mut measurement = DeviationMeasurement::new(&target, &mesh, &topology, triangles, parts.wanted);
+                parts.visit(&mut [&mut measurement])?;
+                measurement.finish().ok()
+            })?);
             return Ok(());
         }
         let Some(walk) = &mut self.walk else { return Ok(()) };
@@ -116,17 +123,4 @@ impl DeviationJob {
         scene.set_deviation(gpu, Some((&DeviationField::empty(), DEVIATION_PX_SCALE)));
         self.generation += 1;
     }
-}
-
-fn start(gpu: &Gpu, scene: &mut Scene, target: DeviationTarget) -> Result<Walk<DeviationField>, GpuError> {
-    let (posed, triangles) = (scene.tessellator.posed().clone(), scene.tessellator.totals().1);
-    Walk::start(gpu, scene, None, move |parts| field(parts, &posed, &target, triangles))
-}
-
-/// Measures the parts as they come. Returns `None` if the result is no longer wanted, or the device was lost.
-fn field(parts: &Parts, posed: &PosedMesh, target: &DeviationTarget, triangles: u64) -> Option<DeviationField> {
-    let (mesh, topology) = posed.deformed();
-    let mut measurement = DeviationMeasurement::new(target, &mesh, &topology, triangles, parts.wanted);
-    parts.visit(&mut [&mut measurement])?;
-    measurement.finish().ok()
 }

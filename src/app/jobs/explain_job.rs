@@ -2,7 +2,7 @@
 
 use super::job_list::Work;
 use crate::app::App;
-use geometry::tessellate::{ExplainedPatch, Inputs, PatchFactors, PosedMesh, explain_patch};
+use geometry::tessellate::{ExplainedPatch, Inputs, PatchFactors, explain_patch};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EmittedPatch {
@@ -18,13 +18,14 @@ pub(crate) type Explanation = Option<(EmittedPatch, Option<ExplainedPatch>)>;
 
 impl App {
     /// Starts to explain a patch, unless that was done already. One that is being explained comes first.
-    pub(in crate::app) fn explain(&mut self, context: &egui::Context, posed: PosedMesh, wanted: EmittedPatch) {
+    pub(in crate::app) fn explain(&mut self, context: &egui::Context, wanted: EmittedPatch) {
         let Some(document) = &mut self.document else { return };
         let is_requested = document.explanation.as_ref().is_some_and(|(asked, _)| *asked == wanted);
         if is_requested || self.jobs.has(Work::Explanation) {
             return;
         }
         document.explanation = Some((wanted, None));
+        let posed = document.scene.tessellator.posed().clone();
         let explain = move |_: &_| {
             let (mesh, topology) = posed.deformed();
             explain_patch(&mesh, &topology, &wanted.inputs, wanted.patch, wanted.factors)

@@ -31,11 +31,6 @@ impl Stamped {
         self
     }
 
-    /// The same files as they are now.
-    fn again(&self) -> Self {
-        Self::now(self.0.iter().map(|(path, _)| path.clone()))
-    }
-
     /// Whether the first file is there. A program may replace a file by another, so that it is missing for a moment.
     fn is_there(&self) -> bool {
         self.0.first().is_some_and(|(_, stamp)| stamp.is_some())
@@ -48,7 +43,7 @@ pub(super) fn watch(mut known: Stamped, wanted: &Progress, mut changed: impl FnM
     let mut last = known.clone();
     while wanted.check().is_ok() {
         std::thread::sleep(EVERY);
-        let now = known.again();
+        let now = Stamped::now(known.0.iter().map(|(path, _)| path.clone()));
         if now != known && now == last && now.is_there() {
             known = now;
             if !changed() {

@@ -9,7 +9,6 @@ use crate::app::App;
 use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::tessellate::{Convention, HullFactors, Lod, Partitioning};
-use gpu::LodShader;
 use inspect::engine::Loaded;
 use inspect::measure::Agreement;
 use inspect::shot::read_factors;
@@ -46,7 +45,7 @@ impl App {
         };
         let what = shown_path(&path);
         let take = move |app: &mut Self, (factors, compared)| {
-            app.forget_shader::<LodShader>();
+            app.close_companion(CompanionFile::LodShader);
             // The file's factors take LOD's place: nothing follows the view.
             let lod = std::mem::replace(&mut app.settings.tessellation.lod, Lod::Uniform);
             let lod = app.given.as_ref().map_or(lod, |given| given.content.lod);

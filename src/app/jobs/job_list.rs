@@ -42,20 +42,6 @@ pub(crate) enum Work {
     StandIn,
 }
 
-impl Work {
-    /// Whether the picture, or what is said about it, waits for it.
-    fn is_waited_for(self) -> bool {
-        use Work::{Chart, Checks, Clip, Dialog, File, Folder, MeshFiles, StandIn, State};
-        !matches!(self, Clip | File | Dialog | State | Checks | Chart | StandIn | MeshFiles | Folder)
-    }
-
-    /// Whether it ends with the document.
-    fn is_of_document(self) -> bool {
-        use Work::{Chart, Checks, Clip, Explanation, Folder, LeftHalf, MeshFiles, StandIn};
-        matches!(self, Checks | Clip | Explanation | Chart | LeftHalf | StandIn | MeshFiles | Folder)
-    }
-}
-
 /// What is done in the window with what a job found.
 type Landing = Box<dyn FnOnce(&mut App, &egui::Context)>;
 
@@ -68,8 +54,6 @@ pub(crate) struct Job {
     pub since: Instant,
     /// Returns what the job has found since the last call.
     poll: Box<dyn FnMut() -> Option<Landing>>,
-    /// Whether it goes on after it has found something.
-    goes_on: bool,
     has_landed: bool,
 }
 
@@ -106,7 +90,7 @@ pub(crate) enum LeftChoice {
 pub(crate) struct Jobs {
     jobs: Vec<Job>,
     /// Whether some were started by a window that is closed.
-    of_another_window: bool,
+    pub of_another_window: bool,
     pub limits: Limits,
     /// What is being loaded, or was loaded last.
     pub last_load: Option<Load>,
@@ -144,11 +128,14 @@ impl Jobs {
         let mut land = Some(land);
         let poll = move || {
             let (ended, land) = (running.take()?, land.take()?);
-            let landing: Landing = Box::new(move |app, context| land(app, context, ended));
+            let landing: Landing = Box::new(move |app, context| {
+                app.jobs.stop(work);
+                land(app, context, ended);
+            });
             Some(landing)
         };
         let (since, poll) = (Instant::now(), Box::new(poll));
-        self.add(Job { work, title, progress, since, poll, goes_on: false, has_landed: false });
+        self.add(Job { work, title, progress, since, poll, has_landed: false });
     }
 
     /// Starts a job that goes on after it has found something, on a thread of its own. It says each thing that it finds, which returns
@@ -175,7 +162,7 @@ impl Jobs {
             is_there.then(|| Box::new(landing) as Landing)
         };
         let (title, since, poll) = (String::new(), Instant::now(), Box::new(poll));
-        self.add(Job { work, title, progress, since, poll, goes_on: true, has_landed: false });
+        self.add(Job { work, title, progress, since, poll, has_landed: false });
         spawn(move || {
             job(&wanted, &|found| {
                 let is_wanted = sender.send(found).is_ok();
@@ -207,12 +194,18 @@ impl Jobs {
 
     /// Stops the jobs about a document that is open no more.
     pub(crate) fn stop_of_document(&mut self) {
-        self.jobs.retain(|job| !job.work.is_of_document());
+        use Work::{Chart, Checks, Clip, Explanation, Folder, LeftHalf, MeshFiles, StandIn};
+        let is_of_document =
+            |work| matches!(work, Checks | Clip | Explanation | Chart | LeftHalf | StandIn | MeshFiles | Folder);
+        self.jobs.retain(|job| !is_of_document(job.work));
     }
 
     /// Whether something is under way that the picture, or what is said about it, waits for.
     pub(crate) fn is_busy(&self) -> bool {
-        self.jobs.iter().any(|job| job.work.is_waited_for() && !job.has_landed)
+        use Work::{Chart, Checks, Clip, Dialog, File, Folder, MeshFiles, StandIn, State};
+        let goes_on_beside =
+            |work| matches!(work, Clip | File | Dialog | State | Checks | Chart | StandIn | MeshFiles | Folder);
+        self.jobs.iter().any(|job| !goes_on_beside(job.work) && !job.has_landed)
     }
 
     /// Whether a file beside the mesh is being read.
@@ -230,23 +223,14 @@ impl Jobs {
         self.stop(work);
     }
 
-    /// Lets jobs go on in another window.
-    pub(crate) fn move_to_another_window(&mut self) {
-        self.of_another_window = true;
-    }
-
     /// Takes what a job has found. The scene of the left half waits until no picture is under way.
     fn take(&mut self, is_free: bool) -> Option<(Work, Landing)> {
         let is_ready = |job: &Job| is_free || job.work != Work::LeftHalf;
-        let mut jobs = self.jobs.iter_mut().enumerate().filter(|(_, job)| is_ready(job));
-        let (place, landing) = jobs.find_map(|(place, job)| (job.poll)().map(|landing| (place, landing)))?;
-        let job = &mut self.jobs[place];
-        job.has_landed = true;
-        let work = job.work;
-        if !job.goes_on {
-            self.jobs.remove(place);
-        }
-        Some((work, landing))
+        self.jobs.iter_mut().filter(|job| is_ready(job)).find_map(|job| {
+            let landing = (job.poll)()?;
+            job.has_landed = true;
+            Some((job.work, landing))
+        })
     }
 }
 

@@ -4,8 +4,8 @@ use glam::Vec3;
 use thiserror::Error;
 
 use super::background_job::Stopped;
-use super::walk::{Parts, Walk};
-use geometry::tessellate::{Convention, Edges, HullFactors, Inputs, PatchFactors, PosedMesh, is_beyond_near};
+use super::walk::Walk;
+use geometry::tessellate::{HullFactors, Inputs, PatchFactors, is_beyond_near};
 use geometry::view::ScreenView;
 use gpu::{Given, Gpu, GpuError, Readback};
 use inspect::engine::measurements::closed_extent;
@@ -88,17 +88,6 @@ struct Surveyed {
     sizes: Sizes,
 }
 
-/// The factors that were asked for, as they are read back.
-struct ReadFactors {
-    /// This many bytes of the patches' factors come first.
-    patch_bytes: usize,
-    /// Whether LOD gave the others for every edge or for every side. None: an LOD shader gave a [`HullFactors`] for every patch.
-    of_lod: Option<Edges>,
-    convention: Convention,
-    /// Factors that a file gave in place of those of LOD.
-    given: Option<RequestedFactors>,
-}
-
 impl MeasureJob {
     /// The results for what is shown, once measured.
     pub(crate) fn found(&self) -> Option<&Measured> {
@@ -177,6 +166,7 @@ impl MeasureJob {
     }
 }
 
+/// Starts to measure all of a scene, or if the rest is known the sizes of its triangles in another view.
 fn start(gpu: &Gpu, scene: &mut Scene, view: ScreenView, is_known: bool) -> Result<Walk<Surveyed>, GpuError> {
     if is_known {
         return Walk::start(gpu, scene, None, move |parts| {
@@ -185,49 +175,41 @@ fn start(gpu: &Gpu, scene: &mut Scene, view: ScreenView, is_known: bool) -> Resu
             Some(Surveyed { whole: None, closed: None, sizes })
         });
     }
-    let posed = scene.tessellator.posed().clone();
-    let (factors, readback) = read_factors(gpu, scene);
-    Walk::start(gpu, scene, Some(readback), move |parts| survey(parts, &posed, factors, view))
-}
-
-/// Starts to read the patches' factors, and then those that were asked for.
-fn read_factors(gpu: &Gpu, scene: &Scene) -> (ReadFactors, Readback) {
+    let tessellator = &scene.tessellator;
+    let (posed, convention) = (tessellator.posed().clone(), tessellator.convention());
     let item = size_of::<PatchFactors>() as u64;
-    let buffers = scene.tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
+    let buffers = tessellator.patch_factors().map(|(buffer, count)| (buffer, 0..u64::from(count) * item));
+    // The patches' factors come first, and then those that were asked for.
     let patch_bytes: u64 = buffers.clone().map(|(_, bytes)| bytes.end).sum();
-    let sizes = scene.tessellator.buffers();
-    let (of_lod, buffer, requested_bytes) = match scene.tessellator.user_factors() {
+    let sizes = tessellator.buffers();
+    // An LOD shader gave a [`HullFactors`] for every patch, and LOD a factor for every edge or for every side.
+    let (of_lod, buffer, requested_bytes) = match tessellator.user_factors() {
         Some(own) => (None, own, u64::from(sizes.patch_count) * size_of::<HullFactors>() as u64),
         None => {
-            let (factors, edges) = scene.tessellator.edge_factors();
+            let (factors, edges) = tessellator.edge_factors();
             (Some(edges), factors, u64::from(sizes.factor_count) * size_of::<f32>() as u64)
         }
     };
     let readback = Readback::start(gpu, buffers.chain([(buffer, 0..requested_bytes)]));
-    let convention = scene.tessellator.convention();
-    let given = match scene.tessellator.given() {
+    let of_file = match tessellator.given() {
         Some(Given::Factors(given)) => Some(RequestedFactors::given(convention, given)),
         _ => None,
     };
-    (ReadFactors { patch_bytes: patch_bytes as usize, of_lod, convention, given }, readback)
-}
-
-/// Surveys everything that is emitted. Returns `None` if the result is no longer wanted, or the device was lost.
-fn survey(parts: &Parts, posed: &PosedMesh, factors: ReadFactors, view: ScreenView) -> Option<Surveyed> {
-    let (mesh, topology) = posed.deformed();
-    let ReadFactors { patch_bytes, of_lod, convention, given } = factors;
-    let bytes = parts.first()?;
-    let (factors, read) = bytes.split_at(patch_bytes);
-    let own: Vec<HullFactors> = if of_lod.is_none() { bytemuck::pod_collect_to_vec(read) } else { Vec::new() };
-    let asked = given.unwrap_or_else(|| match of_lod {
-        None => RequestedFactors::given(convention, &own),
-        Some(edges) => RequestedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
-    });
-    // Where the sides of edges got different factors from a shader is told as it is of a file.
-    let agreement = (!own.is_empty()).then(|| Agreement::new(&topology, &own, convention));
-    let mut sizes = Sizes::new(view);
-    let mut survey = Survey::new(&mesh, &topology, bytemuck::pod_collect_to_vec(factors), asked);
-    parts.visit(&mut [&mut survey, &mut sizes])?;
-    let found = survey.finish();
-    Some(Surveyed { closed: closed_extent(&mesh, &topology, &found), sizes, whole: Some((found, agreement)) })
+    Walk::start(gpu, scene, Some(readback), move |parts| {
+        let bytes = parts.first()?;
+        let (factors, read) = bytes.split_at(patch_bytes as usize);
+        let own: Vec<HullFactors> = if of_lod.is_none() { bytemuck::pod_collect_to_vec(read) } else { Vec::new() };
+        let asked = of_file.unwrap_or_else(|| match of_lod {
+            None => RequestedFactors::given(convention, &own),
+            Some(edges) => RequestedFactors::new(edges, convention, bytemuck::pod_collect_to_vec(read)),
+        });
+        let (mesh, topology) = posed.deformed();
+        // Where the sides of edges got different factors from a shader is told as it is of a file.
+        let agreement = (!own.is_empty()).then(|| Agreement::new(&topology, &own, convention));
+        let mut sizes = Sizes::new(view);
+        let mut survey = Survey::new(&mesh, &topology, bytemuck::pod_collect_to_vec(factors), asked);
+        parts.visit(&mut [&mut survey, &mut sizes])?;
+        let found = survey.finish();
+        Some(Surveyed { closed: closed_extent(&mesh, &topology, &found), sizes, whole: Some((found, agreement)) })
+    })
 }

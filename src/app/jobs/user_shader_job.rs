@@ -14,7 +14,7 @@ use crate::commands::CompanionFile;
 use geometry::names::shown_path;
 use geometry::progress::Progress;
 use geometry::tessellate::{Lod, Surface, Tessellation};
-use gpu::{GpuError, LodShader, SurfaceShader, Tessellator, UserReport, UserShader};
+use gpu::{GpuError, LodShader, SurfaceShader, UserReport, UserShader};
 use inspect::engine::Engine;
 use inspect::settings::Settings;
 use inspect::user_shader::read_user_shader;
@@ -39,18 +39,12 @@ pub(crate) trait UserShaderSlot: UserShader {
     /// # Errors
     /// The driver refuses it, out of memory, or a lost device.
     fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError>;
-
-    /// What it reported of the picture that was counted.
-    fn report(tessellator: &Tessellator) -> Option<UserReport>;
-
-    /// The number of the version that the document's scene has; 0 for none.
-    fn shown(app: &App) -> u64;
 }
 
 /// Declares the files: the setting with its type and placeholder, where the app has the file, and what its functions are called in the
-/// pipelines, in the tessellator's report, and in what the document's scene has of files.
+/// pipelines.
 macro_rules! user_shader_slots {
-    ($($shader:ident: $setting:ident: $type:ty = $placeholder:expr, $slot:ident, $pipeline:ident, $report:ident, $shown:ident;)+) => {$(
+    ($($shader:ident: $setting:ident: $type:ty = $placeholder:expr, $slot:ident, $pipeline:ident;)+) => {$(
         impl UserShaderSlot for $shader {
             type Setting = $type;
             const FILE: CompanionFile = CompanionFile::$shader;
@@ -71,21 +65,13 @@ macro_rules! user_shader_slots {
             fn prepare(engine: &Engine, shader: &Arc<Self>) -> Result<(), GpuError> {
                 engine.pipelines.$pipeline(shader).prepare(&engine.gpu)
             }
-
-            fn report(tessellator: &Tessellator) -> Option<UserReport> {
-                tessellator.$report()
-            }
-
-            fn shown(app: &App) -> u64 {
-                app.document.as_ref().map_or(0, |document| document.from_files.$shown)
-            }
         }
     )+};
 }
 
 user_shader_slots! {
-    LodShader: lod: Lod = Lod::Uniform, lod_shader, user_lod, user_lod_report, factors;
-    SurfaceShader: surface: Surface = Surface::OF_USER_SHADER, surface_shader, user_surface, user_surface_report, surface;
+    LodShader: lod: Lod = Lod::Uniform, lod_shader, user_lod;
+    SurfaceShader: surface: Surface = Surface::OF_USER_SHADER, surface_shader, user_surface;
 }
 
 /// A version of a file, and a number of its own.
@@ -126,8 +112,12 @@ type Read<S> = Result<Arc<S>, String>;
 /// Reads and compiles the file, and again after every change, until nobody wants it any more.
 fn read_versions<S: UserShaderSlot>(engine: &Engine, path: &Path, take: &dyn Fn(Read<S>) -> bool, wanted: &Progress) {
     let files = Stamped::now([path.to_owned()]);
+    let read = || {
+        let shader = read_user_shader(path).map_err(|error| error.to_string())?;
+        S::prepare(engine, &shader).map(|()| shader).map_err(|error| error.to_string())
+    };
     let send = || {
-        let version = caught(|| read(engine, path));
+        let version = caught(read);
         take(version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path)))))
     };
     if send() {
@@ -135,26 +125,9 @@ fn read_versions<S: UserShaderSlot>(engine: &Engine, path: &Path, take: &dyn Fn(
     }
 }
 
-/// Reads the file, and lets the driver compile it.
-fn read<S: UserShaderSlot>(engine: &Engine, path: &Path) -> Read<S> {
-    let shader = read_user_shader(path).map_err(|error| error.to_string())?;
-    S::prepare(engine, &shader).map_err(|error| error.to_string())?;
-    Ok(shader)
-}
-
 impl App {
-    /// Opens a file with functions of the user's own, which take the place of LOD once they can be used, and watches it.
-    pub fn open_lod_shader(&mut self, context: &egui::Context, path: PathBuf) {
-        self.forget_factors();
-        self.open_shader::<LodShader>(context, path);
-    }
-
-    /// The same for a function that takes the place of the surface.
-    pub fn open_surface_shader(&mut self, context: &egui::Context, path: PathBuf) {
-        self.open_shader::<SurfaceShader>(context, path);
-    }
-
-    fn open_shader<S: UserShaderSlot>(&mut self, context: &egui::Context, path: PathBuf) {
+    /// Opens a file with functions of the user's own, which take the place of a setting once they can be used, and watches it.
+    pub(super) fn open_shader<S: UserShaderSlot>(&mut self, context: &egui::Context, path: PathBuf) {
         self.forget_shader::<S>();
         let replaced = *S::setting(&mut self.settings.tessellation);
         *S::slot(self) =
@@ -252,10 +225,17 @@ impl App {
         self.surface_shader_file().is_some()
     }
 
-    /// Goes back to the version before, if loops of the present one took too long for the picture that was counted.
-    pub(in crate::app) fn stop_slow_shader<S: UserShaderSlot>(&mut self) {
+    /// Goes back to the versions before, if loops of the present ones took too long for the picture that was counted.
+    pub(in crate::app) fn stop_slow_shaders(&mut self) {
         let Some(document) = &self.document else { return };
-        let (report, shown) = (S::report(&document.scene.tessellator), S::shown(self));
+        let (tessellator, shown) = (&document.scene.tessellator, document.from_files);
+        let (of_lod, of_surface) = (tessellator.user_lod_report(), tessellator.user_surface_report());
+        self.stop_if_slow::<LodShader>(of_lod, shown.factors);
+        self.stop_if_slow::<SurfaceShader>(of_surface, shown.surface);
+    }
+
+    /// The same for what a shader reported, and the number of its version that the picture has.
+    fn stop_if_slow<S: UserShaderSlot>(&mut self, report: Option<UserReport>, shown: u64) {
         let Some(open) = S::slot(self) else { return };
         let is_shown = open.shader.as_ref().is_some_and(|(_, generation)| *generation == shown);
         if is_shown && report.is_some_and(|report| report.stopped > 0) {

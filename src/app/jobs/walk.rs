@@ -90,9 +90,7 @@ impl<T: Send + 'static> Walk<T> {
             Err(TryRecvError::Empty) => None,
         })
     }
-}
 
-impl<T> Walk<T> {
     /// The part of several chunks that has been copied, 0 to 1; none if none are being copied.
     pub(in crate::app) fn copied(&self) -> Option<f32> {
         let copying = self.copying.as_ref().filter(|_| self.chunks > 1)?;

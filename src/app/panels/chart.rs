@@ -1,35 +1,14 @@
-//! The state of the chart panel: which settings are measured when, whether the chart is out of date, and saving it.
-
-use std::path::Path;
+//! Which settings of the chart are measured when, and whether it is out of date.
 
 use crate::app::App;
-use crate::app::jobs::chart_job::{ChartBasis, ChartJob, Charted, Job};
+use crate::app::jobs::chart_job::{ChartBasis, Charted};
 use geometry::tessellate::Tessellation;
 use inspect::settings::Settings;
-use inspect::shot::ShotError;
-use lab::chart::{Cost, Effort, Plan, Probe, Row, Setting, Subject, coarse_first, save, whole};
+use lab::chart::{Plan, Row, Setting, Subject, coarse_first, whole};
 use load::Source;
-
-#[derive(Default)]
-pub(crate) struct Chart {
-    pub is_open: bool,
-    pub(in crate::app) cost: Cost,
-    /// The surfaces and LODs that are tried. Normals are those of the window.
-    pub(in crate::app) plan: Plan,
-    pub(in crate::app) effort: Effort,
-    pub(in crate::app) charting: ChartJob,
-    /// The window's settings, if they aren't in the chart, and since when they are unchanged, on the window's clock in s.
-    pub(in crate::app) still: Option<(Settings, f64)>,
-}
 
 /// How long settings that aren't in the chart must stay unchanged before they are measured as well, in s.
 const STILL: f64 = 0.4;
-
-impl Chart {
-    pub(in crate::app) fn charted(&self) -> Option<&Charted> {
-        self.charting.charted.as_ref()
-    }
-}
 
 impl App {
     pub(in crate::app) fn toggle_chart(&mut self) {
@@ -39,26 +18,8 @@ impl App {
         }
     }
 
-    /// Changes the settings that the chart tries, and its effort.
-    pub fn chart_with(&mut self, plan: Plan, effort: Effort) {
-        (self.panels.chart.plan, self.panels.chart.effort) = (plan, effort);
-    }
-
     pub fn chart_rows(&self) -> &[Row] {
-        self.panels.chart.charted().map_or(&[], |charted| &charted.subject.rows)
-    }
-
-    /// The measurement of the window's settings, if the chart doesn't list them.
-    pub fn chart_current(&self) -> Option<Probe> {
-        self.panels.chart.charted()?.current?.1
-    }
-
-    /// Writes the chart as an SVG, PNG or CSV file.
-    ///
-    /// # Errors
-    /// The path has another ending, or can't be written. Without a chart nothing is written.
-    pub fn save_chart(&self, path: &Path) -> Result<(), ShotError> {
-        self.panels.chart.charted().map_or(Ok(()), |charted| save(path, std::slice::from_ref(&charted.subject)))
+        self.panels.chart.charted.as_ref().map_or(&[], |charted| &charted.subject.rows)
     }
 
     /// What a chart that is measured now would be about.
@@ -77,8 +38,15 @@ impl App {
 
     /// Why the chart is out of date; none if it isn't.
     pub(in crate::app) fn chart_outdated(&self) -> Option<&'static str> {
-        let (charted, now) = (self.panels.chart.charted()?, self.chart_of()?);
-        charted.of.other_than(&now)
+        let (of, now) = (self.panels.chart.charted.as_ref()?.of, self.chart_of()?);
+        let respects = [
+            (of.document != now.document, "another mesh is shown"),
+            (of.moment != now.moment, "another pose is shown"),
+            (of.reference_shape != now.reference_shape, "another reference surface is chosen"),
+            ((of.camera, of.size) != (now.camera, now.size), "the view has changed"),
+            (of.base != now.base, "other settings have changed"),
+        ];
+        respects.into_iter().find_map(|(differs, why)| differs.then_some(why))
     }
 
     /// Starts to measure the settings that the chart lacks. Measures all anew if it lacks none, or is out of date.
@@ -87,15 +55,17 @@ impl App {
         let Some(title) = self.source().map(Source::title) else { return };
         let (_, reference_shape, words) = self.yardstick();
         let all = self.chart_settings();
-        let is_known = |setting: &Setting| self.panels.chart.charted().is_some_and(|charted| charted.has(setting));
+        let is_known =
+            |setting: &Setting| self.panels.chart.charted.as_ref().is_some_and(|charted| charted.has(setting));
         let missing: Vec<_> = all.iter().filter(|setting| !is_known(setting)).copied().collect();
-        let starts_over = missing.is_empty() || self.panels.chart.charted().is_none_or(|charted| charted.of != of);
+        let starts_over =
+            missing.is_empty() || self.panels.chart.charted.as_ref().is_none_or(|charted| charted.of != of);
         if starts_over {
             let (adapter, size) = (self.engine.gpu.info.name.clone(), of.size);
             let (diagonal, reference_shape) = reference_shape.map(|compared| (compared.diagonal(), words)).unzip();
             let subject = Subject { title, reference_shape, adapter, size, rows: Vec::new() };
             let charted = Charted { of, subject, left_out: Vec::new(), diagonal, current: None };
-            self.panels.chart.charting.charted = Some(charted);
+            self.panels.chart.charted = Some(charted);
         }
         let mut settings = if starts_over { all } else { missing };
         // The window's own setting comes first.
@@ -104,22 +74,6 @@ impl App {
         let is_listed = settings.first().is_some_and(|first| Some(*first) == own);
         let current = self.unknown_current().filter(|_| !is_listed);
         self.start_charting(context, of, current, settings);
-    }
-
-    /// Starts to measure settings and the window's own, with the effort of the command's chart, but with one core left for the window.
-    fn start_charting(
-        &mut self,
-        context: &egui::Context,
-        of: ChartBasis,
-        current: Option<Settings>,
-        settings: Vec<Setting>,
-    ) {
-        let Some(loaded) = self.document.as_ref().map(|document| document.loaded.clone()) else { return };
-        let (adapter, reference_shape) = (self.render_state.adapter.clone(), self.yardstick().1);
-        let mut effort = self.panels.chart.effort;
-        effort.accuracy.threads = effort.accuracy.threads.saturating_sub(1).max(1);
-        let job = Job { adapter, loaded, of, reference_shape, current, settings, effort };
-        self.panels.chart.charting.start(&mut self.jobs, context, job);
     }
 
     pub(in crate::app) fn chart_settings(&self) -> Vec<Setting> {
@@ -133,7 +87,7 @@ impl App {
         if self.uses_surface_shader() {
             return None;
         }
-        let (charted, current) = (self.panels.chart.charted()?, whole(&self.settings));
+        let (charted, current) = (self.panels.chart.charted.as_ref()?, whole(&self.settings));
         let listed = Setting::new(&current).is_some_and(|own| charted.has(&own));
         let known = charted.current.is_some_and(|(known, _)| known == current);
         (!listed && !known).then_some(current)
@@ -142,7 +96,7 @@ impl App {
     /// Starts to measure the window's own settings once they stay unchanged.
     pub(in crate::app) fn measure_current(&mut self, context: &egui::Context) {
         let is_idle = self.panels.chart.is_open && self.charting().is_none() && !self.is_busy() && !self.is_playing();
-        let of = self.panels.chart.charted().map(|charted| charted.of).filter(|_| is_idle);
+        let of = self.panels.chart.charted.as_ref().map(|charted| charted.of).filter(|_| is_idle);
         let wanted = of.filter(|of| Some(*of) == self.chart_of()).and_then(|of| Some((of, self.unknown_current()?)));
         let Some((of, current)) = wanted else {
             self.panels.chart.still = None;
@@ -156,20 +110,6 @@ impl App {
             return;
         }
         self.start_charting(context, of, Some(current), Vec::new());
-    }
-}
-
-impl ChartBasis {
-    /// Says in which respect this differs from `now`; none if they are equal.
-    fn other_than(&self, now: &Self) -> Option<&'static str> {
-        let respects = [
-            (self.document != now.document, "another mesh is shown"),
-            (self.moment != now.moment, "another pose is shown"),
-            (self.reference_shape != now.reference_shape, "another reference surface is chosen"),
-            ((self.camera, self.size) != (now.camera, now.size), "the view has changed"),
-            (self.base != now.base, "other settings have changed"),
-        ];
-        respects.into_iter().find_map(|(differs, why)| differs.then_some(why))
     }
 }
 

@@ -48,7 +48,8 @@ impl App {
             ui.horizontal_wrapped(|ui| self.chart_controls(ui));
             self.chart_facts(ui);
             let mut applied = None;
-            if let Some(charted) = self.panels.chart.charted().filter(|charted| !charted.subject.rows.is_empty()) {
+            if let Some(charted) = self.panels.chart.charted.as_ref().filter(|charted| !charted.subject.rows.is_empty())
+            {
                 let is_stale = self.chart_outdated().is_some();
                 let own = Setting::new(&self.settings).filter(|_| !self.uses_surface_shader());
                 let diagram = Diagram { charted, cost: self.panels.chart.cost, is_stale, own };
@@ -106,7 +107,7 @@ impl App {
 
     /// What the chart shows, what it leaves out, and whether it is out of date.
     fn chart_facts(&self, ui: &mut egui::Ui) {
-        let Some(charted) = self.panels.chart.charted() else { return };
+        let Some(charted) = self.panels.chart.charted.as_ref() else { return };
         let left_out = left_out(charted);
         let facts = format!("{left_out}{} {}", charted.subject.title, charted.subject.facts());
         let (text, hover) = match self.chart_outdated() {
@@ -131,10 +132,10 @@ impl App {
             return progress;
         }
         let settings = self.chart_settings();
-        let charted = self.panels.chart.charted().filter(|_| self.chart_outdated().is_none());
+        let charted = self.panels.chart.charted.as_ref().filter(|_| self.chart_outdated().is_none());
         let known = charted.map_or(0, |charted| settings.iter().filter(|setting| charted.has(setting)).count());
         let (text, hover) = match known {
-            0 if self.panels.chart.charted().is_none() => {
+            0 if self.panels.chart.charted.as_ref().is_none() => {
                 ("Measure", "Tries every method at many settings and times each. The window stays usable.")
             }
             0 => ("Measure again", "Measures all settings on what is shown now."),

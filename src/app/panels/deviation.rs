@@ -49,17 +49,7 @@ impl App {
         }
     }
 
-    /// The largest distance of a half from the reference surface, once it is known.
-    pub fn deviation(&self, half: SplitSide) -> Option<f64> {
-        Some(self.known_deviation(half)?.worst?.value)
-    }
-
-    /// A number that no distance of a half exceeds for certain, once it is known; infinite against a limit surface.
-    pub fn deviation_at_most(&self, half: SplitSide) -> Option<f64> {
-        Some(self.known_deviation(half)?.largest.at_most)
-    }
-
-    pub(super) fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
+    pub(in crate::app) fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
         self.settings.half(half)?;
         let of = self.deviation_of(half)?;
         self.deviating(half)?.found.as_ref().filter(|found| found.of == of)

@@ -21,7 +21,7 @@ impl App {
         let images = ["png", "jpg", "jpeg", "webp", "tga", "bmp", "ktx2", "tif", "tiff"];
         let is_image = extension.is_some_and(|extension| images.contains(&&*extension));
         if is_environment(&path) {
-            self.open_environment(context, path);
+            self.read_environment(context, path, true);
         } else if is_image && self.document.is_some() {
             self.displace(context, Some(HeightSource::File(path)));
         } else {

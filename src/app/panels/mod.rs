@@ -1,12 +1,11 @@
 //! The panels around the viewport: settings on the left, statistics and details on the right, the chart and the status line
 //! below.
 
-pub(super) mod chart;
+mod chart;
 mod chart_diagram;
 mod chart_panel;
 pub(super) mod clip_moments;
 mod crack_list;
-mod crease_band;
 pub(super) mod destinations;
 mod deviation;
 pub(super) mod displacement;
@@ -14,8 +13,7 @@ mod factors_list;
 mod found_lists;
 mod halves;
 mod import;
-mod light_rows;
-mod matcap;
+mod look_rows;
 mod morphs;
 mod option_rows;
 mod parts;
@@ -37,8 +35,8 @@ use geometry::tessellate::Displacement;
 use inspect::settings::SplitSide;
 use load::MorphWeights;
 
+use crate::app::jobs::chart_job::Chart;
 use crate::app::sections::OpenSections;
-use chart::Chart;
 use sides::Side;
 
 /// What the panels remember from one frame to the next.

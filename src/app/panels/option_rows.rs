@@ -43,6 +43,13 @@ pub(super) fn option_row_with(ui: &mut egui::Ui, option: &Declaration, settings:
     }
 }
 
+/// A row that is there only where the option has an effect.
+pub(super) fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings) {
+    if (option.no_effect)(settings).is_none() {
+        option_row(ui, option, settings, "");
+    }
+}
+
 /// The hover text of an option: its text, its key and its name on the command line.
 pub(super) fn option_hover(option: &Declaration, key: &str) -> String {
     let name = format!("--{}", option.name);
@@ -96,7 +103,7 @@ fn number_entry(option: &Declaration) -> Option<Description> {
 fn choice_row(
     ui: &mut egui::Ui,
     option: &Declaration,
-    mut name: Option<&'static str>,
+    name: Option<&'static str>,
     settings: &mut Settings,
     hover: &str,
 ) {
@@ -109,9 +116,7 @@ fn choice_row(
         let shown = all.iter().find(|(value, ..)| *value == name).map_or("", |(_, label, _)| label);
         return fixed(ui, option.label, shown, why);
     }
-    let before = name;
-    chooser(ui, option.label, hover, &mut name, &all);
-    if name != before {
+    if let Some(name) = chooser(ui, option.label, hover, name, &all) {
         let is_number = |name: &str| number.is_some_and(|number| number.name == name);
         let value = match name {
             Some(name) if is_number(name) => Value::Number(1.0),

@@ -13,8 +13,8 @@ use geometry::mesh::{Mesh, Topology, adjacency};
 use geometry::names;
 use geometry::tessellate::factors::{patch_has_rows, patch_is_culled, row_base, row_count, row_flip};
 use geometry::tessellate::{
-    Convention, ExplainedPatch, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, PosedMesh,
-    Vertex, domain_side, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
+    Convention, ExplainedPatch, FACING_AWAY, FACTOR_VALUE, FIXED_ONE, Lod, OUT_OF_VIEW, PatchFactors, Vertex,
+    domain_side, factor_side, inside_cut, point_count, segments, triangle_count, weight_corner,
 };
 use inspect::measure::EdgeSide;
 use inspect::render::layout::FACTOR_COLORS;
@@ -69,7 +69,7 @@ impl App {
                     patch,
                     convention,
                     given_by,
-                    explained: question.as_ref().and_then(|(question, _)| self.explained(question)),
+                    explained: question.and_then(|question| self.explained(&question)),
                     factors: found.map(|found| found.outlines.factors(patch)),
                     sides: found.and_then(|found| found.outlines.patch(topology, patch)),
                 };
@@ -93,24 +93,20 @@ impl App {
                     shown.index_rows(ui);
                     shown.hit_rows(ui);
                 });
-                if let Some((question, posed)) = question {
-                    self.explain(ui.ctx(), posed, question);
-                }
+                question.into_iter().for_each(|question| self.explain(ui.ctx(), question));
             }
         }
         wish.into_iter().for_each(|wish| wish(self));
     }
 
-    /// What the selected patch's explanation is about: how the patch was emitted, and the mesh in its pose. None until that is
-    /// measured, and if nothing was emitted.
-    fn emitted_patch(&self, patch: u32) -> Option<(EmittedPatch, PosedMesh)> {
-        let (document, results) = (self.document.as_ref()?, self.results()?);
+    /// What the selected patch's explanation is about: how the patch was emitted. None until that is measured, and if nothing was emitted.
+    fn emitted_patch(&self, patch: u32) -> Option<EmittedPatch> {
+        let results = self.results()?;
         let factors = results.found.outlines.factors(patch);
-        let tessellator = &document.scene.tessellator;
         let emitted = EmittedPatch { tessellation: results.of, patch, inputs: results.seen.inputs, factors };
         // What explains a patch computes its surface on the CPU, which doesn't know a shader's.
         let is_known = !self.uses_surface_shader();
-        (is_known && !patch_is_culled(factors)).then(|| (emitted, tessellator.posed().clone()))
+        (is_known && !patch_is_culled(factors)).then_some(emitted)
     }
 }
 

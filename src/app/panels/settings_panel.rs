@@ -1,6 +1,6 @@
 //! The settings in the left panel.
 
-use super::option_rows::{option_hover, option_row};
+use super::option_rows::{option_hover, option_row, shown_option_row};
 use crate::app::App;
 use crate::app::jobs::companion_files::LeftMesh;
 use crate::app::jobs::job_list::Work;
@@ -104,10 +104,8 @@ impl App {
         let option = &options::SPLIT_LEFT;
         let unset = option.unset.iter().map(|unset| (None, unset.label, unset.text));
         let surfaces = Surface::ALL.iter().map(|surface| (Some(*surface), surface.label(), surface.text()));
-        let before = self.settings.left_surface();
-        let mut surface = before;
-        chooser(ui, option.label, &option_hover(option, ""), &mut surface, &unset.chain(surfaces).collect::<Vec<_>>());
-        if surface != before {
+        let (shown, choices) = (self.settings.left_surface(), unset.chain(surfaces).collect::<Vec<_>>());
+        if let Some(surface) = chooser(ui, option.label, &option_hover(option, ""), shown, &choices) {
             self.settings.set_left_surface(surface);
         }
     }
@@ -117,10 +115,8 @@ impl App {
         let option = &options::SPLIT_LOOKS;
         let same = option.unset.iter().map(|unset| (false, unset.label, unset.text));
         let own = (true, "Its own", "Edit left then has the overlays, colours and light of the left half.");
-        let before = self.settings.left_looks.is_some();
-        let mut has_own = before;
-        chooser(ui, option.label, &option_hover(option, ""), &mut has_own, &same.chain([own]).collect::<Vec<_>>());
-        if has_own != before {
+        let (has_own, choices) = (self.settings.left_looks.is_some(), same.chain([own]).collect::<Vec<_>>());
+        if let Some(has_own) = chooser(ui, option.label, &option_hover(option, ""), has_own, &choices) {
             // Nothing differs yet.
             option.set(&mut self.settings, if has_own { Value::Options(Vec::new()) } else { Value::Unset });
         }
@@ -228,29 +224,28 @@ impl App {
         if contents.variants.is_empty() {
             return;
         }
-        let mut chosen = own.as_deref();
         let hover = "Primitives have the materials of this variant.";
         let named = contents.variants.iter().map(|name| (Some(name.as_str()), name.as_str(), hover));
-        let own = (None, "File's own", "Each primitive has its own material.");
-        let choices: Vec<_> = std::iter::once(own).chain(named).collect();
-        chooser(ui, "Variant", "Material variant to show (--variant).", &mut chosen, &choices);
-        let chosen = chosen.map(str::to_owned);
-        self.prepare(ui.ctx(), |preparation| preparation.variant = chosen);
+        let of_file = (None, "File's own", "Each primitive has its own material.");
+        let choices: Vec<_> = std::iter::once(of_file).chain(named).collect();
+        let hover = "Material variant to show (--variant).";
+        if let Some(chosen) = chooser(ui, "Variant", hover, own.as_deref(), &choices) {
+            self.prepare(ui.ctx(), |preparation| preparation.variant = chosen.map(str::to_owned));
+        }
     }
 
     /// A choice of scenes, which is there only if the file has several. Another scene loads the mesh again.
     fn scene_row(&mut self, ui: &mut egui::Ui) {
         let contents = self.contents();
-        let (scenes, own) = (&contents.scenes, contents.scene);
+        let scenes = &contents.scenes;
         if scenes.len() <= 1 {
             return;
         }
-        let mut chosen = own;
         let names = scenes.iter().enumerate();
         let choices: Vec<_> =
             names.map(|(i, name)| (Some(i), name.as_str(), "What is shown of the file is this scene.")).collect();
-        chooser(ui, "Scene", "Which of the file's scenes is shown (--scene).", &mut chosen, &choices);
-        if let Some(scene) = chosen.filter(|_| chosen != own) {
+        let hover = "Which of the file's scenes is shown (--scene).";
+        if let Some(scene) = chooser(ui, "Scene", hover, contents.scene, &choices).flatten() {
             // By name if that is unique, so that it stays right when the file changes.
             let name = &scenes[scene];
             let is_first = scenes.iter().position(|other| other == name) == Some(scene);
@@ -286,43 +281,6 @@ impl App {
         self.prepare(ui.ctx(), |preparation| preparation.weld = chosen);
     }
 
-    fn look_rows(&mut self, ui: &mut egui::Ui) {
-        for option in [
-            &options::CURVATURE_KIND,
-            &options::CURVATURE_SCALE,
-            &options::ZEBRA_STRIPES,
-            &options::ZEBRA_DIRECTION,
-            &options::CHECKER_SQUARES,
-            &options::TEXEL_DENSITY_PER,
-        ] {
-            shown_option_row(ui, option, &mut self.settings);
-        }
-        self.matcap_row(ui);
-        self.light_rows(ui);
-        self.background_row(ui);
-        option_row(ui, &options::SECTION, &mut self.settings, "");
-        shown_option_row(ui, &options::SECTION_AT, &mut self.settings);
-    }
-
-    fn background_row(&mut self, ui: &mut egui::Ui) {
-        let label = ui.label(options::BACKGROUND.label);
-        ui.horizontal(|ui| {
-            let mut color = self.settings_in(ui.ctx().theme()).background_color();
-            // Narrow, so that the switch beside it has room in any size of the text.
-            ui.spacing_mut().interact_size.x = 36.0;
-            let response = ui.color_edit_button_srgb(&mut color).labelled_by(label.id);
-            if response.has_focus() {
-                let stroke = ui.visuals().selection.stroke;
-                ui.painter().rect_stroke(response.rect.expand(2.0), 3.0, stroke, egui::StrokeKind::Outside);
-            }
-            if response.on_hover_text(option_hover(&options::BACKGROUND, "")).changed() {
-                self.settings.background = Some(color);
-            }
-            self.background_switch(ui);
-        });
-        ui.end_row();
-    }
-
     pub(in crate::app) fn toggle_split(&mut self) {
         // A half that blinks shows alone: then the divider comes back.
         let shows_both = self.settings.split.is_some_and(|split| split > 0.0 && split < 1.0);
@@ -338,13 +296,6 @@ fn options_of_lods() -> impl Iterator<Item = &'static Declaration> {
         (1..Lod::ALL.len()).contains(&idle)
     };
     options::TESSELLATION.into_iter().filter(depends_on_lod).filter(|option| option.name != options::FACTOR.name)
-}
-
-/// A row that is there only where the option has an effect.
-fn shown_option_row(ui: &mut egui::Ui, option: &Declaration, settings: &mut Settings) {
-    if (option.no_effect)(settings).is_none() {
-        option_row(ui, option, settings, "");
-    }
 }
 
 /// The hover text of an overlay: what it shows, and its key.

@@ -46,8 +46,6 @@ impl App {
     }
 
     fn clip_list(&mut self, ui: &mut Ui) {
-        let before = self.viewport.playback.clip;
-        let mut chosen = before;
         // A name short enough for the list, and a hover text.
         let texts = |clip: &Clip| {
             (shortened(&clip.name, 18), format!("{}: {:.3} s.", shortened(&clip.name, 200), clip.duration))
@@ -58,9 +56,8 @@ impl App {
         let choices: Vec<_> = std::iter::once(rest).chain(clips).collect();
         ui.spacing_mut().combo_width = CLIPS_WIDTH;
         let hover = "The animation clip. A clip that is chosen is shown from its start.";
-        chooser(ui, "Clip", hover, &mut chosen, &choices);
-        if chosen != before {
-            self.choose_clip(chosen);
+        if let Some(clip) = chooser(ui, "Clip", hover, self.viewport.playback.clip, &choices) {
+            self.choose_clip(clip);
         }
     }
 
@@ -98,7 +95,7 @@ impl App {
         }
         ui.spacing_mut().combo_width = CLIPS_WIDTH;
         let hover = "The pose left of the split (--split-animation, --split-time).";
-        chooser(ui, "Left pose", hover, &mut self.viewport.playback.left, &choices);
+        self.viewport.playback.left = chooser(ui, "Left pose", hover, own, &choices).unwrap_or(own);
     }
 
     fn time_slider(&mut self, ui: &mut Ui) {

@@ -189,16 +189,14 @@ impl App {
     }
 
     fn junctions_line(&self) -> Line {
+        let leads = Destination::TJunctions;
         let junctions = self.document.as_ref().and_then(|document| document.checks.t_junctions());
         let hover = "Points of the mesh that lie on the open edge of another triangle, which no tessellation closes. A click \
                      shows them and goes to the first.";
         match junctions {
-            None => Line::dim("T-junctions \u{2026}", hover, Destination::TJunctions),
-            Some([]) => Line::dim("No T-junctions", hover, Destination::TJunctions),
-            Some(all) => {
-                let text = counted(all.len() as u64, "T-junction");
-                Line::bad(text, rgb(T_JUNCTION_COLOR), hover, Destination::TJunctions)
-            }
+            None => Line::dim("T-junctions \u{2026}", hover, leads),
+            Some([]) => Line::dim("No T-junctions", hover, leads),
+            Some(all) => Line::bad(counted(all.len() as u64, "T-junction"), rgb(T_JUNCTION_COLOR), hover, leads),
         }
     }
 
@@ -236,10 +234,7 @@ impl App {
         let percent = 100.0 * sizes.small as f64 / sizes.in_view.max(1) as f64;
         let wires = if self.settings.overlays.wireframe && percent >= 50.0 { "Wires too dense: " } else { "" };
         let text = format!("{wires}{percent:.0} % of triangles below 3 px");
-        match percent >= 0.5 {
-            true => Line::bad(text, color, hover, Destination::Sizes),
-            false => Line::dim(text, hover, Destination::Sizes),
-        }
+        Line { text, color: (percent >= 0.5).then_some(color), hover, leads: Destination::Sizes }
     }
 
     fn limit_line(&self, color: Color32) -> Line {
@@ -304,12 +299,11 @@ impl App {
         let has_line = self.lacks_normals();
         let warnings = self.warnings().filter(|warning| !(has_line && is_of_lacking_normals(warning))).count() as u64;
         let hover = "What was repaired or left out when the file was read. A click lists it.";
+        let what = if has_line { "other warning" } else { "warning" };
         match warnings {
             _ if self.document.is_none() => Line::dim("Warnings \u{2026}", hover, Destination::Warnings),
-            0 if has_line => Line::dim("No other warnings", hover, Destination::Warnings),
-            0 => Line::dim("No warnings", hover, Destination::Warnings),
-            _ if has_line => Line::bad(counted(warnings, "other warning"), color, hover, Destination::Warnings),
-            _ => Line::bad(counted(warnings, "warning"), color, hover, Destination::Warnings),
+            0 => Line::dim(format!("No {what}s"), hover, Destination::Warnings),
+            _ => Line::bad(counted(warnings, what), color, hover, Destination::Warnings),
         }
     }
 }

@@ -15,7 +15,6 @@ use crate::app::dialogs::Forgetting;
 use crate::app::jobs::job_list::{Jobs, Work};
 use crate::app::sections::OpenSections;
 use crate::commands::CompanionFile;
-use gpu::{LodShader, SurfaceShader};
 use inspect::render::Camera;
 use inspect::settings::Settings;
 use load::{Import, Source};
@@ -39,11 +38,9 @@ pub struct Persistence {
     /// The state that the file has, or will have once it is written.
     written: SavedState,
     /// Since when `kept` differs from `written`, on the window's clock in s.
-    changed: Option<f64>,
+    pub(in crate::app) changed: Option<f64>,
     /// The problem with the file, which is shown only once.
     said: Option<String>,
-    /// The path of the file that is open, if it is among the saved ones.
-    open: Option<String>,
 }
 
 impl Persistence {
@@ -70,8 +67,7 @@ impl Persistence {
     /// Puts the file of an opened mesh at the front of the recent files. Returns the camera that the mesh was last seen
     /// with, if it still fits, and its bookmarks that fit.
     pub(in crate::app) fn opened(&mut self, source: &Source, diagonal: f32) -> (Option<Camera>, Vec<Camera>) {
-        self.open = path_of(source);
-        let Some(path) = self.open.clone() else { return Default::default() };
+        let Some(path) = path_of(source) else { return Default::default() };
         let files = &mut self.kept.files;
         let known = files.iter().position(|file| file.path == path);
         let mut file = known.map_or_else(|| SavedFile::new(path), |index| files.remove(index));
@@ -94,11 +90,6 @@ impl Persistence {
     /// Removes a file that no longer exists from the list. Returns whether it was listed. Its camera is kept.
     pub(in crate::app) fn gone(&mut self, source: &Source) -> bool {
         self.known(source).is_some_and(|file| !std::mem::replace(&mut file.is_gone, true))
-    }
-
-    /// Lists a file again that was loaded, in case it was gone before.
-    pub(in crate::app) fn is_back(&mut self, source: &Source) {
-        self.known(source).into_iter().for_each(|file| file.is_gone = false);
     }
 
     fn known(&mut self, source: &Source) -> Option<&mut SavedFile> {
@@ -129,11 +120,6 @@ impl Persistence {
                 }
             });
         }
-    }
-
-    /// Goes on in another window, which has another clock.
-    pub(in crate::app) fn move_to_another_window(&mut self) {
-        self.changed = None;
     }
 }
 
@@ -195,7 +181,8 @@ impl App {
     pub(in crate::app) fn look_as_before(&mut self, keep_view: bool) {
         let Some(document) = &self.document else { return };
         if keep_view {
-            return self.persistence.is_back(&document.loaded.source);
+            // It may have been gone before.
+            return self.persistence.known(&document.loaded.source).into_iter().for_each(|file| file.is_gone = false);
         }
         let (camera, bookmarks) = self.persistence.opened(&document.loaded.source, document.diagonal);
         self.viewport.camera = camera.unwrap_or(self.viewport.camera);
@@ -210,7 +197,8 @@ impl App {
             _ => None,
         });
         let settings = self.settings_without_files();
-        let Persistence { kept, open, .. } = &mut self.persistence;
+        let open = self.source().and_then(path_of);
+        let kept = &mut self.persistence.kept;
         kept.take_settings(&settings);
         (kept.open, kept.companions) = (self.panels.open, files);
         kept.frame = frame_now(context, &kept.frame);
@@ -272,11 +260,11 @@ impl App {
     /// Goes back to the state of a first start. The mesh stays open, and is framed.
     fn forget_all(&mut self, context: &egui::Context) {
         let frame = WindowGeometry::default();
-        // LOD and surface before them come back, and are reset as well.
-        self.forget_shader::<LodShader>();
-        self.forget_shader::<SurfaceShader>();
+        // LOD, surface and light before them come back, and are reset as well.
+        for (companion, _) in KEPT {
+            self.close_companion(companion);
+        }
         self.reset_settings();
-        self.close_companion(CompanionFile::Environment);
         self.history = Default::default();
         self.view_history = Default::default();
         self.viewport.bookmarks.clear();
@@ -290,6 +278,5 @@ impl App {
         context.send_viewport_cmd(ViewportCommand::Maximized(frame.is_maximized));
         context.send_viewport_cmd(ViewportCommand::InnerSize(frame.size.into()));
         self.persistence.kept.files.clear();
-        self.persistence.open = None;
     }
 }

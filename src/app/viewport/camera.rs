@@ -1,9 +1,9 @@
 //! The commands that move the camera.
 
-use glam::{Vec2, vec2};
+use glam::vec2;
 
 use crate::app::App;
-use crate::commands::{CameraAction, Direction};
+use crate::commands::CameraAction;
 use geometry::mesh::Moment;
 use inspect::render::{Camera, framed_size};
 use inspect::settings::SplitSide;
@@ -39,11 +39,8 @@ impl App {
             CameraAction::OfFile(index) => self.look_through_file_camera(index),
             CameraAction::ThroughFrozen => *camera = self.viewport.frozen.map_or(*camera, |frozen| frozen.camera),
             CameraAction::Orthographic => camera.orthographic = !camera.orthographic,
-            CameraAction::Orbit(direction) => camera.orbit(towards(direction) * DEGREES_PER_KEY),
-            CameraAction::Pan(direction) => {
-                let arrows = towards(direction);
-                camera.pan(vec2(arrows.x, -arrows.y) * POINTS_PER_KEY, points);
-            }
+            CameraAction::Orbit(steps) => camera.orbit(steps.as_vec2() * DEGREES_PER_KEY),
+            CameraAction::Pan(steps) => camera.pan(vec2(steps.x as f32, -steps.y as f32) * POINTS_PER_KEY, points),
             CameraAction::ZoomIn => camera.zoom(CLOSER, points * 0.5, points),
             CameraAction::ZoomOut => camera.zoom(CLOSER.recip(), points * 0.5, points),
         }
@@ -112,15 +109,5 @@ impl App {
     pub fn is_framed(&self) -> bool {
         let place = |camera: &Camera| (camera.target, camera.distance);
         self.viewport.framed.as_ref().map(place) == Some(place(&self.viewport.camera))
-    }
-}
-
-/// The direction on screen; x is to the right, y is up.
-fn towards(direction: Direction) -> Vec2 {
-    match direction {
-        Direction::Left => Vec2::NEG_X,
-        Direction::Right => Vec2::X,
-        Direction::Up => Vec2::Y,
-        Direction::Down => Vec2::NEG_Y,
     }
 }

@@ -34,22 +34,14 @@ impl Ruler {
             _ => "Distance: click on two places of the mesh".to_owned(),
         }
     }
-
-    fn lines(&self) -> Vec<LineSegment> {
-        let dots = self.ends.into_iter().flatten().map(|end| (end, end, 3.5));
-        let between = self.ends[0].zip(self.ends[1]).into_iter().map(|(a, b)| (a, b, 1.0));
-        outlined(&between.chain(dots).collect::<Vec<_>>(), [255; 3], 1.0)
-    }
 }
 
 impl App {
-    /// The ends of the distance that is measured, in object units.
-    pub fn ruler(&self) -> Option<[Option<Vec3>; 2]> {
-        self.viewport.ruler.map(|ruler| ruler.ends)
-    }
-
     pub(in crate::app) fn ruler_lines(&self) -> Vec<LineSegment> {
-        self.viewport.ruler.map_or_else(Vec::new, |ruler| ruler.lines())
+        let Some(Ruler { ends }) = self.viewport.ruler else { return Vec::new() };
+        let dots = ends.into_iter().flatten().map(|end| (end, end, 3.5));
+        let between = ends[0].zip(ends[1]).into_iter().map(|(a, b)| (a, b, 1.0));
+        outlined(&between.chain(dots).collect::<Vec<_>>(), [255; 3], 1.0)
     }
 
     /// Takes the place that was found at a pixel. Returns whether the ruler is in use.

@@ -119,7 +119,7 @@ impl App {
 
     /// Lets jobs go on in this window. Those that need the lost device start over.
     fn go_on_in(&mut self, context: &egui::Context) {
-        self.jobs.move_to_another_window();
+        self.jobs.of_another_window = true;
         [Work::Clip, Work::LeftHalf, Work::StandIn].into_iter().for_each(|work| self.jobs.stop(work));
         self.load_anew(context);
         // What the lost device had of it is gone too.
@@ -132,7 +132,8 @@ impl App {
         self.watch_mesh(context);
         self.dialogs.pending.iter_mut().for_each(|dialog| dialog.since = f64::NEG_INFINITY);
         self.close_chart();
-        self.persistence.move_to_another_window();
+        // The new window has another clock.
+        self.persistence.changed = None;
         self.viewport.playback.go_on_in(context);
     }
 

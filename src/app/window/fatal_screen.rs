@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::App;
-use crate::app::dialogs::purpose::{absolute, name_beside};
+use crate::app::dialogs::purpose::name_beside;
 use crate::app::jobs::background_job::BackgroundJob;
+use crate::app::jobs::companion_files::absolute_path;
 use crate::commands::{Action, FileAction, QUIT, with_key};
 use geometry::mesh::Moment;
 use geometry::tessellate::{Inputs, tessellate, totals};
@@ -88,9 +89,8 @@ impl App {
         let Some(document) = &self.document else { return };
         let label = ui.label("Tessellated mesh, a .glb or .obj file");
         ui.horizontal(|ui| {
-            let path = screen
-                .path
-                .get_or_insert_with(|| absolute(&name_beside(&document.loaded.source.title(), "-tessellated.obj")));
+            let name = || name_beside(&document.loaded.source.title(), "-tessellated.obj");
+            let path = screen.path.get_or_insert_with(|| absolute_path(name().into()).display().to_string());
             ui.add(egui::TextEdit::singleline(path).desired_width(420.0)).labelled_by(label.id);
             let is_free = screen.saving.is_none() && !path.trim().is_empty();
             let text = if screen.saving.is_some() { "Saving…" } else { "Save mesh" };

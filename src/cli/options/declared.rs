@@ -180,29 +180,22 @@ fn parser(declaration: &'static Declaration) -> ValueParser {
         Kind::Choice(all) | Kind::Several(all) => {
             let value = |name: String| declaration.kind.named(&name).map_or(Value::Unset, Value::Name);
             let names: Vec<_> = all().into_iter().map(possible).collect();
-            ValueParser::new(listed(PossibleValuesParser::new(names.clone()).map(value), names))
+            ValueParser::new(Listed { parser: PossibleValuesParser::new(names.clone()).map(value), names })
         }
         kind @ Kind::NameOrNumber { .. } => {
             let names = kind.descriptions().into_iter().map(possible).collect();
-            ValueParser::new(listed(move |text: &str| kind.parse(text), names))
+            ValueParser::new(Listed { parser: move |text: &str| kind.parse(text), names })
         }
         kind => ValueParser::new(move |text: &str| kind.parse(text)),
     }
 }
 
-/// Reads a value as `parser` does, without the blanks around it, which people write after the commas of a list. Help texts
-/// list these names, though there may be more values than they.
-pub(crate) fn listed<P: TypedValueParser>(
-    parser: P,
-    names: Vec<PossibleValue>,
-) -> impl TypedValueParser<Value = P::Value> {
-    Listed { parser, names }
-}
-
+/// Reads a value as `parser` does, without the blanks around it, which people write after the commas of a list.
 #[derive(Clone)]
-struct Listed<P> {
-    parser: P,
-    names: Vec<PossibleValue>,
+pub(crate) struct Listed<P> {
+    pub parser: P,
+    /// What help texts list, though there may be more values than they.
+    pub names: Vec<PossibleValue>,
 }
 
 impl<P: TypedValueParser> TypedValueParser for Listed<P> {

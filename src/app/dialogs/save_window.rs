@@ -1,4 +1,4 @@
-//! The window that chooses how a picture is saved.
+//! The windows that choose how a picture, and how a turntable, is saved.
 
 use egui::{DragValue, Grid, Ui};
 
@@ -7,44 +7,62 @@ use crate::app::jobs::picture_job::PictureChoices;
 use crate::app::widgets::control_row;
 use crate::commands::{Purpose, Written};
 use inspect::render::{Usual, legend_of};
+use inspect::shot::{FPS, FRAMES, Turn};
 
 /// The sides of pictures, in px: those that the option `--size` takes.
 const SIDES: std::ops::RangeInclusive<u32> = 1..=16384;
 
 /// The width of labels in points: that of the longest, "Pictures a second".
-pub(super) const LABELS: f32 = 108.0;
+const LABELS: f32 = 108.0;
 
 /// The choices, which last as long as the program runs, and whether the window is open.
-#[derive(Default)]
-pub(crate) struct PictureWindow {
+#[derive(Clone, Copy, Default)]
+pub(crate) struct SaveWindow {
     pub is_open: bool,
     pub choices: PictureChoices,
+    /// How a turntable turns.
+    pub turn: Turn,
+    /// Whether a turntable is one GIF file, rather than a folder of PNG files.
+    pub is_gif: bool,
 }
 
 impl App {
-    pub(in crate::app) fn picture_window(&mut self, context: &egui::Context) {
-        if !self.dialogs.picture.is_open {
+    /// Shows the window of a picture, or of a turntable.
+    pub(in crate::app) fn save_window(&mut self, context: &egui::Context, turns: bool) {
+        let mut own = if turns { self.dialogs.turntable } else { self.dialogs.picture };
+        if !own.is_open {
             return;
         }
-        let mut choices = self.dialogs.picture.choices;
+        let (title, hover) = match turns {
+            true => ("Save turntable", "Asks for the name, draws the pictures, and writes them."),
+            false => (
+                "Save picture",
+                "Asks for the name of the file, and writes it: a PNG picture, or a report on it as an HTML page.",
+            ),
+        };
         let (mut is_open, mut saves, mut copies) = (true, false, false);
-        let window = egui::Window::new("Save picture").open(&mut is_open).resizable(false).collapsible(false);
+        let window = egui::Window::new(title).open(&mut is_open).resizable(false).collapsible(false);
         window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(context, |ui| {
-            self.picture_rows(ui, &mut choices);
-            let hover =
-                "Asks for the name of the file, and writes it: a PNG picture, or a report on it as an HTML page.";
+            if turns {
+                ui.label("The camera turns once around the vertical axis through the point that it looks at.");
+                turn_rows(ui, &mut own);
+            }
+            self.picture_rows(ui, &mut own.choices);
             [saves, copies] = self.save_buttons(ui, hover);
         });
-        self.dialogs.picture = PictureWindow { is_open: is_open && !saves, choices };
+        own.is_open = is_open && !saves;
+        let place = if turns { &mut self.dialogs.turntable } else { &mut self.dialogs.picture };
+        *place = own;
         if saves {
-            self.ask_for(context, Purpose::Write(Written::Picture));
+            let of_turn = if own.is_gif { Written::Gif } else { Written::Folder };
+            self.ask_for(context, Purpose::Write(if turns { of_turn } else { Written::Picture }));
         } else if copies {
-            self.copy_command(context, &choices);
+            self.copy_command(context, &own.choices, turns.then_some((own.turn, own.is_gif)));
         }
     }
 
     /// The buttons that save and that copy the command. Returns which are pressed.
-    pub(in crate::app) fn save_buttons(&self, ui: &mut Ui, hover: &str) -> [bool; 2] {
+    fn save_buttons(&self, ui: &mut Ui, hover: &str) -> [bool; 2] {
         ui.add_space(6.0);
         let buttons = |ui: &mut Ui| {
             let why_not = self.is_writing().then_some("Another file is being written.");
@@ -58,7 +76,7 @@ impl App {
     }
 
     /// The rows about size, background, overlays and legend, which all kinds of pictures have.
-    pub(in crate::app) fn picture_rows(&self, ui: &mut Ui, choices: &mut PictureChoices) {
+    fn picture_rows(&self, ui: &mut Ui, choices: &mut PictureChoices) {
         Grid::new("picture").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
             self.size_rows(ui, choices);
             ui.label("Background").on_hover_text("What is behind the mesh (--background, --transparent).");
@@ -99,4 +117,24 @@ impl App {
         }
         ui.end_row();
     }
+}
+
+/// The rows about the number of pictures, and what they are written as.
+fn turn_rows(ui: &mut Ui, own: &mut SaveWindow) {
+    Grid::new("turn").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
+        let frames = DragValue::new(&mut own.turn.frames).range(FRAMES);
+        control_row(ui, "Pictures", "The number of pictures in one turn (--frames).", frames);
+        ui.label("Written as").on_hover_text("A folder of pictures, or one file.");
+        ui.horizontal(|ui| {
+            let hover = "Numbered PNG files in a new folder.";
+            ui.radio_value(&mut own.is_gif, false, "PNG files").on_hover_text(hover);
+            let hover = "One GIF file that repeats, with up to 256 colours a picture.";
+            ui.radio_value(&mut own.is_gif, true, "Animated GIF").on_hover_text(hover);
+        });
+        ui.end_row();
+        if own.is_gif {
+            let fps = DragValue::new(&mut own.turn.fps).range(FPS);
+            control_row(ui, "Pictures a second", "How fast the GIF plays (--fps).", fps);
+        }
+    });
 }
