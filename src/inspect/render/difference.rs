@@ -28,7 +28,7 @@ impl DifferenceDrawer {
             let (under, over) = (wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One);
             let blend = Some(blended(under, over, over));
             let shown = wgpu::ColorTargetState { blend, ..SHOWN_FORMAT.into() };
-            let parts = PipelineParts::new(module, ["difference_vertex", "difference_fragment"], Some(shown));
+            let parts = PipelineParts::new(module, ["whole_vertex", "difference_fragment"], Some(shown));
             PipelineParts { layouts: Some(vec![Some(&self.layout)]), ..parts }.pipeline(gpu)
         })?;
         let views = target.kept(gpu)?.each_ref().map(whole);

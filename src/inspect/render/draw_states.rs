@@ -67,8 +67,8 @@ impl Draw {
     pub(super) fn shaders(self, samples: u32) -> (&'static str, [&'static str; 2]) {
         match self {
             Self::Surface(own) => (own.module(samples), [own.vertex_entry(), own.fragment_entry()]),
-            Self::LayerClear { .. } => ("draw_clear", ["clear_vertex", "clear_fragment"]),
-            Self::Background => ("draw_background", ["background_vertex", "background_fragment"]),
+            Self::LayerClear { .. } => ("draw_clear", ["whole_vertex", "clear_fragment"]),
+            Self::Background => ("draw_background", ["whole_vertex", "background_fragment"]),
             Self::Ground => ("draw_ground", ["ground_vertex", "ground_fragment"]),
             Self::Lines(_) => ("draw_lines", ["line_vertex", "line_fragment"]),
             Self::Normals(_) => ("draw_lines", ["normal_vertex", "line_fragment"]),
@@ -154,7 +154,7 @@ impl Draw {
     pub(super) fn constants(self) -> Vec<(&'static str, f64)> {
         match self {
             Self::Surface(surface) => surface.constants(),
-            Self::LayerClear { at_infinity, .. } => vec![("CLEAR_DEPTH", if at_infinity { 0.0 } else { 1.0 })],
+            Self::LayerClear { at_infinity, .. } => vec![("WHOLE_DEPTH", if at_infinity { 0.0 } else { 1.0 })],
             Self::Lines(Occluded::Through) | Self::Normals(Occluded::Through) => vec![("THROUGH_SURFACES", 1.0)],
             _ => Vec::new(),
         }
