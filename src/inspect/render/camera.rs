@@ -120,7 +120,7 @@ impl Camera {
     }
 
     pub fn eye(&self) -> Vec3 {
-        let of_rows = self.rows.and_then(|rows| rows.eye());
+        let of_rows = self.rows.and_then(|rows| rows.eye);
         of_rows.unwrap_or_else(|| self.target + self.axes()[2] * self.distance)
     }
 
@@ -197,7 +197,7 @@ impl Camera {
         let (near, far) = if self.orthographic {
             (middle - FRUSTUM_REACH * bounds.radius(), middle + FRUSTUM_REACH * bounds.radius())
         } else {
-            let near = self.rows.map_or(self.distance * NEAR, |rows| rows.near());
+            let near = self.rows.map_or(self.distance * NEAR, |rows| rows.near);
             (near, (middle + FRUSTUM_REACH * bounds.radius()).max(2.0 * near))
         };
         if let Some(rows) = self.rows {

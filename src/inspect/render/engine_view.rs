@@ -13,7 +13,7 @@ impl Camera {
     pub fn from_matrix(matrix: &ViewProjection, bounds: &Bounds) -> Result<Self, ViewProjectionError> {
         let rows = matrix.rows()?;
         let axes = rows.axes();
-        let (eye, projection) = match rows.eye() {
+        let (eye, projection) = match rows.eye {
             Some(eye) => (eye, Projection::Perspective(2.0 * rows.half_height().atan())),
             None => {
                 let middle = rows.middle_beside(bounds.center()).ok_or(ViewProjectionError::Singular)?;
