@@ -38,7 +38,7 @@ pub mod wgsl;
 pub mod wgsl_tokens;
 
 pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, identity, kind};
-pub use arena::{VERTEX_HALF, chunks_an_arena, put_together, vertices_of};
+pub use arena::{VERTEX_HALF, chunks_an_arena, put_together};
 pub use bound_pass::BoundPass;
 pub use buffer::{bytes_of, empty, filled_texture, flat_texture, uniform_buffer, whole};
 pub use compute_pipeline::{ComputePipeline, ShaderModule, ShaderModules};
