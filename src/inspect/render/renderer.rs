@@ -65,7 +65,7 @@ impl Renderer {
             studio: Lazy::default(),
             matcaps: Matcaps::default(),
             coverage: coverage_pipelines(),
-            difference: DifferenceDrawer::new(gpu),
+            difference: DifferenceDrawer::new(),
             unknown: uniform_buffer(gpu, "unknown", bytemuck::bytes_of(&0.0_f32)),
             samples: samples(gpu),
             shares_shaders: gpu.is_software(),
