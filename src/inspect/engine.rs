@@ -32,7 +32,7 @@ pub struct Engine {
     pub pipelines: Arc<ComputePipelines>,
     pub renderer: Arc<Renderer>,
     pub picker: Arc<Picker>,
-    leaks: Arc<LeakCounter>,
+    pub leak_counter: Arc<LeakCounter>,
     silhouettes: Arc<SilhouetteDrawer>,
     /// See [`Self::chunks_read`].
     chunks_read: Arc<AtomicU64>,
@@ -44,7 +44,7 @@ impl Engine {
             pipelines: Arc::default(),
             renderer: Arc::new(Renderer::new(&gpu)),
             picker: Arc::default(),
-            leaks: Arc::new(LeakCounter::new()),
+            leak_counter: Arc::new(LeakCounter::new()),
             silhouettes: Arc::new(SilhouetteDrawer::new()),
             chunks_read: Arc::default(),
             gpu,

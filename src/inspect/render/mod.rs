@@ -60,8 +60,7 @@ pub use camera::{Camera, Standpoint};
 pub use deviation::{DEVIATION_PX_SCALE, deviation_scale};
 pub use ground::{Ground, axis_lines};
 pub use halves::{HalfPlace, framed_size, half_at, half_places};
-pub(crate) use leaks::LeakCounter;
-pub use leaks::{Leak, LeakCount, Leaks, leaks_in};
+pub use leaks::{Leak, LeakCount, LeakCounter, Leaks, leaks_in};
 pub use legend::{Distances, Legend, legend_of, legend_side};
 pub(crate) use legend::{Shown, tick_text};
 pub use marks::{
