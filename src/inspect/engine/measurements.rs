@@ -108,10 +108,8 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn measure(&self, scene: &mut Scene) -> Result<Measured, GpuError> {
-        let (mesh, topology) = scene.tessellator.posed().deformed();
-        let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.requested_factors(scene)?);
-        self.visit(scene, &mut [&mut survey])?;
-        Ok(survey.finish())
+        let wanted = Measurements { survey: true, ..Measurements::default() };
+        Ok(self.measure_all(scene, &wanted)?.survey.unwrap_or_default())
     }
 
     /// Counts the pixels through which one can see into a closed mesh from `camera`: see [`crate::render::LeakCounter`].
