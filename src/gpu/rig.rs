@@ -1,7 +1,7 @@
 //! What deforms a mesh, in device memory: joints, morph targets, and a pose of them.
 
-use super::bound_pass::Step;
 use super::buffer::{bytes_of, filled};
+use super::compute_pipeline::Step;
 use super::pass_inputs::{BoundPasses, PassInputs};
 use super::pipelines::{DEFORM_CORNERS, DEFORM_POINTS};
 use super::{Gpu, GpuError};
