@@ -11,7 +11,6 @@ pub mod dfg;
 mod difference;
 mod draw_states;
 mod draws;
-mod engine_view;
 pub mod environment;
 mod file_view;
 mod frame;
