@@ -9,7 +9,6 @@ pub mod cube_map;
 mod deviation;
 pub mod dfg;
 mod difference;
-mod draw_states;
 mod draws;
 pub mod environment;
 mod file_view;
