@@ -80,7 +80,7 @@ impl Engine {
     /// # Errors
     /// The mesh needs a larger buffer than the adapter can bind.
     pub fn scene_of(&self, mesh: Arc<Mesh>, topology: Arc<Topology>, arena_bytes: u64) -> Result<Scene, GpuError> {
-        Scene::new(&self.gpu, self.renderer.materials(), self.pipelines.clone(), mesh, topology, arena_bytes)
+        Scene::new(&self.gpu, &self.renderer.materials, self.pipelines.clone(), mesh, topology, arena_bytes)
     }
 
     /// Makes the pipelines that a picture of the scene with these settings needs, as far as they are known before the scene is
