@@ -114,7 +114,7 @@ impl Renderer {
         }
         let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
         let of_half = settings.half(step.half()).unwrap_or(*settings);
-        if let Some(chunk) = step.chunk() {
+        if let Some((_, chunk)) = step.part() {
             drawn.tessellator.emit(recorder, chunk)?;
             if of_half.overlays.colors.source() == ColorSource::MinimumTriangles {
                 drawn.tessellator.record_minimum(recorder)?;
