@@ -1,4 +1,5 @@
 // Draws what is behind the mesh: the light from all around, as it is seen from the mesh's middle.
+// With: draw_whole
 
 // A uniform, as in draw_lit.wgsl. No branch depends on it.
 @group(0) @binding(6) var<uniform> background_frame: Frame;
@@ -8,13 +9,6 @@
 
 // The tangent of half the usual field of view, which the background of an orthographic view has: all rays of that have one direction.
 const HALF_VIEW: f32 = 0.36397023;
-
-@vertex
-fn background_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // One triangle that holds the picture. Depth is 0 at the far end.
-    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u));
-    return vec4<f32>(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 // The direction that is seen at a place of the picture, in px.
 fn seen_direction(px: vec2<f32>) -> vec3<f32> {

@@ -1,5 +1,6 @@
 // Shows how much two pictures of one size differ: black where they are equal, and brighter where a channel differs by more. Over
 // that are their wireframes, which they keep as what they lack of alpha 1.
+// With: draw_whole
 
 @group(0) @binding(0) var left_picture: texture_2d<f32>;
 @group(0) @binding(1) var right_picture: texture_2d<f32>;
@@ -10,13 +11,6 @@ const DIFFERENCE_FLOOR: f32 = 64.0;
 // The wireframes of the left and of the right picture, in sRGB; the mean of both where they agree.
 const LEFT_WIRE_COLOR: vec3<f32> = vec3<f32>(0.90, 0.62, 0.0);
 const RIGHT_WIRE_COLOR: vec3<f32> = vec3<f32>(0.34, 0.71, 0.91);
-
-@vertex
-fn difference_vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4<f32> {
-    // One triangle that holds the picture.
-    let corner = vec2<f32>(f32(index & 1u), f32(index >> 1u));
-    return vec4<f32>(4.0 * corner - 1.0, 0.0, 1.0);
-}
 
 @fragment
 fn difference_fragment(@builtin(position) px: vec4<f32>) -> @location(0) vec4<f32> {

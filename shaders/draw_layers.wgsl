@@ -1,5 +1,6 @@
 // Layers of surfaces that show what is behind them, found one after another at every sample (depth peeling: Everitt 2001). Depth
-// is reversed, so that nearer surfaces have a greater depth. See src/inspect/render/layers.rs.
+// is reversed, so that nearer surfaces have a greater depth. See src/inspect/render/layers.rs. The depths
+// that are compared are textures of layers_single.wgsl or layers_multisampled.wgsl.
 
 // Whether the draw looks for the layer in front of the one that was found last, and not for the one behind it.
 override TOWARD_EYE: bool = false;
@@ -19,6 +20,16 @@ struct Seen {
     color: vec3<f32>,
     // Factor of what is seen behind, in linear RGB.
     behind: vec3<f32>,
+}
+
+// The depth of the layer that was found last. A texture with one sample a pixel has a level in place of samples: both are 0 then.
+fn passed_depth(px: vec2<f32>, sample: u32) -> f32 {
+    return textureLoad(passed_depths, vec2<i32>(px), i32(sample));
+}
+
+// The depth of the surface that hides everything behind it.
+fn hiding_depth(px: vec2<f32>, sample: u32) -> f32 {
+    return textureLoad(hiding_depths, vec2<i32>(px), i32(sample));
 }
 
 // Whether a depth is beyond the last layer, in the direction in which the draw looks, and nothing hides it. `left` is the first

@@ -33,25 +33,17 @@ fn lit_place(in: LitVaryings, normal: vec3<f32>, front: bool) -> SurfacePlace {
     return surface_place(in.uv, in.weights, in.patch_index, normal, front, to_eye, position);
 }
 
-fn lit_color(in: LitVaryings, normal: vec3<f32>, front: bool) -> vec4<f32> {
-    let color = material_color(lit_place(in, normal, front));
+@fragment
+fn lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
+    let color = material_color(lit_place(in, lit_normal(in), front));
     if (HAS_MASK || HAS_TRANSMISSION) && color.a == 0.0 {
         discard;
     }
     return vec4<f32>(color.rgb, 1.0);
 }
 
-fn masked_lit_pixel(in: LitVaryings, normal: vec3<f32>, front: bool) -> MaskedPixel {
-    let place = lit_place(in, normal, front);
-    return masked_pixel(place, vec4<f32>(material_color(place).rgb, 1.0));
-}
-
-@fragment
-fn lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return lit_color(in, lit_normal(in), front);
-}
-
 @fragment
 fn masked_lit_fragment(in: LitVaryings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return masked_lit_pixel(in, lit_normal(in), front);
+    let place = lit_place(in, lit_normal(in), front);
+    return masked_pixel(place, vec4<f32>(material_color(place).rgb, 1.0));
 }

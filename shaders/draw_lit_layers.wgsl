@@ -14,20 +14,16 @@ fn lit_depth_fragment(
     return in.clip.z;
 }
 
-fn lit_layer(in: LitVaryings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
-    let place = lit_place(in, normal, front);
-    // Derivatives are known by now, so that what isn't shown needn't be lit.
-    if !is_last(in.clip, sample, lit_frame.left) {
-        discard;
-    }
-    return layer_output(material_seen(place, lit_frame));
-}
-
 @fragment
 fn lit_layer_fragment(
     in: LitVaryings,
     @builtin(front_facing) front: bool,
     @builtin(sample_index) sample: u32,
 ) -> @location(0) vec4<f32> {
-    return lit_layer(in, lit_normal(in), front, sample);
+    let place = lit_place(in, lit_normal(in), front);
+    // Derivatives are known by now, so that what isn't shown needn't be lit.
+    if !is_last(in.clip, sample, lit_frame.left) {
+        discard;
+    }
+    return layer_output(material_seen(place, lit_frame));
 }

@@ -54,12 +54,8 @@ fn pick_fragment(in: PickVaryings) -> @location(0) vec4<u32> {
     return vec4<u32>(1u + in.number, nearest, 0u, 0u);
 }
 
-fn emitted_vertex(triangle: u32, corner: u32) -> Vertex {
-    return drawn_vertex(3u * triangle + corner);
-}
-
 fn triangle_patch(triangle: u32) -> u32 {
-    let vertex = emitted_vertex(triangle, 0u);
+    let vertex = drawn_vertex(3u * triangle);
     return key_patch(vec2<u32>(vertex.key0, vertex.key1));
 }
 
@@ -89,7 +85,7 @@ fn pick_emitted_main() {
     }
     let triangle = found.x - 1u;
     for (var corner = 0u; corner < 3u; corner++) {
-        pick.vertices[corner] = emitted_vertex(triangle, corner);
+        pick.vertices[corner] = drawn_vertex(3u * triangle + corner);
     }
     pick.found = FOUND_EMITTED;
     pick.patch_index = triangle_patch(triangle);

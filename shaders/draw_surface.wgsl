@@ -14,15 +14,18 @@ fn surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @locati
 
 @fragment
 fn lit_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return lit_surface_color(in, surface_normal_of(in), front);
+    let normal = surface_normal_of(in);
+    let own = material_color(lit_surface_place(in, normal, front));
+    let color = opaque_surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
+    if (HAS_MASK || HAS_TRANSMISSION) && own.a == 0.0 {
+        discard;
+    }
+    return color;
 }
 
 @fragment
 fn masked_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return masked_surface_pixel(in, surface_normal_of(in), front);
-}
-
-fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
+    let normal = surface_normal_of(in);
     let place = lit_surface_place(in, normal, front);
     let own = material_color(place);
     return masked_pixel(place, opaque_surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0)));
@@ -31,20 +34,14 @@ fn masked_surface_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedP
 // The same with the lights at the camera.
 @fragment
 fn cut_samples_fragment(in: Varyings, @builtin(front_facing) front: bool) -> MaskedPixel {
-    return cut_samples_pixel(in, surface_normal_of(in), front);
-}
-
-fn cut_samples_pixel(in: Varyings, normal: vec3<f32>, front: bool) -> MaskedPixel {
+    let normal = surface_normal_of(in);
     let place = lit_surface_place(in, normal, front);
     return masked_pixel(place, opaque_surface_color(in, normal, front, vec4<f32>(0.0)));
 }
 
 @fragment
 fn cut_surface_fragment(in: Varyings, @builtin(front_facing) front: bool) -> @location(0) vec4<f32> {
-    return cut_surface_color(in, surface_normal_of(in), front);
-}
-
-fn cut_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
+    let normal = surface_normal_of(in);
     let place = lit_surface_place(in, normal, front);
     let color = opaque_surface_color(in, normal, front, vec4<f32>(0.0));
     if base_color(place, place_detail(place)).a < material.cutoff {
@@ -60,13 +57,4 @@ fn lit_surface_place(in: Varyings, normal: vec3<f32>, front: bool) -> SurfacePla
         position = fragment_place(frame.clip_from_object, frame.viewport, unmoved(in.clip, frame.shift));
     }
     return surface_place(in.uv, in.domain.xy, in.patch_index, normalize(normal), front, to_eye, position);
-}
-
-fn lit_surface_color(in: Varyings, normal: vec3<f32>, front: bool) -> vec4<f32> {
-    let own = material_color(lit_surface_place(in, normal, front));
-    let color = opaque_surface_color(in, normal, front, vec4<f32>(own.rgb, 1.0));
-    if (HAS_MASK || HAS_TRANSMISSION) && own.a == 0.0 {
-        discard;
-    }
-    return color;
 }

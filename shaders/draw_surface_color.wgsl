@@ -10,8 +10,6 @@ const SEAM_EDGE_COLOR: vec3<f32> = vec3<f32>(0.0, 0.342, 0.171);
 const BOUNDARY_EDGE_COLOR: vec3<f32> = vec3<f32>(0.093, 0.456, 0.815);
 const NON_MANIFOLD_EDGE_COLOR: vec3<f32> = vec3<f32>(0.604, 0.191, 0.386);
 
-// Kinds of edges, as a patch's factors have them.
-
 fn edge_color(kind: u32) -> vec3<f32> {
     var color = SMOOTH_EDGE_COLOR;
     if kind == EDGE_SPLIT {

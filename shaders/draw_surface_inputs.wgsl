@@ -7,8 +7,8 @@
 @group(2) @binding(0) var<uniform> slab: Slab;
 @group(2) @binding(1) var<storage, read> patch_factors: array<PatchFactors>;
 
-// How far triangles are from the true surface, from src/inspect/measure/field.rs: the number of steps that each edge is divided
-// into, then the samples of one triangle after another. A sample below 0 is unknown.
+// How far triangles are from the true surface, from src/inspect/measure/deviation_field.rs: the number of steps that each edge is
+// divided into, then the samples of one triangle after another. A sample below 0 is unknown.
 @group(3) @binding(0) var<storage, read> deviations: array<f32>;
 // The own least of every patch of the mesh: see pass_least.wgsl. One element if it isn't known.
 @group(3) @binding(1) var<storage, read> least_triangles: array<u32>;

@@ -14,7 +14,13 @@ fn surface_depth_fragment(
     return in.clip.z;
 }
 
-fn surface_layer(in: Varyings, normal: vec3<f32>, front: bool, sample: u32) -> vec4<f32> {
+@fragment
+fn surface_layer_fragment(
+    in: Varyings,
+    @builtin(front_facing) front: bool,
+    @builtin(sample_index) sample: u32,
+) -> @location(0) vec4<f32> {
+    let normal = surface_normal_of(in);
     let place = lit_surface_place(in, normal, front);
     let own = material_seen(place, frame);
     // Lines and marks aren't seen through.
@@ -25,13 +31,4 @@ fn surface_layer(in: Varyings, normal: vec3<f32>, front: bool, sample: u32) -> v
         discard;
     }
     return layer_output(Seen(color.rgb, own.behind * (1.0 - color.a)));
-}
-
-@fragment
-fn surface_layer_fragment(
-    in: Varyings,
-    @builtin(front_facing) front: bool,
-    @builtin(sample_index) sample: u32,
-) -> @location(0) vec4<f32> {
-    return surface_layer(in, surface_normal_of(in), front, sample);
 }

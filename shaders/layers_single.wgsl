@@ -1,16 +1,6 @@
-// Layers in pictures with one sample a pixel: the depths that they are compared with. layers_multisampled.wgsl has the same
-// functions for the others.
+// Layers in pictures with one sample a pixel: the depths that draw_layers.wgsl compares. layers_multisampled.wgsl has the same
+// for the others.
 // With: draw_lit_layers, draw_surface_layers
 
 @group(3) @binding(2) var passed_depths: texture_depth_2d;
 @group(1) @binding(35) var hiding_depths: texture_depth_2d;
-
-// The depth of the layer that was found last.
-fn passed_depth(px: vec2<f32>, sample: u32) -> f32 {
-    return textureLoad(passed_depths, vec2<i32>(px), 0);
-}
-
-// The depth of the surface that hides everything behind it.
-fn hiding_depth(px: vec2<f32>, sample: u32) -> f32 {
-    return textureLoad(hiding_depths, vec2<i32>(px), 0);
-}

@@ -1,7 +1,5 @@
 // Averages texels for smaller levels of images. src/geometry/mesh/mipmap.rs has the same functions, and says where they come from.
 
-// How the texels of an image are averaged: MipFilter.
-
 // For each byte the linear light that sRGB encodes as it; then for each the least light that is encoded as it.
 @group(0) @binding(2) var<storage, read> srgb_table: array<f32, 512>;
 

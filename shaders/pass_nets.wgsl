@@ -9,6 +9,8 @@
 @group(0) @binding(4) var<storage, read> curve_sides: array<vec2<u32>>;
 @group(0) @binding(5) var<storage, read> patches: array<Patch>;
 @group(0) @binding(6) var<storage, read_write> curve_net_words: array<vec4<f32>>;
+// The same once they are written.
+@group(0) @binding(7) var<storage, read> curve_nets: array<CurveNet>;
 
 @compute @workgroup_size(256)
 fn curve_nets_main(invocation: Invocation) {
@@ -44,14 +46,6 @@ fn curve_nets_main(invocation: Invocation) {
     }
     curve_net_words[2u * index] = vec4<f32>(net.ab, style);
     curve_net_words[2u * index + 1u] = vec4<f32>(net.ba, 0.0);
-}
-
-fn patch_at(index: u32) -> Patch {
-    return patches[index];
-}
-
-fn curve_net_at(index: u32) -> CurveNet {
-    return CurveNet(curve_net_words[2u * index].xyz, curve_net_words[2u * index + 1u].xyz);
 }
 
 @compute @workgroup_size(256)

@@ -195,8 +195,6 @@ struct DrawArgs {
     pull_first_instance: u32,
 }
 
-// Whether what patches share at an edge is computed once for the edge, or by every patch on its own.
-
 // A key: u and v take 17 bits each, the patch the other 30.
 fn pack_key(patch_index: u32, u: u32, v: u32) -> vec2<u32> {
     return vec2<u32>(u | (v << 17u), (v >> 15u) | (patch_index << 2u));

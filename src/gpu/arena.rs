@@ -66,7 +66,7 @@ impl Capacity {
     /// A bound on the number of chunks of this size that any tessellation of so many patches takes. It follows from this: every
     /// chunk but the last has no capacity left for the vertices, or for the triangles, of one more patch; and two that follow each other
     /// would not fit one.
-    fn most_chunks(self, patch_count: u32) -> u32 {
+    pub(super) fn most_chunks(self, patch_count: u32) -> u32 {
         let patch = Self::from_patch();
         let full = |capacity: u32, patch: u32| {
             let needed = u64::from(patch) * u64::from(patch_count);
@@ -114,11 +114,6 @@ impl Arena {
             chunk: capacity,
         })
     }
-
-    /// A bound on the number of chunks that any tessellation of so many patches takes.
-    pub(super) fn chunk_capacity(&self, patch_count: u32) -> u32 {
-        self.chunk.most_chunks(patch_count)
-    }
 }
 
 /// The size of chunks: so small a part of the arena, unless the tables of so many chunks would be large.
@@ -131,14 +126,8 @@ fn chunk_of(capacity: Capacity, parts: u32, mesh: &MeshBuffers) -> Capacity {
 /// Bytes of half a vertex: its position and normal, or its key and texture coordinates.
 pub const VERTEX_HALF: u64 = 16;
 
-/// Puts vertices together: `halves` holds the first halves of all of them, then the second halves.
-pub fn vertices_of(halves: &[u8]) -> Vec<Vertex> {
-    let mut vertices = Vec::new();
-    put_together(halves, &mut vertices);
-    vertices
-}
-
-/// Does the same in a list that is used again, on all cores.
+/// Puts vertices together on all cores, in a list that is used again: `halves` holds the first halves of all of them, then the
+/// second halves.
 pub fn put_together(halves: &[u8], vertices: &mut Vec<Vertex>) {
     let half = VERTEX_HALF as usize;
     let (first, second) = halves.split_at(halves.len() / 2);

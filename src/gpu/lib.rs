@@ -9,7 +9,6 @@
 
 pub mod adapters;
 mod arena;
-mod bound_pass;
 mod buffer;
 mod compute_pipeline;
 pub mod device;
@@ -38,10 +37,9 @@ pub mod wgsl;
 pub mod wgsl_tokens;
 
 pub use adapters::{AdapterChoice, BACKENDS, adapters, best_adapter, driver, identity, kind};
-pub use arena::{VERTEX_HALF, chunks_an_arena, put_together, vertices_of};
-pub use bound_pass::BoundPass;
+pub use arena::{VERTEX_HALF, chunks_an_arena, put_together};
 pub use buffer::{bytes_of, empty, filled_texture, flat_texture, uniform_buffer, whole};
-pub use compute_pipeline::{ComputePipeline, ShaderModule, ShaderModules};
+pub use compute_pipeline::{BoundPass, ComputePipeline, ShaderModule, ShaderModules};
 pub use device::{Gpu, device_descriptor};
 pub use domain::{DomainParams, DomainPass, DomainPattern};
 pub use error::GpuError;

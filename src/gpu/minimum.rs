@@ -1,9 +1,8 @@
 //! The minimum triangle count of every patch: the fewest triangles with which it alone would keep the tolerance of LOD by error. Its passes
 //! run only if someone wants to see that.
 
-use super::bound_pass::{Step, Workgroups};
 use super::buffer::{empty, uniform_buffer};
-use super::compute_pipeline::Pass;
+use super::compute_pipeline::{Pass, Step, Workgroups};
 use super::layout::Params;
 use super::mesh_buffers::MeshBuffers;
 use super::pass_inputs::{BoundPasses, PassInputs};

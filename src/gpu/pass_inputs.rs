@@ -4,8 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use super::arena::Arena;
-use super::bound_pass::{BoundPass, Step, Workgroups};
-use super::compute_pipeline::{ComputePipeline, Pass};
+use super::compute_pipeline::{BoundPass, ComputePipeline, Pass, Step, Workgroups};
 use super::mesh_buffers::MeshBuffers;
 use super::pipelines::{ComputePipelines, grid};
 use super::relief_buffers::HeightImages;

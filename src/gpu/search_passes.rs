@@ -1,7 +1,6 @@
 //! The passes of LOD by error in which patches look for factors: see `shaders/pass_requests.wgsl` and `shaders/pass_uniform.wgsl`.
 
-use super::bound_pass::Workgroups;
-use super::compute_pipeline::Pass;
+use super::compute_pipeline::{Pass, Workgroups};
 use super::pass_inputs::PassInputs;
 use super::pipelines::{WORKGROUP, grid};
 use geometry::tessellate::rounds;

@@ -39,7 +39,7 @@ impl SlabBuffers {
         first_patch: u32,
         patch_count: u32,
     ) -> Result<Self, GpuError> {
-        let chunk_capacity = arena.chunk_capacity(patch_count);
+        let chunk_capacity = arena.chunk.most_chunks(patch_count);
         let slab = Slab {
             first_patch,
             patch_count,

@@ -46,7 +46,6 @@ pub struct Tessellator {
     inputs: Option<Inputs>,
     params: Params,
     params_buffer: wgpu::Buffer,
-    convention: Convention,
     given: Option<Given>,
     given_buffer: wgpu::Buffer,
     /// Where functions of the user's own report, an [`UserReport`], if they give factors.
@@ -176,7 +175,6 @@ impl Tessellator {
             inputs: None,
             params,
             params_buffer,
-            convention: Convention::default(),
             given: None,
             given_buffer: filled::<HullFactors>(gpu, "given factors", &[])?,
             user_report: None,
@@ -208,7 +206,6 @@ impl Tessellator {
             self.upload(grouping)?;
         }
         self.inputs = Some(*inputs);
-        self.convention = inputs.tessellation.convention;
         let culls_back = inputs.tessellation.cull_back_faces && self.hides_backs(inputs);
         let params = params_of(inputs, &self.mesh, &self.buffers, self.given.as_ref(), culls_back);
         if params != self.params || self.nets_done.is_none() {
@@ -328,11 +325,11 @@ impl Tessellator {
     /// # Errors
     /// The device was lost.
     pub fn read_counts(&mut self) -> Result<(), GpuError> {
-        let Some(pending) = &mut self.pending else { return self.gpu.check() };
-        let tables = pending.wait(&self.gpu)?;
-        self.pending = None;
-        self.take_chunks(&tables);
-        Ok(())
+        match &mut self.pending {
+            Some(pending) => pending.arrive(&self.gpu)?,
+            None => self.gpu.check()?,
+        }
+        self.poll_counts().map(drop)
     }
 
     /// The minimum triangle count of every patch: the number of triangles with which it alone would keep the tolerance. None until
@@ -349,7 +346,7 @@ impl Tessellator {
 
     /// Under which convention factors were written and weights are read.
     pub fn convention(&self) -> Convention {
-        self.convention
+        self.inputs.map(|inputs| inputs.tessellation.convention).unwrap_or_default()
     }
 
     pub fn buffers(&self) -> &MeshBuffers {

@@ -32,7 +32,7 @@ pub struct Engine {
     pub pipelines: Arc<ComputePipelines>,
     pub renderer: Arc<Renderer>,
     pub picker: Arc<Picker>,
-    leaks: Arc<LeakCounter>,
+    pub leak_counter: Arc<LeakCounter>,
     silhouettes: Arc<SilhouetteDrawer>,
     /// See [`Self::chunks_read`].
     chunks_read: Arc<AtomicU64>,
@@ -44,7 +44,7 @@ impl Engine {
             pipelines: Arc::default(),
             renderer: Arc::new(Renderer::new(&gpu)),
             picker: Arc::default(),
-            leaks: Arc::new(LeakCounter::new()),
+            leak_counter: Arc::new(LeakCounter::new()),
             silhouettes: Arc::new(SilhouetteDrawer::new()),
             chunks_read: Arc::default(),
             gpu,
@@ -80,7 +80,7 @@ impl Engine {
     /// # Errors
     /// The mesh needs a larger buffer than the adapter can bind.
     pub fn scene_of(&self, mesh: Arc<Mesh>, topology: Arc<Topology>, arena_bytes: u64) -> Result<Scene, GpuError> {
-        Scene::new(&self.gpu, self.renderer.materials(), self.pipelines.clone(), mesh, topology, arena_bytes)
+        Scene::new(&self.gpu, &self.renderer.materials, self.pipelines.clone(), mesh, topology, arena_bytes)
     }
 
     /// Makes the pipelines that a picture of the scene with these settings needs, as far as they are known before the scene is

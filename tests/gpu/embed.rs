@@ -7,7 +7,7 @@ use geometry::mesh::{Corner, Mesh, MeshSlices, Moment, Pose, Shape, Topology};
 use geometry::tessellate::{Clip, Edges, Inputs, LodView, Surface, Tessellated, Tessellation, tessellate};
 use glam::{Mat4, Vec2, Vec3};
 use gpu::embed::{Capacity, Context, GpuError, OutputStatus, TessellatedMesh};
-use gpu::{RecordPasses, Tessellator, read_buffer, vertices_of};
+use gpu::{RecordPasses, Tessellator, put_together, read_buffer};
 use inspect::engine::Engine;
 
 use crate::engine;
@@ -54,7 +54,9 @@ fn emitted(queue: &wgpu::Queue, device: &wgpu::Device, mesh: &mut TessellatedMes
     };
     let halves = mesh.vertex_buffers().map(|half| read(half, 16 * status.vertices)).concat();
     let triangles = bytemuck::pod_collect_to_vec(&read(mesh.index_buffer(), 12 * status.triangles));
-    (status, Tessellated { vertices: vertices_of(&halves), triangles, ..Tessellated::default() })
+    let mut vertices = Vec::new();
+    put_together(&halves, &mut vertices);
+    (status, Tessellated { vertices, triangles, ..Tessellated::default() })
 }
 
 /// The corners of a mesh as arrays.

@@ -34,7 +34,8 @@ impl App {
         }
         let (engine, scene, [width, height]) = (&self.engine, &mut document.scene, view.viewport.to_array());
         let start = |count: &mut Option<LeakCount>| {
-            *count = Some(engine.start_leaks([width as u32, height as u32], view.clip_from_object)?);
+            let size = [width as u32, height as u32];
+            *count = Some(engine.leak_counter.start(&engine.gpu, size, view.clip_from_object)?);
             Ok(())
         };
         let of = (scene.tessellator.generation(), view);

@@ -24,7 +24,7 @@ pub struct ChunkBuffers<'a> {
 
 impl ChunkBuffers<'_> {
     /// The vertices: the first half of all of them, and the second of all of them, in which bytes of which buffer.
-    /// [`crate::vertices_of`] puts them together.
+    /// [`crate::put_together`] puts them together.
     pub fn vertices(&self) -> [(&wgpu::Buffer, Range<u64>); 2] {
         let (bytes, half) = (u64::from(self.chunk.vertex_count) * VERTEX_HALF, self.vertices.size() / 2);
         [0, half].map(|start| (self.vertices, start..start + bytes))

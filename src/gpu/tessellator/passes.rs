@@ -3,9 +3,8 @@
 use std::collections::HashSet;
 
 use super::Tessellator;
-use crate::bound_pass::{BoundPass, Step, Workgroups};
 use crate::buffer::empty;
-use crate::compute_pipeline::Pass;
+use crate::compute_pipeline::{BoundPass, Pass, Step, Workgroups};
 use crate::layout::{EmitArgs, Params, Slab};
 use crate::minimum::{self, Minimum};
 use crate::params::params_of;

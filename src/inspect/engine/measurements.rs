@@ -1,6 +1,6 @@
 //! The engine's measurements of a scene. One walk over the emitted mesh feeds all measurements that are requested.
 
-use glam::{Mat4, Vec3};
+use glam::Vec3;
 
 use super::Engine;
 use crate::measure::{
@@ -8,7 +8,7 @@ use crate::measure::{
     PatchesAbove, ScreenErrorMeasurement, Sizes, Survey, Visitor, WorstPoint,
 };
 use crate::reference_shape::ReferenceShape;
-use crate::render::{Camera, Leak, LeakCount, Leaks, Scene};
+use crate::render::{Camera, Leak, Leaks, Scene};
 use geometry::mesh::{Mesh, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{Inputs, LodView, Tessellation, is_beyond_near};
@@ -108,18 +108,8 @@ impl Engine {
     /// # Errors
     /// The device was lost.
     pub fn measure(&self, scene: &mut Scene) -> Result<Measured, GpuError> {
-        let (mesh, topology) = scene.tessellator.posed().deformed();
-        let mut survey = Survey::new(&mesh, &topology, self.patch_factors(scene)?, self.requested_factors(scene)?);
-        self.visit(scene, &mut [&mut survey])?;
-        Ok(survey.finish())
-    }
-
-    /// Starts to count leaks, for a mesh that has a [`closed_extent`] beyond the near plane.
-    ///
-    /// # Errors
-    /// The picture is larger than the adapter draws, or the device was lost.
-    pub fn start_leaks(&self, size: [u32; 2], clip_from_object: Mat4) -> Result<LeakCount, GpuError> {
-        self.leaks.start(&self.gpu, size, clip_from_object)
+        let wanted = Measurements { survey: true, ..Measurements::default() };
+        Ok(self.measure_all(scene, &wanted)?.survey.unwrap_or_default())
     }
 
     /// Counts the pixels through which one can see into a closed mesh from `camera`: see [`crate::render::LeakCounter`].
@@ -153,7 +143,7 @@ impl Engine {
         if !closed_extent(&mesh, &topology, measured).is_some_and(|extent| is_beyond_near(clip_from_object, extent)) {
             return Ok(None);
         }
-        self.leaks.find(&self.gpu, scene, size, clip_from_object).map(Some)
+        self.leak_counter.find(&self.gpu, scene, size, clip_from_object).map(Some)
     }
 
     /// Finds the leaks in a view, also where patches that face away are left out: these are emitted for it. The scene must have

@@ -10,9 +10,8 @@ use std::collections::BTreeMap;
 use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
-use super::attributes::Attributes;
 use super::{ExportError, Exported};
-use geometry::mesh::{CornerDetail, Texture};
+use geometry::mesh::{CornerDetail, Mesh, Texture};
 
 use materials::{UvSet, UvSets};
 
@@ -25,9 +24,39 @@ const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
 const TRIANGLES: u32 = 4;
 
-/// Returns the size of a mesh's attributes and indices in bytes.
-pub(super) fn bytes(attributes: Attributes, vertices: u64, triangles: u64) -> u64 {
-    vertices * attributes.bytes() + triangles * 12
+/// What a written vertex has beside position, normal and texture coordinates: only what the mesh's materials need.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Attributes {
+    /// The sets of texture coordinates that maps use beside those of the base colour.
+    sets: [bool; 2],
+    colors: bool,
+    tangents: bool,
+}
+
+impl Attributes {
+    /// What the vertices of a mesh need.
+    fn new(mesh: &Mesh) -> Self {
+        let Some(details) = &mesh.details else { return Self::default() };
+        let looks = || mesh.materials.iter().map(|material| &material.look);
+        let sets = [0, 1].map(|set| looks().any(|look| look.uv_sets()[set]));
+        let needs_tangents = looks().any(|look| look.tangent_uv().is_some());
+        Self {
+            sets,
+            colors: details.iter().any(|detail| detail.color != Vec4::ONE),
+            tangents: needs_tangents && details.iter().any(|detail| detail.tangent != Vec3::ZERO),
+        }
+    }
+
+    /// Returns how much memory a vertex takes in a .glb file: floats for position, normal and texture coordinates, and for these.
+    fn bytes(self) -> u64 {
+        let sets = self.sets.iter().filter(|is_used| **is_used).count() as u64;
+        32 + 8 * sets + 16 * (u64::from(self.colors) + u64::from(self.tangents))
+    }
+}
+
+/// Returns the size of the attributes and indices of so many vertices and triangles of a mesh, in bytes.
+pub(super) fn bytes(mesh: &Mesh, vertices: u64, triangles: u64) -> u64 {
+    vertices * Attributes::new(mesh).bytes() + triangles * 12
 }
 
 /// Returns the bytes of a file, and sentences about what is drawn but has no place in it; `path` is for messages.
@@ -37,7 +66,7 @@ pub(super) fn bytes(attributes: Attributes, vertices: u64, triangles: u64) -> u6
 pub(super) fn encode(mesh: &Exported, path: &str) -> Result<(Vec<u8>, Vec<String>), ExportError> {
     let triangles: usize = mesh.triangles.iter().map(Vec::len).sum();
     let used = Attributes::new(mesh.mesh);
-    let bytes = bytes(used, mesh.positions.len() as u64, triangles as u64);
+    let bytes = bytes(mesh.mesh, mesh.positions.len() as u64, triangles as u64);
     if bytes > MAX_BYTES {
         return Err(ExportError::TooLarge { path: path.to_owned(), triangles: triangles as u64 });
     }

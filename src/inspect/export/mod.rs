@@ -1,6 +1,5 @@
 //! Writes tessellated meshes to files.
 
-mod attributes;
 mod glb;
 mod obj;
 
@@ -8,8 +7,6 @@ use std::path::Path;
 
 use glam::{Vec2, Vec3};
 use thiserror::Error;
-
-use attributes::Attributes;
 
 use geometry::mesh::{CornerDetail, Mesh, Topology};
 use geometry::names::shown_path;
@@ -81,7 +78,7 @@ impl<'a> Exported<'a> {
     pub fn check(path: &Path, mesh: &Mesh, vertices: u64, triangles: u64) -> Result<(), ExportError> {
         // This program writes 32-bit indices in both formats.
         let fits = match ending(path).as_str() {
-            "glb" => glb::bytes(Attributes::new(mesh), vertices, triangles) <= glb::MAX_BYTES,
+            "glb" => glb::bytes(mesh, vertices, triangles) <= glb::MAX_BYTES,
             "obj" => vertices <= u64::from(u32::MAX),
             _ => return Err(ExportError::Extension { path: shown_path(path) }),
         };

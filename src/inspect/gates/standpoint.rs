@@ -38,15 +38,13 @@ impl Standpoints {
     /// mesh's.
     pub fn new(spot: &Spot, judged: &Camera, viewport: Vec2, bounds: &Bounds) -> Self {
         let first = spot.camera(judged, viewport, bounds);
-        let mut both_sides = false;
-        let (size, facing) = match *spot {
-            Spot::Edge(EdgeSpot { ends: [a, b], .. }) => (a.distance(b), first),
-            Spot::Patch(PatchSpot { size, both_sides: both, .. }) => {
-                both_sides = both;
-                (size, first)
+        let (size, facing, both_sides) = match *spot {
+            Spot::Edge(EdgeSpot { ends: [a, b], .. }) => (a.distance(b), first, false),
+            Spot::Patch(PatchSpot { size, both_sides, .. }) => (size, first, both_sides),
+            Spot::Leak { torn: Some(torn @ EdgeSpot { ends: [a, b], .. }), .. } => {
+                (a.distance(b), torn.camera(judged, bounds), false)
             }
-            Spot::Leak { torn: Some(torn), .. } => (torn.ends[0].distance(torn.ends[1]), torn.camera(judged, bounds)),
-            Spot::Leak { torn: None, .. } => (0.0, first),
+            Spot::Leak { torn: None, .. } => (0.0, first, false),
         };
         let at = spot.at();
         let of_back = if both_sides { 1.0 } else { OF_BACK };

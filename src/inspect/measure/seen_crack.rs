@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::Measured;
-use geometry::mesh::{EdgeKind, Topology};
+use geometry::mesh::Topology;
 use geometry::view::{ScreenView, project};
 
 /// A place at which the emitted mesh is torn open, as a picture shows it.
@@ -35,14 +35,13 @@ impl Measured {
 
     /// The edges that some of their sides emitted nothing for, and others did.
     fn edges_around_holes(&self, topology: &Topology) -> impl Iterator<Item = u32> {
-        let shared = (0..).zip(&topology.edges).filter(|(_, edge)| edge.kind != EdgeKind::Boundary);
-        let is_torn = move |index: u32| {
-            let emitted = self.outlines.edge(topology, index).len();
-            emitted > 0 && emitted < topology.edge_sides(&topology.edges[index as usize]).len()
-        };
         // Patches that face away are emitted to look for leaks.
         let has_holes = self.culled.out_of_view > 0;
-        shared.map(|(index, _)| index).filter(move |index| has_holes && is_torn(*index))
+        let shared = has_holes.then(|| self.outlines.shared_edges(topology)).into_iter().flatten();
+        shared.filter_map(move |(index, sides)| {
+            let all = topology.edge_sides(&topology.edges[index as usize]).len();
+            (!sides.is_empty() && sides.len() < all).then_some(index)
+        })
     }
 
     /// The place on an edge's sides that comes closest to a place of a picture, in object units, and how far apart the two are, in

@@ -40,26 +40,7 @@ impl Sizes {
         let [least, most] = self.extent;
         self.cut == 0 && (self.in_view == 0 || (most - least).max_element() < 1.0)
     }
-}
 
-impl Visitor for Sizes {
-    fn take(&mut self, chunk: &EmittedChunk) {
-        for Self { in_view, small, cut, extent: [least, most], .. } in
-            in_ranges(chunk.triangles.len(), LEAST, |range| {
-                let mut own = Self::new(self.view);
-                chunk.triangles[range].iter().for_each(|triangle| own.count(chunk.vertices, triangle));
-                own
-            })
-        {
-            self.in_view += in_view;
-            self.small += small;
-            self.cut += cut;
-            self.extent = [self.extent[0].min(least), self.extent[1].max(most)];
-        }
-    }
-}
-
-impl Sizes {
     fn count(&mut self, vertices: &[Vertex], triangle: &[u32; 3]) {
         let ScreenView { clip_from_object, viewport } = self.view;
         let position = |index: u32| Vec3::from(vertices[index as usize].position);
@@ -76,6 +57,23 @@ impl Sizes {
         for corner in corners {
             let px = corner.truncate().truncate() / corner.w * 0.5 * viewport;
             self.extent = [self.extent[0].min(px), self.extent[1].max(px)];
+        }
+    }
+}
+
+impl Visitor for Sizes {
+    fn take(&mut self, chunk: &EmittedChunk) {
+        for Self { in_view, small, cut, extent: [least, most], .. } in
+            in_ranges(chunk.triangles.len(), LEAST, |range| {
+                let mut own = Self::new(self.view);
+                chunk.triangles[range].iter().for_each(|triangle| own.count(chunk.vertices, triangle));
+                own
+            })
+        {
+            self.in_view += in_view;
+            self.small += small;
+            self.cut += cut;
+            self.extent = [self.extent[0].min(least), self.extent[1].max(most)];
         }
     }
 }

@@ -18,11 +18,7 @@ pub struct Survey<'a> {
     mesh: &'a Mesh,
     topology: &'a Topology,
     ulp: f64,
-    culled: Culled,
-    outlines: Outlines,
-    folded: Vec<FoldedPatch>,
-    not_finite: u64,
-    extent: [Vec3; 2],
+    found: Measured,
 }
 
 /// The numbers of patches that emitted nothing, for each reason.
@@ -84,29 +80,23 @@ impl<'a> Survey<'a> {
         let extent = [Vec3::INFINITY, Vec3::NEG_INFINITY];
         let culled = Culled::new(&factors);
         let outlines = Outlines::new(factors, requested);
-        Self { mesh, topology, ulp: ulp(topology), culled, outlines, folded: Vec::new(), not_finite: 0, extent }
+        let found = Measured { culled, extent, outlines, ..Measured::default() };
+        Self { mesh, topology, ulp: ulp(topology), found }
     }
 
     /// Compares the sides of every edge, after all chunks are taken.
-    pub fn finish(mut self) -> Measured {
-        let (mut cracks, mut seams) = (Cracks::default(), Seams::default());
-        for (edge, sides) in self.outlines.shared_edges(self.topology) {
-            cracks.take(self.mesh, self.topology, edge, &sides, &self.outlines.discarded(self.topology, edge));
-            seams.take(self.mesh, self.topology, &self.outlines, edge, &sides);
+    pub fn finish(self) -> Measured {
+        let Self { mesh, topology, mut found, .. } = self;
+        let (mut cracks, outlines) = (Cracks::default(), &found.outlines);
+        for (edge, sides) in outlines.shared_edges(topology) {
+            cracks.take(mesh, topology, edge, &sides, &outlines.discarded(topology, edge));
+            found.seams.take(mesh, topology, outlines, edge, &sides);
         }
-        self.folded.sort_by(|a, b| b.area.total_cmp(&a.area));
-        Measured {
-            culled: self.culled,
-            patches_low: self.outlines.low(),
-            patches_at_limit: self.outlines.at_limit(),
-            cracks: cracks.sorted(),
-            seams,
-            folds: self.folded.iter().map(|patch| u64::from(patch.folds)).sum(),
-            folded: self.folded,
-            not_finite: self.not_finite,
-            extent: self.extent,
-            outlines: self.outlines,
-        }
+        found.cracks = cracks.sorted();
+        (found.patches_low, found.patches_at_limit) = (outlines.low(), outlines.at_limit());
+        found.folds = found.folded.iter().map(|patch| u64::from(patch.folds)).sum();
+        found.folded.sort_by(|a, b| b.area.total_cmp(&a.area));
+        found
     }
 }
 
@@ -127,11 +117,12 @@ fn extent_of(vertices: &[Vertex]) -> (u64, [Vec3; 2]) {
 impl Visitor for Survey<'_> {
     fn take(&mut self, chunk: &EmittedChunk) {
         let EmittedChunk { first_patch, vertices, triangles } = *chunk;
-        self.outlines.take(first_patch, vertices);
-        self.folded.extend(folds::find(self.topology, self.ulp, vertices, triangles));
+        let found = &mut self.found;
+        found.outlines.take(first_patch, vertices);
+        found.folded.extend(folds::find(self.topology, self.ulp, vertices, triangles));
         for (not_finite, [least, most]) in in_ranges(vertices.len(), LEAST, |range| extent_of(&vertices[range])) {
-            self.not_finite += not_finite;
-            self.extent = [self.extent[0].min(least), self.extent[1].max(most)];
+            found.not_finite += not_finite;
+            found.extent = [found.extent[0].min(least), found.extent[1].max(most)];
         }
     }
 }

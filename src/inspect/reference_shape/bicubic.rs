@@ -2,8 +2,7 @@
 
 use glam::DVec3;
 
-use super::surface::Surface;
-use super::{Nearest, Sample};
+use super::{Nearest, Sample, Surface};
 use geometry::mesh::shapes::bicubic::{BezierNet, at};
 
 /// How many times patches are divided into quarters for the tree.

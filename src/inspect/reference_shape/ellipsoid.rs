@@ -5,8 +5,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::root::root;
-use super::surface::Surface;
-use super::{Nearest, Sample};
+use super::{Nearest, Sample, Surface};
 
 pub(super) struct Ellipsoid {
     /// The radii along x, y and z.

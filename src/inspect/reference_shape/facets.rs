@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::{DVec3, Vec3};
 
-use super::surface::Surface;
+use super::Surface;
 use geometry::casts::to_u32;
 use geometry::near::{Soup, TriangleTree};
 

@@ -1,7 +1,5 @@
 //! A mesh as reference surface, for example the high-poly original.
 
-use std::sync::Arc;
-
 use glam::{DVec3, Vec3};
 
 use super::spread::{find, radical_inverse};
@@ -12,9 +10,8 @@ use geometry::near::Closest;
 /// A mesh's flat triangles, with interpolated shading normals.
 pub struct Reference {
     pub(super) facets: Facets,
-    /// The mesh's corners; `faces` has the three of each triangle.
+    /// The mesh's corners, of which each triangle has three.
     corners: Vec<Corner>,
-    faces: Arc<Vec<[u32; 3]>>,
     /// The sum of the areas of all triangles up to and including each one.
     areas: Vec<f64>,
 }
@@ -22,19 +19,19 @@ pub struct Reference {
 impl Reference {
     /// Returns `None` if the mesh has no triangle.
     pub fn new(mesh: &Mesh) -> Option<Self> {
-        let (corners, faces) = (mesh.corners.clone(), mesh.triangles.clone());
+        let corners = mesh.corners.clone();
         let of = |triangle: &[u32; 3]| triangle.map(|corner| corners[corner as usize].position);
-        let facets = Facets::from_mesh(corners.iter().map(|corner| corner.position).collect(), faces.clone())?;
-        let areas = faces.iter().scan(0.0, |sum, triangle| {
+        let facets = Facets::from_mesh(corners.iter().map(|corner| corner.position).collect(), mesh.triangles.clone())?;
+        let areas = mesh.triangles.iter().scan(0.0, |sum, triangle| {
             *sum += cross(&of(triangle)).length() / 2.0;
             Some(*sum)
         });
         let areas = areas.collect();
-        Some(Self { facets, areas, corners, faces })
+        Some(Self { facets, areas, corners })
     }
 
     fn triangle(&self, index: usize) -> [Corner; 3] {
-        self.faces[index].map(|corner| self.corners[corner as usize])
+        self.facets.soup().triangles[index].map(|corner| self.corners[corner as usize])
     }
 
     /// Returns the unit shading normal, or the face's normal if that has no direction, or a corner's if the face has

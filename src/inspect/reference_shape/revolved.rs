@@ -4,8 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::{DVec2, DVec3};
 
-use super::surface::Surface;
-use super::{Nearest, ON_CREASE, Sample};
+use super::{Nearest, ON_CREASE, Sample, Surface};
 
 /// Returns the distance of p from the axis, and the unit direction away from the axis. Within `on_axis` of the axis the
 /// direction is that of `facing`, if it has one.

@@ -3,8 +3,7 @@
 use glam::DVec3;
 
 use super::root::root;
-use super::surface::Surface;
-use super::{Nearest, Sample};
+use super::{Nearest, Sample, Surface};
 
 /// The saddle y = (x^2 - z^2) / 2 over a square around the origin.
 pub(super) struct Saddle {

@@ -96,14 +96,13 @@ impl Camera {
     /// Turns the camera so that it looks along an axis, upright.
     pub fn look_from(&mut self, standpoint: Standpoint) {
         self.roll = 0.0;
-        (self.azimuth, self.elevation) = match standpoint {
-            Standpoint::Front => (0.0, 0.0),
-            Standpoint::Back => (180.0, 0.0),
-            Standpoint::Left => (270.0, 0.0),
-            Standpoint::Right => (90.0, 0.0),
-            Standpoint::Top => (0.0, MAX_ELEVATION),
-            Standpoint::Bottom => (0.0, -MAX_ELEVATION),
-        };
+        self.turn_to(standpoint.direction());
+    }
+
+    /// Turns the camera so that a unit vector points from the target to the eye, as steeply as it can be turned.
+    pub(super) fn turn_to(&mut self, back: Vec3) {
+        self.azimuth = back.x.atan2(back.z).to_degrees().rem_euclid(360.0);
+        self.elevation = back.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);
     }
 
     /// Unit vectors that point right, up, and back towards the eye.
@@ -120,7 +119,7 @@ impl Camera {
     }
 
     pub fn eye(&self) -> Vec3 {
-        let of_rows = self.rows.and_then(|rows| rows.eye());
+        let of_rows = self.rows.and_then(|rows| rows.eye);
         of_rows.unwrap_or_else(|| self.target + self.axes()[2] * self.distance)
     }
 
@@ -197,7 +196,7 @@ impl Camera {
         let (near, far) = if self.orthographic {
             (middle - FRUSTUM_REACH * bounds.radius(), middle + FRUSTUM_REACH * bounds.radius())
         } else {
-            let near = self.rows.map_or(self.distance * NEAR, |rows| rows.near());
+            let near = self.rows.map_or(self.distance * NEAR, |rows| rows.near);
             (near, (middle + FRUSTUM_REACH * bounds.radius()).max(2.0 * near))
         };
         if let Some(rows) = self.rows {

@@ -1,21 +1,19 @@
 //! The picture of the difference between both halves of a split view.
 
-use super::group_layouts::{FRAGMENT, IMAGE, group_layout};
 use super::render_pipeline::{PipelineParts, blended};
 use super::target::{SHOWN_FORMAT, Target, color_attachment};
-use gpu::{Gpu, GpuError, Lazy, Recorder, ShaderModule, bind_group, whole};
+use gpu::{Gpu, GpuError, Lazy, Recorder, ShaderModule, whole};
 
 /// Draws how much two pictures differ, pixel by pixel: see `shaders/draw_difference.wgsl`.
 pub(super) struct DifferenceDrawer {
     module: ShaderModule,
-    layout: wgpu::BindGroupLayout,
     pipeline: Lazy<wgpu::RenderPipeline>,
 }
 
 impl DifferenceDrawer {
-    pub(super) fn new(gpu: &Gpu) -> Self {
-        let layout = group_layout(gpu, "difference", &[0, 1].map(|binding| (binding, FRAGMENT, IMAGE)));
-        Self { module: ShaderModule::new("draw_difference"), layout, pipeline: Lazy::default() }
+    /// Compiles nothing yet.
+    pub(super) fn new() -> Self {
+        Self { module: ShaderModule::new("draw_difference"), pipeline: Lazy::default() }
     }
 
     /// Draws the difference between the pictures that were kept under what the target shows.
@@ -28,12 +26,12 @@ impl DifferenceDrawer {
             let (under, over) = (wgpu::BlendFactor::OneMinusDstAlpha, wgpu::BlendFactor::One);
             let blend = Some(blended(under, over, over));
             let shown = wgpu::ColorTargetState { blend, ..SHOWN_FORMAT.into() };
-            let parts = PipelineParts::new(module, ["difference_vertex", "difference_fragment"], Some(shown));
-            PipelineParts { layouts: Some(vec![Some(&self.layout)]), ..parts }.pipeline(gpu)
+            PipelineParts::new(module, ["whole_vertex", "difference_fragment"], Some(shown)).pipeline(gpu)
         })?;
-        let views = target.kept(gpu)?.each_ref().map(whole);
-        let bound = (0..).zip(views.each_ref().map(wgpu::BindingResource::TextureView));
-        let group = bind_group(gpu, "difference", &self.layout, bound);
+        let [left, right] = target.kept(gpu)?.each_ref().map(whole);
+        let group = self.module.bind(gpu, "difference_fragment", &pipeline.get_bind_group_layout(0), |name| {
+            Some(wgpu::BindingResource::TextureView(if name == "left_picture" { &left } else { &right }))
+        });
         let view = target.shown_view(false);
         recorder.render("difference", Some(color_attachment(&view, None)), None, |pass| {
             pass.set_pipeline(pipeline);

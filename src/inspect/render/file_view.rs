@@ -1,9 +1,10 @@
-//! Views through the cameras of a file.
+//! Views through the cameras of a file, and through those of engines' frames.
 
 use glam::Vec3;
 
 use super::Camera;
 use super::camera::{FIELD_OF_VIEW, FIELDS_OF_VIEW};
+use super::view_projection::{ViewProjection, ViewProjectionError};
 use geometry::mesh::{Bounds, FileCamera, Projection};
 
 /// The least distance between eye and target, in bounding radii.
@@ -45,7 +46,31 @@ impl Camera {
             }
         }
     }
+
+    /// The camera of an engine's frame, of a mesh with these bounds. Its angles and its distance are those of the nearest camera of
+    /// ours: they turn the lights of the camera, and say how large a px is.
+    ///
+    /// # Errors
+    /// The matrix isn't that of a view.
+    pub fn from_matrix(matrix: &ViewProjection, bounds: &Bounds) -> Result<Self, ViewProjectionError> {
+        let rows = matrix.rows()?;
+        let axes = rows.axes();
+        let (eye, projection) = match rows.eye {
+            Some(eye) => (eye, Projection::Perspective(2.0 * rows.half_height().atan())),
+            None => {
+                let middle = rows.middle_beside(bounds.center()).ok_or(ViewProjectionError::Singular)?;
+                let eye = middle + axes[2] * bounds.radius().max(f32::MIN_POSITIVE);
+                (eye, Projection::Orthographic(rows.half_height()))
+            }
+        };
+        let file = FileCamera { name: String::new(), eye, axes, projection };
+        let camera = Self { rows: Some(rows), ..Self::from_file(&file, bounds) };
+        if camera.is_sound() { Ok(camera) } else { Err(ViewProjectionError::TooFar) }
+    }
 }
+
+#[cfg(test)]
+mod engine_tests;
 
 #[cfg(test)]
 mod tests {

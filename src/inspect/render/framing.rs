@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, Vec2, Vec3, dvec3, vec2};
 
 use super::Camera;
-use super::camera::{FIELD_OF_VIEW, MAX_ELEVATION};
+use super::camera::FIELD_OF_VIEW;
 use geometry::mesh::Bounds;
 
 /// The distance from which a framed edge is seen with the usual field of view, in lengths of the edge. It then is two thirds of the
@@ -87,8 +87,7 @@ impl Camera {
         let nearer = half(FIELD_OF_VIEW) / half(self.field_of_view);
         self.distance = (FRAMED_EDGE * length * nearer).max(1e-4 * bounds.radius());
         if facing != Vec3::ZERO {
-            self.azimuth = facing.x.atan2(facing.z).to_degrees().rem_euclid(360.0);
-            self.elevation = facing.y.clamp(-1.0, 1.0).asin().to_degrees().clamp(-MAX_ELEVATION, MAX_ELEVATION);
+            self.turn_to(facing);
         }
     }
 }

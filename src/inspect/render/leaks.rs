@@ -21,7 +21,7 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R16Float;
 /// rule. So all triangles are drawn without a depth test; front faces add 1 and back faces subtract 1. A pixel that isn't 0 at
 /// the end sees the inside through a crack, or the outside from within. (If a line of sight passes through one crack in front
 /// and another behind, the two cancel; the pixels around it still count.)
-pub(crate) struct LeakCounter(Adding);
+pub struct LeakCounter(Adding);
 
 impl LeakCounter {
     /// Compiles nothing yet.
@@ -29,11 +29,12 @@ impl LeakCounter {
         Self(Adding::new("leak_fragment", FORMAT, wgpu::BlendFactor::One, wgpu::ColorWrites::RED))
     }
 
-    /// Starts to count the leaks of a picture of `size` (width and height in px).
+    /// Starts to count the leaks of a picture of `size` (width and height in px), for a mesh that is closed and lies beyond the near
+    /// plane: see [`closed_extent`](crate::engine::measurements::closed_extent).
     ///
     /// # Errors
     /// The picture is larger than the adapter draws, or the device was lost.
-    pub(crate) fn start(&self, gpu: &Gpu, size: [u32; 2], clip: Mat4) -> Result<LeakCount, GpuError> {
+    pub fn start(&self, gpu: &Gpu, size: [u32; 2], clip: Mat4) -> Result<LeakCount, GpuError> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         let [width, height] = size.map(|side| side.max(1));
         if width > limit || height > limit {

@@ -21,14 +21,11 @@ pub struct PunctualLight {
 
 impl From<&Light> for PunctualLight {
     fn from(light: &Light) -> Self {
-        let (range, [cone_scale, cone_offset]) = match light.kind {
-            LightKind::Directional => (None, [0.0, 1.0]),
-            LightKind::Point { range } => (range, [0.0, 1.0]),
-            LightKind::Spot { range, inner, outer } => (range, cone(inner, outer)),
-        };
-        let origin = match light.kind {
-            LightKind::Directional => (-light.direction).extend(0.0),
-            _ => light.place.extend(1.0),
+        let place = light.place.extend(1.0);
+        let (origin, range, [cone_scale, cone_offset]) = match light.kind {
+            LightKind::Directional => ((-light.direction).extend(0.0), None, [0.0, 1.0]),
+            LightKind::Point { range } => (place, range, [0.0, 1.0]),
+            LightKind::Spot { range, inner, outer } => (place, range, cone(inner, outer)),
         };
         Self {
             origin,

@@ -31,7 +31,8 @@ pub use preparation::DraftPipelines;
 /// Draws pictures of any scene on a device. Its pipelines are made when they are first needed.
 pub struct Renderer {
     gpu: Gpu,
-    materials: Materials,
+    /// What the materials of all scenes share.
+    pub(crate) materials: Materials,
     studio: Lazy<Arc<Environment>>,
     matcaps: Matcaps,
     pipelines: DrawPipelines,
@@ -65,7 +66,7 @@ impl Renderer {
             studio: Lazy::default(),
             matcaps: Matcaps::default(),
             coverage: coverage_pipelines(),
-            difference: DifferenceDrawer::new(gpu),
+            difference: DifferenceDrawer::new(),
             unknown: uniform_buffer(gpu, "unknown", bytemuck::bytes_of(&0.0_f32)),
             samples: samples(gpu),
             shares_shaders: gpu.is_software(),
@@ -80,11 +81,6 @@ impl Renderer {
     /// Out of memory, or a lost device.
     pub fn matcap(&self, picture: &Texture) -> Result<MatcapPicture, GpuError> {
         sphere_group(&self.gpu, &self.materials, picture).map(MatcapPicture)
-    }
-
-    /// What the materials of all scenes share.
-    pub fn materials(&self) -> &Materials {
-        &self.materials
     }
 
     /// Draws the scene into the target, chunk after chunk. The scene must be counted. A chunk is emitted unless the arena still

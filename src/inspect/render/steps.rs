@@ -35,20 +35,17 @@ pub(super) struct LayerStep {
 }
 
 impl Step {
-    pub(super) fn half(&self) -> SplitSide {
+    /// The half and its chunk that it draws, if it draws one.
+    pub(super) fn part(&self) -> Option<(SplitSide, usize)> {
         match self {
-            Self::Surface(half, _) | Self::Normals(half, _) => *half,
-            Self::Layer(LayerStep { part: Some((half, _)), .. }) => *half,
-            Self::Over | Self::Layer(_) | Self::Keep | Self::Difference => SplitSide::Right,
+            Self::Surface(half, chunk) | Self::Normals(half, chunk) => Some((*half, *chunk)),
+            Self::Layer(LayerStep { part, .. }) => *part,
+            Self::Over | Self::Keep | Self::Difference => None,
         }
     }
 
-    pub(super) fn chunk(&self) -> Option<usize> {
-        match self {
-            Self::Surface(_, chunk) | Self::Normals(_, chunk) => Some(*chunk),
-            Self::Layer(LayerStep { part, .. }) => part.map(|(_, chunk)| chunk),
-            Self::Over | Self::Keep | Self::Difference => None,
-        }
+    pub(super) fn half(&self) -> SplitSide {
+        self.part().map_or(SplitSide::Right, |(half, _)| half)
     }
 }
 
@@ -99,7 +96,7 @@ pub(super) fn runs(scene: &Scene, steps: &[Step]) -> Vec<Range<usize>> {
     let has_many = |half| scene.half(half).is_some_and(|half| half.tessellator.chunk_count() > 1);
     let begins = |index: &usize| match &steps[*index] {
         Step::Surface(..) | Step::Normals(..) => true,
-        step @ Step::Layer(_) => *index == 0 || (step.chunk().is_some() && has_many(step.half())),
+        step @ Step::Layer(_) => *index == 0 || (step.part().is_some() && has_many(step.half())),
         Step::Over | Step::Keep | Step::Difference => *index == 0,
     };
     let starts: Vec<_> = (0..steps.len()).filter(begins).collect();

@@ -64,11 +64,11 @@ pub struct ClipRows {
     y: Vec4,
     w: Vec4,
     /// The position of the eye in object units; none if it is infinitely far away.
-    eye: Option<Vec3>,
+    pub(super) eye: Option<Vec3>,
     /// Towards the eye, of length 1.
     back: Vec3,
     /// What w is on the near plane of a perspective view.
-    near: f32,
+    pub(super) near: f32,
     /// Whether the matrix shows the mesh as in a mirror. What is drawn with these rows is the mirror image of the engine's frame.
     pub is_mirrored: bool,
 }
@@ -182,11 +182,6 @@ fn solved(rows: [DVec4; 3], values: DVec3) -> Option<DVec3> {
 }
 
 impl ClipRows {
-    /// The position of the eye in object units; none if it is infinitely far away.
-    pub(super) fn eye(&self) -> Option<Vec3> {
-        self.eye
-    }
-
     /// The matrix to our clip space. Depth is reversed. In a perspective view it is the near plane's w over w, and so 1 on the
     /// engine's near plane and 0 at infinity. In an orthographic view it falls evenly along the view, and the whole of
     /// `reach` object units around `middle` is in its range.
@@ -239,10 +234,5 @@ impl ClipRows {
         let w = f64::from(if self.eye.is_some() { w } else { 1.0 });
         [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
             .map(|(x, y)| solved([rows[0], rows[1], depth], DVec3::new(x * w, y * w, w)).unwrap_or_default().as_vec3())
-    }
-
-    /// What w is on the near plane of a perspective view.
-    pub(super) fn near(&self) -> f32 {
-        self.near
     }
 }

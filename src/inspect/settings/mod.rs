@@ -3,7 +3,6 @@
 //! [`options`] declares each option once. The command line, saved settings, "Copy as command", random settings in tests and
 //! the window's rows are made from these declarations.
 
-mod choice;
 pub mod light;
 pub mod options;
 mod overlays;
@@ -16,8 +15,8 @@ use geometry::mesh::{Heights, Material, Mesh};
 use geometry::tessellate::{Clip, CurvatureKind, Inputs, Lod, LodView, Surface, Tessellation, displacement_reach};
 use load::Import;
 
-pub(crate) use choice::choices;
-pub use choice::{Choice, Description, descriptions};
+pub(crate) use geometry::choice::choices;
+pub use geometry::choice::{Choice, Description, descriptions};
 pub use light::{FileLights, Lighting, Matcap, NormalMaps, ToneCurve};
 pub use overlays::{ColorSource, Colors, Control, Overlay, Overlays};
 pub use value::{Access, Declaration, Kind, Range, Value};
@@ -377,7 +376,10 @@ impl Settings {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use geometry::tessellate::Partitioning;
+    use geometry::mesh::UpAxis;
+    use geometry::mesh::subdivision::FaceVarying;
+    use geometry::tessellate::{Convention, Displacement, Edges, Normals, Partitioning};
+    use load::{LengthUnit, NormalSource};
 
     #[test]
     fn subtriangulation_uses_uniform_lod_and_keeps_the_chosen_one() {
@@ -390,5 +392,43 @@ mod tests {
                 assert_eq!((tessellation.used_lod(), inputs.lod), (used, used), "{partitioning:?} {lod:?}");
             }
         }
+    }
+
+    fn check<T: Choice + std::fmt::Debug>() {
+        for (index, value) in T::ALL.iter().copied().enumerate() {
+            let Description { name, label, text } = value.description();
+            assert!(!T::ALL[..index].contains(&value), "{value:?} is listed twice");
+            assert_eq!(T::named(name), Some(value), "{value:?}");
+            let hlsl = value.description().hlsl_name();
+            assert!(hlsl.is_none_or(|hlsl| T::named(&hlsl) == Some(value)), "{value:?}");
+            assert!(T::ALL[..index].iter().all(|other| other.label() != label), "{label} is there twice");
+            assert!(text.ends_with('.') && text.len() > 10, "{value:?}: {text}");
+            assert_eq!(label.trim(), label);
+        }
+        assert_eq!(T::named("odd"), None);
+        assert_eq!(T::named(""), None);
+    }
+
+    #[test]
+    fn every_value_is_found_by_its_name_and_has_a_text() {
+        check::<Surface>();
+        check::<Normals>();
+        check::<Edges>();
+        check::<Partitioning>();
+        check::<Lod>();
+        check::<Clip>();
+        check::<Convention>();
+        check::<Displacement>();
+        check::<SurfaceUnit>();
+        check::<CurvatureKind>();
+        check::<NormalsAt>();
+        check::<Lighting>();
+        check::<ToneCurve>();
+        check::<Overlay>();
+        check::<Colors>();
+        check::<NormalSource>();
+        check::<UpAxis>();
+        check::<FaceVarying>();
+        check::<LengthUnit>();
     }
 }

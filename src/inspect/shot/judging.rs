@@ -227,9 +227,7 @@ impl Shot {
         self.subject.more_lines = lines;
         picture.map(Some)
     }
-}
 
-impl Shot {
     /// A camera that shows the worst place of a gate, from where nothing hides it.
     ///
     /// # Errors

@@ -1,13 +1,11 @@
 //! One picture, and all that is measured for it: what `render` and `turntable` draw, and what the window saves.
 
-mod camera_stats;
 mod copied_command;
 mod error;
 mod factors_report;
 pub mod files;
 mod judging;
 pub mod legend;
-mod outline_stats;
 mod picture_comparison;
 mod picture_file;
 mod reference;

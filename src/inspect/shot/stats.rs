@@ -2,21 +2,20 @@
 
 use std::collections::BTreeMap;
 
+use glam::{Mat4, Vec4};
 use serde::{Serialize, Serializer};
 
-use super::camera_stats::ViewStats;
 use super::factors_report::FactorsFile;
-use super::outline_stats::SilhouetteStats;
 use super::reference::ReferenceStats;
 use super::reference_surface::{AccuracyStats, DeviationStats};
 use super::user_shader_report::{LodShaderStats, SurfaceShaderStats};
 use super::{Numbers, Shot, ShotError};
 use crate::engine::{Engine, Loaded, Runs};
 use crate::gates::{GateKind, Judgement};
-use crate::measure::{Measured, SeamTurns, Seams};
-use crate::render::Scene;
+use crate::measure::{Measured, OutlineDistance, SeamTurns, Seams, Silhouette};
+use crate::render::{Camera, Scene};
 use crate::settings::{Settings, SplitSide, Value, options};
-use geometry::mesh::{EdgeCounts, Topology};
+use geometry::mesh::{Bounds, EdgeCounts, Topology};
 use geometry::tessellate::{Inputs, Tessellation};
 use geometry::view::{ScreenView, ulp};
 use gpu::GpuError;
@@ -200,6 +199,76 @@ impl SeamStats {
             max_added_degrees: turns.most_added,
         };
         Self { shading: stats(&seams.shading), mapped: (seams.mapped.edges > 0).then(|| stats(&seams.mapped)) }
+    }
+}
+
+/// The largest distances of the triangles' outline from others, in px; none where the picture doesn't show both outlines. Places
+/// are in px from the picture's top left.
+#[derive(Debug, Serialize)]
+struct SilhouetteStats {
+    from_source_px: Option<f64>,
+    from_source_at: Option<[f64; 2]>,
+    from_surface_px: Option<f64>,
+    from_surface_at: Option<[f64; 2]>,
+    /// Samples along a side of a px.
+    samples_per_px: u32,
+}
+
+impl SilhouetteStats {
+    /// `mirrored` is the width of the picture in px if it was mirrored after the outlines were found.
+    fn new(silhouette: &Silhouette, mirrored: Option<u32>) -> Self {
+        let shown = |[x, y]: [f64; 2]| [mirrored.map_or(x, |width| f64::from(width) - x), y];
+        let place = |distance: Option<OutlineDistance>| distance.map(|distance| shown(distance.at.to_array()));
+        let distances = &silhouette.distances;
+        Self {
+            from_source_px: distances.from_source.map(|distance| distance.px),
+            from_source_at: place(distances.from_source),
+            from_surface_px: distances.from_surface.map(|distance| distance.px),
+            from_surface_at: place(distances.from_surface),
+            samples_per_px: silhouette.grid.per_px,
+        }
+    }
+}
+
+/// A camera in numbers: the matrix that a picture was drawn with, as `--view-projection` takes it.
+#[derive(Clone, Debug, Serialize)]
+struct ViewStats {
+    /// `perspective` or `orthographic`.
+    kind: &'static str,
+    /// In object units; none in an orthographic view.
+    eye: Option<[f32; 3]>,
+    /// The unit direction that it looks in.
+    direction: [f32; 3],
+    /// The size of the picture, in px.
+    viewport: [u32; 2],
+    /// From object units to clip space, listed as `matrix_order` says.
+    view_projection: [f32; 16],
+    matrix_order: &'static str,
+    depth: &'static str,
+    clip_y: &'static str,
+}
+
+impl ViewStats {
+    /// The camera that draws a picture of a mesh with these bounds.
+    fn new(camera: &Camera, viewport: [u32; 2], bounds: &Bounds) -> Self {
+        let mut matrix = camera.clip_from_object(viewport.map(|side| side as f32).into(), bounds);
+        if camera.is_mirrored() {
+            // What was drawn was mirrored afterwards.
+            matrix = Mat4::from_diagonal(Vec4::new(-1.0, 1.0, 1.0, 1.0)) * matrix;
+        }
+        let [_, _, back] = camera.axes();
+        // Without the sign of zeros.
+        let unsigned = |number: f32| 0.0 + number;
+        Self {
+            kind: if camera.orthographic { "orthographic" } else { "perspective" },
+            eye: (!camera.orthographic).then(|| camera.eye().to_array()),
+            direction: back.to_array().map(|number| unsigned(-number)),
+            viewport,
+            view_projection: matrix.to_cols_array().map(unsigned),
+            matrix_order: "column-major",
+            depth: "reversed",
+            clip_y: "up",
+        }
     }
 }
 

@@ -38,14 +38,6 @@ pub(super) struct Picture<'a> {
     ground_step: usize,
 }
 
-/// What is drawn in a step beside the surfaces of its chunk, before or after them.
-struct Beside {
-    /// Normals at the vertices of the step's chunk.
-    normals: Option<[wgpu::RenderPipeline; 2]>,
-    ground: Option<wgpu::RenderPipeline>,
-    lines: Option<[wgpu::RenderPipeline; 2]>,
-}
-
 impl Renderer {
     /// Makes what the steps of a picture share.
     ///
@@ -122,7 +114,7 @@ impl Renderer {
         }
         let Some(drawn) = scene.half_mut(step.half()) else { return Ok(()) };
         let of_half = settings.half(step.half()).unwrap_or(*settings);
-        if let Some(chunk) = step.chunk() {
+        if let Some((_, chunk)) = step.part() {
             drawn.tessellator.emit(recorder, chunk)?;
             if of_half.overlays.colors.source() == ColorSource::MinimumTriangles {
                 drawn.tessellator.record_minimum(recorder)?;
@@ -141,12 +133,14 @@ impl Renderer {
         {
             surfaces.sifted = self.sift(recorder, drawn, target, camera, chunk, &surfaces)?;
         }
-        let beside = self.beside(scene, picture, index)?;
-        self.record_step(recorder, scene, picture, index, &surfaces, &beside);
+        self.record_step(recorder, scene, picture, index, &surfaces)?;
         if step == Step::Difference { self.difference.draw(recorder, &self.gpu, target) } else { Ok(()) }
     }
 
-    /// Records the draws of a step that draws no layers.
+    /// Records the draws of a step that draws no layers: surfaces or normals, and what is drawn after them.
+    ///
+    /// # Errors
+    /// A pipeline can't be made: out of memory, or a lost device.
     fn record_step(
         &self,
         recorder: &mut Recorder,
@@ -154,8 +148,7 @@ impl Renderer {
         picture: &Picture,
         index: usize,
         surfaces: &Surfaces,
-        beside: &Beside,
-    ) {
+    ) -> Result<(), GpuError> {
         let Picture { target, settings, places, frames, steps, backgrounds, .. } = picture;
         let ends = |at: Option<usize>| {
             at.and_then(|at| steps.get(at)).is_none_or(|step| matches!(step, Step::Keep | Step::Difference))
@@ -169,13 +162,20 @@ impl Renderer {
             let (own, frame) = scene.half(half).zip(frames[half as usize].as_ref())?;
             Some((own, self.scene_group(own, frame), &places[half as usize]))
         });
-        let Some((drawn, group, place)) = &shown[step.half() as usize] else { return };
+        let Some((drawn, group, place)) = &shown[step.half() as usize] else { return Ok(()) };
         // The difference comes under lines over nothing. What is compared has a background: its alpha is that of the wireframe.
         let is_alone = step == Step::Difference;
-        let is_empty = if matches!(steps.last(), Some(Step::Difference)) { is_alone } else { target.is_transparent };
+        let compares = matches!(steps.last(), Some(Step::Difference));
+        let is_empty = if compares { is_alone } else { target.is_transparent };
         let [r, g, b] = linear(settings.background_color()).map(f64::from);
         let background = if is_empty { wgpu::Color::TRANSPARENT } else { wgpu::Color { r, g, b, a: 1.0 } };
         let color = target.color(background, is_first || is_alone, is_last);
+        let has_normals = matches!(step, Step::Normals(..));
+        let has_ground = index == picture.ground_step && settings.halves().any(|own| own.overlays.grid) && !compares;
+        let has_lines = shown.iter().flatten().any(|(own, ..)| own.lines.is_some()) && index + 1 == steps.len();
+        let normals = has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?;
+        let ground = has_ground.then(|| self.get(Draw::Ground)).transpose()?;
+        let lines = has_lines.then(|| self.line_pipelines(Draw::Lines)).transpose()?;
         recorder.render("draw", Some(color), Some(target.depth(is_first)), |pass| {
             pass.set_bind_group(0, group, &[]);
             if is_first && backgrounds.iter().any(Option::is_some) {
@@ -197,12 +197,11 @@ impl Renderer {
                     self.draw_chunk(pass, drawn, place, surfaces, &drawn.tessellator.chunk(chunk));
                 }
                 Step::Normals(_, chunk) => {
-                    let pipelines = beside.normals.iter().flatten();
-                    self.draw_normals(pass, pipelines, place, &drawn.tessellator.chunk(chunk));
+                    self.draw_normals(pass, normals.iter().flatten(), place, &drawn.tessellator.chunk(chunk));
                 }
                 Step::Over | Step::Layer(_) | Step::Keep | Step::Difference => {}
             }
-            if let Some(ground) = &beside.ground {
+            if let Some(ground) = &ground {
                 pass.set_pipeline(ground);
                 draw_in(pass, &shown, |pass, half, _| {
                     if settings.half(half).is_some_and(|own| own.overlays.grid) {
@@ -210,28 +209,11 @@ impl Renderer {
                     }
                 });
             }
-            if let Some(lines) = &beside.lines {
+            if let Some(lines) = &lines {
                 draw_in(pass, &shown, |pass, _, own| draw_lines(pass, lines, own));
             }
         });
-    }
-
-    /// Makes the pipelines for what is drawn beside the surfaces of a step.
-    ///
-    /// # Errors
-    /// Out of memory, or a lost device.
-    fn beside(&self, scene: &Scene, picture: &Picture, index: usize) -> Result<Beside, GpuError> {
-        let &Picture { settings, ref steps, .. } = picture;
-        let has_lines = scene.lines.is_some() || scene.half(SplitSide::Left).is_some_and(|left| left.lines.is_some());
-        let has_lines = has_lines && index + 1 == steps.len();
-        let compares = matches!(steps.last(), Some(Step::Difference));
-        let has_ground = index == picture.ground_step && settings.halves().any(|own| own.overlays.grid) && !compares;
-        let has_normals = matches!(steps[index], Step::Normals(..));
-        Ok(Beside {
-            normals: has_normals.then(|| self.line_pipelines(Draw::Normals)).transpose()?,
-            ground: has_ground.then(|| self.get(Draw::Ground)).transpose()?,
-            lines: has_lines.then(|| self.line_pipelines(Draw::Lines)).transpose()?,
-        })
+        Ok(())
     }
 
     /// The pipelines for lines: first for all of them, faintly, then for the parts in sight.
