@@ -4,17 +4,17 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Folder, assert_says, failure, number, output, run, vase, write_corners};
+use crate::{Folder, assert_says, failure, number, output, run, simple, vase, write_corners};
 
-const VIEW: [&str; 2] = ["--size", "160x120"];
+const VIEW: [&str; 4] = ["--size", "160x120", "--lighting", "camera"];
 
-/// Draws a mesh with gates. Returns the exit code, standard error, and the gates of the stats.
+/// Draws a mesh with gates, [simply](simple). Returns the exit code, standard error, and the gates of the stats.
 fn drawn(arguments: &[&str]) -> (Option<i32>, String, Vec<Value>) {
     let folder = Folder::new();
     let [picture, stats] = ["out.png", "stats.json"].map(|name| folder.path(name));
-    let all =
-        [&["render"], arguments, &VIEW, &["-o", &picture, "--stats", &stats, "--measure-error", "false"]].concat();
-    let ran = run(&all);
+    let arguments = [arguments, &VIEW[..]].concat();
+    let usual = ["-o", &picture, "--stats", &stats, "--measure-error", "false"];
+    let ran = run(&[&["render"], &arguments[..], &simple(&arguments)[..], &usual].concat());
     assert!(Path::new(&picture).exists(), "the picture is written whatever gates say");
     let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
     let gates = stats["gates"].as_array().expect("an array").clone();
@@ -358,7 +358,8 @@ fn the_tolerance_of_given_factors_is_that_of_the_command() {
     for given in [["--factors", &csv], ["--lod-shader", &shader]] {
         let judged = |tolerance: &str| {
             let options = ["--tolerance", tolerance, "--fail-on", "above-tolerance", "-o", &folder.path("x.png")];
-            let ran = run(&[&["render", "shape:torus", "--stats", &stats], &given[..], &VIEW, &options].concat());
+            let torus = ["render", "shape:torus", "--stats", &stats, "--measure-error", "false"];
+            let ran = run(&[&torus[..], &given[..], &VIEW, &options].concat());
             let stats: Value = serde_json::from_slice(&std::fs::read(&stats).expect("stats")).expect("JSON");
             let said = String::from_utf8_lossy(&ran.stderr).into_owned();
             (ran.status.code(), said, number(&stats, "/settings/tolerance"))
@@ -375,7 +376,8 @@ fn the_tolerance_of_given_factors_is_that_of_the_command() {
 fn evidence_shows_the_worst_places() {
     let folder = Folder::new();
     let [picture, evidence] = ["cube.png", "evidence"].map(|name| folder.path(name));
-    let base = ["render", "shape:cube-split", "--surface", "pn", "-o", &picture, "--evidence", &evidence];
+    let cube = ["render", "shape:cube-split", "--surface", "pn", "--factor", "8"];
+    let base = [&cube[..], &["-o", &picture, "--evidence", &evidence]].concat();
     output(&[&base[..], &VIEW, &["--fail-on", "folds"]].concat());
     assert!(!Path::new(&evidence).exists(), "nothing failed");
     failure(&[&base[..], &VIEW, &["--fail-on", "cracks,leaks,folds,triangles:1"]].concat(), 1);
@@ -392,11 +394,7 @@ fn evidence_shows_the_worst_places() {
     }
     let written = std::fs::read(folder.path("cube.png")).expect("a file");
     let blocked = ["--fail-on", "cracks", "--evidence", &folder.path("cube.png")];
-    let said = failure(
-        &[&["render", "shape:cube-split", "--surface", "pn", "-o", &folder.path("b.png")], &VIEW[..], &blocked]
-            .concat(),
-        1,
-    );
+    let said = failure(&[&cube[..], &["-o", &folder.path("b.png")], &VIEW, &blocked].concat(), 1);
     assert!(said.contains("cube.png") && said.contains("could not be made"), "{said}");
     assert_eq!(std::fs::read(folder.path("cube.png")).expect("a file"), written);
 }
@@ -438,8 +436,8 @@ fn evidence_is_seen_from_where_nothing_hides_it() {
         let mesh = write_torn_at_the_back(&folder, shell);
         for view in views {
             let [picture, evidence, stats] = ["it.png", "evidence", "stats.json"].map(|name| folder.path(name));
-            let base =
-                ["render", &mesh, "--surface", "pn", "-o", &picture, "--stats", &stats, "--measure-error", "false"];
+            let base = ["render", &mesh, "--surface", "pn", "--factor", "8", "-o", &picture, "--stats", &stats];
+            let base = [&base[..], &["--measure-error", "false"]].concat();
             let gates = ["--fail-on", "leaks,cracks", "--evidence", &evidence];
             let said = failure(&[&base[..], &VIEW, &gates, view].concat(), 1);
             assert_eq!(red(Path::new(&picture)), 0);
@@ -483,7 +481,8 @@ fn evidence_of_an_engines_frame_comes_closer_too_and_px_are_those_of_its_picture
     let folder = Folder::new();
     let mesh = write_torn_at_the_back(&folder, false);
     let [picture, evidence, stats] = ["it.png", "evidence", "stats.json"].map(|name| folder.path(name));
-    let base = ["render", &mesh, "--surface", "pn", "-o", &picture, "--stats", &stats, "--measure-error", "false"];
+    let base = ["render", &mesh, "--surface", "pn", "--factor", "8", "-o", &picture, "--stats", &stats];
+    let base = [&base[..], &["--measure-error", "false"]].concat();
     // From behind, where the leak isn't hidden.
     let judged = |camera: &[&str]| {
         let gates = ["--fail-on", "leaks", "--evidence", &evidence];
@@ -533,7 +532,7 @@ fn tessellate_is_judged_alike_on_both_devices() {
     let evidence = folder.path("evidence");
     let out = folder.path("torn.glb");
     let options = ["-o", &out, "--size", "160x120", "--fail-on", "cracks", "--evidence", &evidence];
-    failure(&[&["tessellate", "shape:cube-split", "--surface", "pn"], &options[..]].concat(), 1);
+    failure(&[&["tessellate", "shape:cube-split", "--surface", "pn", "--factor", "8"], &options[..]].concat(), 1);
     assert!(Path::new(&evidence).join("torn-cracks.png").exists());
 }
 

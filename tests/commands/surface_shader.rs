@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, both, failure, number, run, sentence};
+use crate::{Folder, SIMPLE_LIGHT, both, failure, number, run, sentence};
 
 const PN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/surface/pn.wgsl");
 const PN_AEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/surface/pn-aen.wgsl");
@@ -23,8 +23,8 @@ fn a_rule_that_tears_is_drawn_listed_and_measured_and_one_that_does_not_passes()
     let picture = folder.path("out.png");
     let drawn = |shader: &str| {
         let size = ["--size", "160x120", "--overlay", "cracks", "--stats", "-"];
-        let (stats, said) =
-            both(&[&["render", "shape:cube-split", "-o", &picture, "--surface-shader", shader], &size[..]].concat());
+        let cube = ["render", "shape:cube-split", "-o", &picture, "--surface-shader", shader];
+        let (stats, said) = both(&[&cube[..], &size, &SIMPLE_LIGHT].concat());
         (serde_json::from_str::<Value>(&stats).expect("JSON"), said)
     };
     let (stats, said) = drawn(PN);
@@ -86,13 +86,15 @@ fn a_surface_of_ones_own_is_written_turned_and_split() {
         "2",
         "--size",
         "64x48",
+        "--lighting",
+        "camera",
         "--surface-shader",
         PN,
     ]);
     let picture = folder.path("split.png");
     let split = ["--split", "0.5", "--split-left", "pn-aen", "--size", "160x120", "--stats", "-"];
-    let (stats, _) =
-        both(&[&["render", "shape:cube-split", "-o", &picture, "--surface-shader", PN], &split[..]].concat());
+    let cube = ["render", "shape:cube-split", "-o", &picture, "--surface-shader", PN];
+    let (stats, _) = both(&[&cube[..], &split, &SIMPLE_LIGHT].concat());
     let stats: Value = serde_json::from_str(&stats).expect("JSON");
     assert_eq!(
         (number(&stats, "/cracks/edges"), number(&stats, "/left/cracks/edges")),

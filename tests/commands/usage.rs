@@ -144,7 +144,8 @@ fn commands_never_read_the_settings_of_the_window() {
 fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     let folder = Folder::new();
     let picture = folder.path("out.png");
-    let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
+    let overlays =
+        |list| ["render", "shape:torus", "--factor", "2", "-o", &picture, "--size", "60x40", "--overlay", list];
     for list in [
         "barycentric,factors",
         "triangle-size,wireframe,low-factors",
