@@ -149,7 +149,7 @@ fn the_left_half_of_a_split_may_have_weights_of_its_own() {
     let (file, out) = (file(&folder), folder.path("picture.png"));
     let draw = |options: &[&str]| {
         let view = ["--camera", "30,20,3", "--target", "0,0,0", "--size", "160x120", "--factor", "3", "-o", &*out];
-        output(&[&["render", &*file], &view[..], &SIMPLE_LIGHT, options].concat());
+        output(&[&["render", &*file], &view[..], options].concat());
         image::open(&out).expect("a picture").to_rgba8()
     };
     // Leaning, the beam stays within the bounds that it has otherwise, so that one camera sees both alike.

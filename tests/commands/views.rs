@@ -156,13 +156,15 @@ fn what_is_no_file_of_cameras_is_refused_in_a_sentence() {
         std::fs::write(&cameras, text).expect("a writable folder");
         let named = if text == matrix { "engine" } else { "cameras \u{e4}.txt" };
         for command in ["render", "factors"] {
-            sentence(&[command, "shape:torus", "-o", &out, "--cameras", &cameras], &[words, &[named]].concat());
+            let torus = [command, "shape:torus", "--factor", "1", "-o", &out, "--cameras", &cameras];
+            sentence(&torus, &[words, &[named]].concat());
         }
     }
     std::fs::write(&cameras, [0xff, 0xfe]).expect("a writable folder");
-    sentence(&["render", "shape:torus", "-o", &out, "--cameras", &cameras], &["isn't text in UTF-8"]);
+    let torus = ["render", "shape:torus", "--factor", "1", "-o", &out, "--cameras"];
+    sentence(&[&torus[..], &[&cameras]].concat(), &["isn't text in UTF-8"]);
     std::fs::write(&out, "").expect("a writable folder");
-    sentence(&["render", "shape:torus", "-o", &out, "--cameras", "2"], &["out", "there is a file of this name"]);
+    sentence(&[&torus[..], &["2"]].concat(), &["out", "there is a file of this name"]);
     assert_eq!(std::fs::read(&out).expect("a file"), b"", "it is left alone");
 }
 
