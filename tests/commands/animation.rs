@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::{Folder, both, failure, output, run, sentence, vase};
+use crate::{Folder, SIMPLE_LIGHT, both, failure, output, run, sentence, vase};
 use documents::moving::moving;
 
 fn file(folder: &Folder) -> String {
@@ -17,7 +17,8 @@ fn stats_of_a_pose_name_it_and_count_no_cracks() {
     let file = file(&folder);
     let picture = |name: &str, options: &[&str]| {
         let picture = folder.path(name);
-        let all = [&["render", &file, "-o", &picture, "--size", "200x160", "--stats", "-"], options].concat();
+        let usual = ["render", &file, "-o", &picture, "--size", "200x160", "--factor", "4", "--stats", "-"];
+        let all = [&usual[..], &SIMPLE_LIGHT, &["--measure-error", "false"], options].concat();
         let stats: Value = serde_json::from_str(&output(&all)).expect("JSON");
         (std::fs::read(&picture).expect("a picture"), stats)
     };
@@ -38,7 +39,7 @@ fn the_left_half_of_a_split_may_have_a_pose_of_its_own() {
     let (file, out) = (file(&folder), folder.path("picture.png"));
     let draw = |options: &[&str]| {
         let view = ["--camera", "30,20,3", "--target", "0,0,0", "--size", "160x120", "--factor", "3", "-o", &*out];
-        output(&[&["render", &*file], &view[..], options].concat());
+        output(&[&["render", &*file], &view[..], &SIMPLE_LIGHT, options].concat());
         image::open(&out).expect("a picture").to_rgba8()
     };
     let [early, late] = ["0.2", "0.6"].map(|time| ["--animation", "All", "--time", time]);
@@ -81,16 +82,16 @@ fn the_left_half_of_a_split_may_have_a_pose_of_its_own() {
 fn both_devices_write_the_pose() {
     let folder = Folder::new();
     let file = file(&folder);
-    let extent = |options: &[&str]| {
+    let extent = |device: &str, options: &[&str]| {
         let path = folder.path("out.obj");
-        output(&[&["tessellate", &file, "-o", &path, "--factor", "4"], options].concat());
+        output(&[&["tessellate", &file, "-o", &path, "--factor", "4", "--device", device], options].concat());
         let text = std::fs::read_to_string(path).expect("a mesh");
         let xs = text.lines().filter_map(|line| line.strip_prefix("v ")?.split(' ').next()?.parse::<f64>().ok());
         xs.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], x| [least.min(x), most.max(x)])
     };
-    let rest = extent(&[]);
+    let rest = extent("cpu", &[]);
     let pose = ["--animation", "Bend", "--time", "0.5"];
-    let [gpu, cpu] = ["gpu", "cpu"].map(|device| extent(&[&pose[..], &["--device", device]].concat()));
+    let [gpu, cpu] = ["gpu", "cpu"].map(|device| extent(device, &pose));
     // The clip bends the mesh over, towards -x.
     assert!(rest[0] > -0.9 && gpu[0] < -1.5, "{rest:?} {gpu:?}");
     assert!((gpu[0] - cpu[0]).abs() < 1e-4 && (gpu[1] - cpu[1]).abs() < 1e-4, "{gpu:?} {cpu:?}");
@@ -105,15 +106,16 @@ fn both_devices_write_the_pose() {
 fn chosen_weights_of_morph_targets_give_the_shape_of_a_clip_that_has_them() {
     let folder = Folder::new();
     let file = file(&folder);
-    let positions = |options: &[&str]| {
+    let positions_on = |device: &str, options: &[&str]| {
         let path = folder.path("out.obj");
-        output(&[&["tessellate", &file, "-o", &path, "--factor", "3"], options].concat());
+        output(&[&["tessellate", &file, "-o", &path, "--factor", "3", "--device", device], options].concat());
         let text = std::fs::read_to_string(path).expect("a mesh");
         let vertices = text.lines().filter_map(|line| line.strip_prefix("v "));
         vertices
             .flat_map(|own| own.split(' ').map(|x| x.parse::<f64>().expect("a number")).collect::<Vec<_>>())
             .collect()
     };
+    let positions = |options: &[&str]| positions_on("cpu", options);
     let largest = |a: &Vec<f64>, b: &Vec<f64>| {
         assert_eq!(a.len(), b.len());
         a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
@@ -127,15 +129,16 @@ fn chosen_weights_of_morph_targets_give_the_shape_of_a_clip_that_has_them() {
     assert_eq!(clip, moved, "a clip that moves a target goes on doing so");
     let bent = ["--animation", "Bend", "--time", "0.5"];
     let swollen = ["--morph", "Swell=1", "--morph", "Lean=0"];
-    let [gpu, cpu] = ["gpu", "cpu"].map(|device| positions(&[&bent[..], &swollen, &["--device", device]].concat()));
+    let [gpu, cpu] = ["gpu", "cpu"].map(|device| positions_on(device, &[&bent[..], &swollen].concat()));
     assert!(
         largest(&gpu, &cpu) < 1e-4 && largest(&gpu, &positions(&bent)) > 0.1,
         "a clip that doesn't keeps its weight"
     );
     let picture = folder.path("posed.png");
-    let moving = ["--morph", "Lean=1", "--animation", "Bend", "--time", "0.3", "--size", "200x160", "--stats", "-"];
-    let stats: Value =
-        serde_json::from_str(&output(&[&["render", &file, "-o", &picture], &moving[..]].concat())).expect("JSON");
+    let moving = ["--morph", "Lean=1", "--animation", "Bend", "--time", "0.3", "--size", "200x160", "--factor", "4"];
+    let counted = ["-o", &picture, "--stats", "-", "--measure-error", "false"];
+    let drawn = output(&[&["render", &file], &moving[..], &SIMPLE_LIGHT, &counted].concat());
+    let stats: Value = serde_json::from_str(&drawn).expect("JSON");
     assert_eq!((&stats["cracks"]["different_bits"], &stats["leaks"]), (&json!(0), &json!(0)));
     assert!(stats["ms"]["deform"].as_f64().is_some());
 }
@@ -249,8 +252,9 @@ fn the_worst_moment_of_a_clip_is_the_one_with_the_most() {
     let file = file(&folder);
     let triangles = |options: &[&str]| {
         let picture = folder.path("worst.png");
-        let clip = ["--animation", "Bend", "--size", "200x160", "--lod", "edge-length", "--stats", "-"];
-        let run = run(&[&["render", &file, "-o", &picture], &clip[..], options].concat());
+        let clip = ["--animation", "Bend", "--size", "200x160", "--lod", "edge-length"];
+        let counted = ["-o", &picture, "--stats", "-", "--measure-error", "false"];
+        let run = run(&[&["render", &file], &clip[..], &SIMPLE_LIGHT, &counted, options].concat());
         assert!(run.status.success(), "{run:?}");
         let stats: Value = serde_json::from_slice(&run.stdout).expect("JSON");
         let said = String::from_utf8(run.stderr).expect("text");
@@ -276,7 +280,8 @@ fn bones_are_drawn_over_a_skin_and_change_no_picture_without_one() {
     let file = file(&folder);
     let picture = |mesh: &str, more: &[&str]| {
         let path = folder.path("picture.png");
-        let (_, errors) = both(&[&["render", mesh, "-o", &path, "--size", "160x120"], more].concat());
+        let usual = ["render", mesh, "-o", &path, "--size", "160x120", "--factor", "3"];
+        let (_, errors) = both(&[&usual[..], &SIMPLE_LIGHT, more].concat());
         (image::open(&path).expect("a picture").to_rgba8(), errors)
     };
     let bones = ["--overlay", "bones"];

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::{Folder, failure, output, sentence};
+use crate::{Folder, SIMPLE_LIGHT, failure, output, sentence};
 use documents::shot::SHOT;
 
 #[test]
@@ -20,7 +20,8 @@ fn cameras_of_a_file_are_listed_and_looked_through_and_others_are_refused() {
     assert!(text.contains("camera        camera 1: orthographic, 3 high, at 0 0 3, towards 0 0 -1\n"), "{text}");
     let picture = |name: &str, options: &[&str]| {
         let out = folder.path(name);
-        output(&[&["render", &shot, "-o", &out, "--size", "160x120"], options].concat());
+        let usual = ["render", &shot, "-o", &out, "--size", "160x120", "--factor", "1"];
+        output(&[&usual[..], &SIMPLE_LIGHT, options].concat());
         image::open(&out).expect("a picture").into_rgba8()
     };
     let by_name = picture("name.png", &["--file-camera", "Close"]);

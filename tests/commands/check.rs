@@ -12,6 +12,7 @@ fail-on = ["cracks", "factors", "leaks", "folds", "t-junctions"]
 
 [options]
 size = "160x120"
+lighting = "camera"
 partitioning = "integer"
 factor = 3
 
@@ -223,7 +224,8 @@ fn views_are_compared_with_golden_pictures_that_an_option_writes() {
     std::fs::create_dir(folder.path("assets")).expect("a writable folder");
     std::fs::copy(vase(), folder.path("assets/good.glb")).expect("a copy");
     let configure = |golden: &str, surface: &str| {
-        let options = format!("[options]\nsize = \"160x120\"\nfactor = 3\nsurface = \"{surface}\"\n");
+        let options =
+            format!("[options]\nsize = \"160x120\"\nlighting = \"camera\"\nfactor = 3\nsurface = \"{surface}\"\n");
         let text = format!("{golden}\n{options}[cameras.front]\ncamera = [0, 10]\n[cameras.side]\ncamera = [90, 0]\n");
         std::fs::write(folder.path("pnaen.toml"), text).expect("a writable folder");
     };
@@ -312,7 +314,10 @@ fn patterns_are_seen_from_the_folder_of_the_configuration() {
     }
     // Which assets a pattern stands for: they alone fail its gate.
     let failing = |pattern: &str| {
-        let config = format!("[[files]]\npath = \"{pattern}\"\nfail-on = [\"triangles:1\"]\n");
+        let config = format!(
+            "[[files]]\npath = \"{pattern}\"\nfail-on = [\"triangles:1\"]\n\
+             [options]\nsize = \"64x48\"\nlighting = \"camera\"\nfactor = 1\n"
+        );
         std::fs::write(folder.path("pnaen.toml"), config).expect("a writable folder");
         let (_, json, errors) = check(&folder, &["--format", "json"]);
         let report: Value = serde_json::from_str(&json).expect("JSON");

@@ -87,7 +87,7 @@ fn factors_from_a_file_give_the_same_mesh_as_lod() {
 /// Stats of a picture with the factors of a file, and standard error.
 fn drawn(folder: &Folder, factors: &str, convention: &str) -> (Value, String) {
     let picture = folder.path("out.png");
-    let size = ["--size", "160x120", "--stats", "-", "--measure-error", "false"];
+    let size = ["--size", "160x120", "--lighting", "camera", "--stats", "-", "--measure-error", "false"];
     let given = ["render", "shape:torus", "-o", &picture, "--factors", factors, "--convention", convention];
     let output = run(&[&given[..], &size].concat());
     let said = String::from_utf8(output.stderr).expect("text");

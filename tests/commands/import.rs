@@ -38,10 +38,11 @@ fn styles_of_parts_that_have_no_effect_are_said() {
     assert!(said(&["info", &parts], "surface=flat"));
     assert!(said(&["adjacency", &parts, "-o", &json], "detail=2"));
     let tessellate = ["tessellate", &parts, "-o", &out];
-    assert!(!said(&tessellate, "surface=flat,detail=2"));
+    let on_cpu = [&tessellate[..], &["--device", "cpu"]].concat();
+    assert!(!said(&on_cpu, "surface=flat,detail=2"));
     let factors = ["factors", &parts, "-o", &csv, "--lod-shader", &lod];
     assert!(said(&factors, "detail=2") && !said(&factors, "surface=flat"));
-    let given = [&tessellate[..], &["--factors", &csv]].concat();
+    let given = [&on_cpu[..], &["--factors", &csv]].concat();
     assert!(said(&given, "detail=2") && !said(&given, "surface=flat"));
     let shaded = [&tessellate[..], &["--surface-shader", &surface]].concat();
     assert!(said(&shaded, "surface=flat") && !said(&shaded, "detail=2"));
@@ -131,8 +132,8 @@ fn parts_are_listed_and_left_out() {
     );
     // Phong tessellation has its strength there too.
     let out = folder.path("out.obj");
-    let of_part =
-        |style: &str, code| failure(&["tessellate", &parts, "-o", &out, "--alpha", "0.5", "--part", style], code);
+    let phong = ["tessellate", &parts, "-o", &out, "--device", "cpu", "--factor", "2", "--alpha", "0.5", "--part"];
+    let of_part = |style: &str, code| failure(&[&phong[..], &[style]].concat(), code);
     of_part("-right:surface=phong", 0);
     assert!(of_part("-right:detail=2", 2).contains("or a --part with such a surface"));
     sentence(&["info", &parts, "--part", "bonnet:detail=2"], &["bonnet", "left door", "-right"]);
@@ -189,7 +190,7 @@ fn what_a_file_hides_is_loaded_if_asked() {
     std::fs::write(&hidden, text).expect("a writable folder");
     sentence(&["info", &hidden], &["no triangles to show", "hides the 1 nodes", "--show-hidden"]);
     assert_eq!(number(&info(&[&hidden, "--show-hidden"]), "/triangles"), 1.0);
-    output(&["render", &hidden, "--show-hidden", "--size", "64x64", "-o", &folder.path("shown.png")]);
+    output(&["render", &hidden, "--show-hidden", "--factor", "1", "--size", "64x64", "-o", &folder.path("shown.png")]);
 }
 
 #[test]
@@ -198,7 +199,7 @@ fn axis_and_unit_are_chosen_and_a_shape_has_its_own() {
     let ground = folder.write("ground.obj", GROUND);
     let out = folder.path("turned.obj");
     let positions = |options: &[&str]| {
-        output(&[&["tessellate", &ground, "-o", &out, "--factor", "1"], options].concat());
+        output(&[&["tessellate", &ground, "-o", &out, "--factor", "1", "--device", "cpu"], options].concat());
         let text = std::fs::read_to_string(&out).expect("what was written");
         let of_line = |line: &str| line.split(' ').skip(1).map(|word| word.parse::<f64>().expect("a number")).collect();
         let mut all: Vec<Vec<f64>> = text.lines().filter(|line| line.starts_with("v ")).map(of_line).collect();

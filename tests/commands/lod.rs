@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, output, read_obj, run, sentence, stats};
+use crate::{Folder, SIMPLE_LIGHT, failure, number, output, read_obj, run, sentence, stats};
 
 #[test]
 fn lod_by_edge_length_and_frustum_clipping_work_close_to_the_eye() {
@@ -24,11 +24,11 @@ fn lod_by_edge_length_and_frustum_clipping_work_close_to_the_eye() {
 #[test]
 fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
     let of = |options: &[&str]| stats(&[&["shape:torus", "--partitioning", "integer"], options].concat());
-    let paper = of(&["--lod", "paper", "--pixels", "4"]);
+    let paper = of(&["--lod", "paper", "--pixels", "4", "--measure-error", "true"]);
     let reached = number(&paper, "/max_error_px");
     assert!(reached > 0.01, "{paper}");
     let tolerance = reached.to_string();
-    let by_error = of(&["--lod", "error", "--tolerance", &tolerance]);
+    let by_error = of(&["--lod", "error", "--tolerance", &tolerance, "--measure-error", "true"]);
     assert_eq!(number(&paper, "/lod_comparison/tolerance_px") as f32, reached as f32);
     assert_eq!(number(&paper, "/lod_comparison/triangles"), number(&by_error, "/triangles_out"));
     let times = number(&paper, "/triangles_out") / number(&by_error, "/triangles_out");
@@ -38,33 +38,14 @@ fn lod_by_error_keeps_its_tolerance_with_fewer_triangles() {
     assert!(number(&by_error, "/max_error_px") <= reached, "{by_error}");
     assert!(2.0 * number(&by_error, "/triangles_out") < number(&paper, "/triangles_out"), "{by_error}");
     assert_eq!((number(&by_error, "/factors_capped"), number(&by_error, "/cracks/different_bits")), (0.0, 0.0));
-    let distance = of(&["--lod", "distance", "--factor", "9", "--distances", "2,5", "--measure-error", "false"]);
+    let distance = of(&["--lod", "distance", "--factor", "9", "--distances", "2,5"]);
     assert!(distance["lod_comparison"].is_null(), "{distance}");
     assert!(distance["max_error_px"].is_null() && number(&distance, "/triangles_out") > 256.0, "{distance}");
 }
 
 #[test]
-fn patches_that_need_very_many_triangles_get_them() {
-    let of = |partitioning: &str, tolerance: &str| {
-        let options = ["--lod", "error", "--tolerance", tolerance, "--partitioning", partitioning];
-        stats(&[&["shape:cube-smooth"], &options[..]].concat())
-    };
-    for partitioning in ["integer", "rows"] {
-        for tolerance in [0.025, 0.03, 0.04] {
-            let stats = of(partitioning, &tolerance.to_string());
-            assert!(number(&stats, "/max_error_px") <= tolerance, "{stats}");
-            assert_eq!(number(&stats, "/factors_capped"), 0.0, "{stats}");
-        }
-    }
-    // Beside what their neighbours ask for some patches have no rows that are enough, and ask again.
-    let again = stats(&["shape:torus", "--lod", "error", "--tolerance", "0.038", "--measure-error", "false"]);
-    assert_eq!(number(&again, "/factors_capped"), 0.0, "{again}");
-    assert!(number(&again, "/triangles_out") < 13_500.0, "{again}");
-}
-
-#[test]
 fn stats_have_the_numbers_that_the_lod_uses() {
-    let adaptive = ["--pixels", "20", "--tolerance", "3", "--distances", "2,5", "--measure-error", "false"];
+    let adaptive = ["--pixels", "20", "--tolerance", "3", "--distances", "2,5"];
     for (lod, used) in [
         ("uniform", [None; 4]),
         ("paper", [Some(20.0), None, None, None]),
@@ -116,14 +97,16 @@ fn a_budget_of_triangles_raises_the_tolerance_and_reports_it() {
     let all = number(&stats(&by_error), "/triangles_out");
     let by_error = [&by_error[..], &["--size", "160x120"]].concat();
     let most = (0.5 * all).to_string();
-    let result = run(&[&["render", "-o", &picture, "--stats", "-", "--max-triangles", &most], &by_error[..]].concat());
+    let drawn = [&["render", "-o", &*picture], &by_error[..], &SIMPLE_LIGHT].concat();
+    let counted = ["--stats", "-", "--measure-error", "false", "--max-triangles", &most];
+    let result = run(&[&drawn[..], &counted].concat());
     let said = String::from_utf8(result.stderr).expect("text");
     assert!(said.contains("tolerance raised from 0.1 to") && said.contains(&most), "{said}");
     let stats: Value = serde_json::from_slice(&result.stdout).expect("JSON");
     let count = number(&stats, "/triangles_out");
     assert!(count <= 0.5 * all && count > 0.2 * all, "{count} of {all}");
     // A tolerance that fits already stays, without a message.
-    let result = run(&[&["render", "-o", &picture, "--max-triangles", "9999999"], &by_error[..]].concat());
+    let result = run(&[&drawn[..], &["--max-triangles", "9999999"]].concat());
     assert!(result.status.success() && result.stderr.is_empty());
     // The option works on the CPU as well. A budget below the mesh's own triangles is an error.
     output(&[&["tessellate", "-o", &mesh, "--device", "cpu", "--max-triangles", "300"], &by_error[..]].concat());

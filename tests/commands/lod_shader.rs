@@ -31,7 +31,7 @@ fn what_is_not_symmetric_is_listed_and_drawn_as_cracks() {
     let folder = Folder::new();
     let shader = write(&folder, "start.wgsl", "4.0 + 2.0 * edge.a.y / view.radius");
     let picture = folder.path("out.png");
-    let size = ["--size", "160x120", "--stats", "-", "--measure-error", "false"];
+    let size = ["--size", "160x120", "--lighting", "camera", "--stats", "-", "--measure-error", "false"];
     let drawn = |shader: &str| {
         let (stats, said) =
             both(&[&["render", "shape:torus", "-o", &picture, "--lod-shader", shader], &size[..]].concat());

@@ -116,10 +116,26 @@ fn vase() -> &'static str {
     concat!(env!("CARGO_MANIFEST_DIR"), "/assets/vase.glb")
 }
 
+/// Light that needs no preparation.
+const SIMPLE_LIGHT: [&str; 2] = ["--lighting", "camera"];
+
+/// Options that make a picture start soon, but for those that `arguments` have: one factor, and [`SIMPLE_LIGHT`]. What LOD by error
+/// and light from all around need is compiled anew in each start, which takes the software driver over a second.
+fn simple(arguments: &[&str]) -> Vec<&'static str> {
+    let has = |names: &[&str]| names.iter().any(|name| arguments.contains(name));
+    let is_fine = has(&["--lod", "--factor", "--factors", "--lod-shader"]);
+    let lod: &[&'static str] = if is_fine { &[] } else { &["--lod", "uniform"] };
+    let light: &[&'static str] = if has(&["--lighting", "--environment"]) { &[] } else { &SIMPLE_LIGHT };
+    [lod, light].concat()
+}
+
+/// Stats of a small [`simple`] picture, with the largest error if that is asked for.
 fn stats(arguments: &[&str]) -> Value {
     let folder = Folder::new();
     let picture = folder.path("out.png");
-    let all = [&["render"], arguments, &["-o", &picture, "--size", "160x120", "--stats", "-"]].concat();
+    let error: &[&str] = if arguments.contains(&"--measure-error") { &[] } else { &["--measure-error", "false"] };
+    let usual = ["-o", &picture, "--size", "160x120", "--stats", "-"];
+    let all = [&["render"], arguments, &simple(arguments)[..], error, &usual].concat();
     serde_json::from_str(&output(&all)).expect("JSON")
 }
 

@@ -166,7 +166,7 @@ fn no_file_outside_the_models_folder_is_opened() {
     for file in [models.gltf(), models.obj(), models.fbx()] {
         let info = opened(&models.folder, &["info", &file]);
         assert_inside(&models, &info, &file, &written);
-        let render = opened(&models.folder, &["render", &file, "--size", "64x48", "-o", &picture]);
+        let render = opened(&models.folder, &["render", &file, "--factor", "1", "--size", "64x48", "-o", &picture]);
         assert_inside(&models, &render, &file, &written);
         assert!(render.iter().any(|path| path.starts_with(&written)), "{render:?}");
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Folder, number, output, run, sentence, stats, vase, write_corners};
+use crate::{Folder, SIMPLE_LIGHT, number, output, run, sentence, stats, vase, write_corners};
 
 #[test]
 fn stats_have_counts_cracks_memory_and_times() {
@@ -42,7 +42,7 @@ fn the_manual_names_every_number_of_the_stats() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/manual/measuring.md");
     let page = std::fs::read_to_string(path).expect("the page");
     let is_named = |names: [String; 2]| names.iter().any(|name| page.contains(&format!("`{name}")));
-    let stats = stats(&["shape:cube-split", "--surface", "pn"]);
+    let stats = stats(&["shape:cube-split", "--surface", "pn", "--measure-error", "true"]);
     for key in stats.as_object().expect("an object").keys() {
         assert!(is_named([format!("{key}`"), format!("{key}.")]), "measuring.md doesn't name {key}");
     }
@@ -129,6 +129,8 @@ fn a_picture_has_its_size_and_background() {
         &path,
         "--size",
         "120x90",
+        "--factor",
+        "4",
         "--background",
         "3264c8",
         "--overlay",
@@ -145,8 +147,8 @@ fn a_picture_is_compared_with_its_reference() {
     let folder = Folder::new();
     let [reference, same, other] = ["reference.png", "same.png", "other.png"].map(|name| folder.path(name));
     let render = |out: &str, more: &[&str]| {
-        let base = ["render", "shape:torus", "--size", "160x120", "-o", out];
-        run(&[&base[..], more].concat())
+        let base = ["render", "shape:torus", "--size", "160x120", "--lod", "uniform", "-o", out];
+        run(&[&base[..], &SIMPLE_LIGHT, more].concat())
     };
     assert!(render(&reference, &[]).status.success());
     assert!(render(&same, &["--reference", &reference]).status.success());
@@ -207,8 +209,8 @@ fn a_selected_triangle_is_outlined() {
     let folder = Folder::new();
     let drawn = |name: &str, options: &[&str]| {
         let path = folder.path(name);
-        let base = ["render", "shape:cube-split", "-o", &path, "--size", "320x240", "--camera", "0,0"];
-        output(&[&base[..], options].concat());
+        let base = ["render", "shape:cube-split", "-o", &path, "--size", "320x240", "--camera", "0,0", "--factor", "4"];
+        output(&[&base[..], &SIMPLE_LIGHT, options].concat());
         image::open(&path).expect("a PNG file").to_rgba8()
     };
     // Pink, lime and blue: FACTOR_COLORS of src/render/layout.rs.
@@ -234,7 +236,7 @@ fn a_section_cuts_the_picture_open_and_no_measurement() {
     let path = folder.path("cut.png");
     let draw = |options: &[&str]| {
         let usual = ["render", "shape:icosphere", "--camera", "0,0,4", "--size", "120x90", "--surface", "flat"];
-        output(&[&usual[..], &["--factor", "1", "-o", &path], options].concat());
+        output(&[&usual[..], &SIMPLE_LIGHT, &["--factor", "1", "-o", &path], options].concat());
         image::open(&path).expect("a picture").to_rgba8()
     };
     let whole = draw(&[]);

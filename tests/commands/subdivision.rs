@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Folder, both, failure, number, output, run, stats};
+use super::{Folder, SIMPLE_LIGHT, both, failure, number, output, run, stats};
 
 pub(super) const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
 pub(super) const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
@@ -10,7 +10,7 @@ pub(super) const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 
 /// The positions of the mesh that a file becomes.
 fn positions(folder: &Folder, file: &str, options: &[&str]) -> Vec<[f64; 3]> {
     let written = folder.path("refined.obj");
-    let usual = ["tessellate", file, "-o", &written, "--surface", "flat", "--factor", "1"];
+    let usual = ["tessellate", file, "-o", &written, "--surface", "flat", "--factor", "1", "--device", "cpu"];
     output(&[&usual[..], options].concat());
     let text = std::fs::read_to_string(&written).expect("an OBJ file");
     let of_line = |line: &str| {
@@ -27,7 +27,7 @@ fn a_cube_becomes_its_limit_surface_and_stays_closed() {
     std::fs::write(&file, [CUBE, QUADS].concat()).expect("a writable folder");
     let of_scheme = |scheme: &str, levels: &str| {
         let options = ["--subdivide", scheme, "--levels", levels];
-        let said = stats(&[&[&*file][..], &options].concat());
+        let said = stats(&[&[&*file, "--factor", "2"][..], &options].concat());
         (positions(&folder, &file, &options), said)
     };
     for levels in ["1", "3"] {
@@ -54,8 +54,8 @@ fn a_cage_that_cannot_be_refined_stays_and_the_reason_is_said() {
     let file = folder.path("fin.obj");
     std::fs::write(&file, [CUBE, QUADS, "v 3 0 0\nf 1 2 9\n"].concat()).expect("a writable folder");
     let picture = folder.path("fin.png");
-    let (out, errors) =
-        both(&["render", &file, "-o", &picture, "--size", "16x16", "--subdivide", "catmull-clark", "--stats", "-"]);
+    let drawn = ["render", &file, "--factor", "1", "-o", &picture, "--size", "16x16", "--subdivide", "catmull-clark"];
+    let (out, errors) = both(&[&drawn[..], &SIMPLE_LIGHT, &["--stats", "-", "--measure-error", "false"]].concat());
     assert!(out.contains("\"triangles_in\": 13"), "{out}");
     assert!(errors.contains("is shown as its control cage: 3 faces meet at the edge"), "{errors}");
     let refused = failure(&["render", &file, "-o", "a.png", "--subdivide", "loop", "--levels", "7"], 2);
@@ -131,7 +131,7 @@ fn gates_charts_and_checks_take_the_own_limit() {
     let (file, picture) = (cube(&folder), folder.path("cube.png"));
     let render = |limit: &'static str| {
         let gate = ["-o", &picture, "--size", "64x48", "--fail-on", limit];
-        run(&[&["render", &file][..], &OWN, &gate].concat()).status.code()
+        run(&[&["render", &file][..], &OWN, &SIMPLE_LIGHT, &gate].concat()).status.code()
     };
     assert_eq!((render("deviation:0.9"), render("deviation:0.8")), (Some(0), Some(1)));
     let options = ["--surfaces", "flat", "--lods", "uniform", "--factors", "1", "--samples", "2000", "--size", "64x48"];
@@ -143,7 +143,7 @@ fn gates_charts_and_checks_take_the_own_limit() {
     // A part of the diagonal of the limit, whose half is between its corners' 0.87 and the cage's 1.74.
     assert!(error > 0.866 / 3.47 && error < 0.866 / 1.73, "{error}");
     for (limit, code) in [("0.9", 0), ("0.8", 1)] {
-        let options = "surface = \"flat\"\nfactor = 1\nreference-subdivide = \"catmull-clark\"";
+        let options = "surface = \"flat\"\nfactor = 1\nlighting = \"camera\"\nreference-subdivide = \"catmull-clark\"";
         let config = folder.write("own.toml", format!("fail-on = [\"deviation:{limit}\"]\n[options]\n{options}\n"));
         let ran = run(&["check", &file, "--config", &config]);
         assert_eq!(ran.status.code(), Some(code), "{}", String::from_utf8_lossy(&ran.stdout));
@@ -172,9 +172,11 @@ fn what_is_hidden_or_flawed_leaves_the_rest_as_it_is() {
     assert!(some.len() < all.len() && some.len() > all.len() / 2, "{} of {}", some.len(), all.len());
     assert!(some.iter().all(|point| all.contains(point)), "the lid still shapes the faces beside it");
     let picture = folder.path("cube.png");
-    let (_, errors) = both(&[&["render", &file, "-o", &picture, "--size", "16x16"][..], &options].concat());
+    let small = ["--factor", "1", "-o", &picture, "--size", "16x16"];
+    let drawn = |mesh: &str| both(&[&["render", mesh][..], &small, &SIMPLE_LIGHT, &options].concat());
+    let (_, errors) = drawn(&file);
     assert!(errors.contains("have a point twice, left out: 1"), "{errors}");
-    let (_, errors) = both(&[&["render", "assets/vase.glb", "-o", &picture, "--size", "16x16"][..], &options].concat());
+    let (_, errors) = drawn("assets/vase.glb");
     assert!(errors.contains("Not all of it is refined as a subdivision surface"), "{errors}");
 }
 
@@ -208,7 +210,7 @@ fn a_butterfly_surface_goes_through_the_corners_of_its_cage_and_is_a_reference()
     let kept: BTreeSet<String> =
         points.iter().filter(|point| point.iter().all(|x| x.abs() == 1.0)).map(|point| format!("{point:?}")).collect();
     assert_eq!(kept.len(), 8);
-    let said = stats(&[&[&*file][..], &options].concat());
+    let said = stats(&[&[&*file, "--factor", "2"][..], &options].concat());
     assert_eq!(said["triangles_in"].as_u64(), Some(12 * 64), "squares are cut first");
     assert_eq!((said["edges"]["boundary"].as_u64(), said["cracks"]["edges"].as_u64()), (Some(0), Some(0)));
     let compared = |options: &[&str]| {

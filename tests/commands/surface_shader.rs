@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, both, failure, number, run, sentence};
+use crate::{Folder, SIMPLE_LIGHT, both, failure, number, run, sentence};
 
 const PN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/surface/pn.wgsl");
 const PN_AEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/surface/pn-aen.wgsl");
@@ -23,8 +23,8 @@ fn a_rule_that_tears_is_drawn_listed_and_measured_and_one_that_does_not_passes()
     let picture = folder.path("out.png");
     let drawn = |shader: &str| {
         let size = ["--size", "160x120", "--overlay", "cracks", "--stats", "-"];
-        let (stats, said) =
-            both(&[&["render", "shape:cube-split", "-o", &picture, "--surface-shader", shader], &size[..]].concat());
+        let cube = ["render", "shape:cube-split", "--factor", "8", "-o", &picture, "--surface-shader", shader];
+        let (stats, said) = both(&[&cube[..], &size, &SIMPLE_LIGHT].concat());
         (serde_json::from_str::<Value>(&stats).expect("JSON"), said)
     };
     let (stats, said) = drawn(PN);
@@ -47,6 +47,8 @@ fn a_rule_that_tears_is_drawn_listed_and_measured_and_one_that_does_not_passes()
         run(&[
             "tessellate",
             "shape:cube-split",
+            "--factor",
+            "8",
             "-o",
             &folder.path("out.obj"),
             "--surface-shader",
@@ -80,19 +82,23 @@ fn a_surface_of_ones_own_is_written_turned_and_split() {
     both(&[
         "turntable",
         "shape:torus",
+        "--factor",
+        "4",
         "-o",
         &folder.path("turn"),
         "--frames",
         "2",
         "--size",
         "64x48",
+        "--lighting",
+        "camera",
         "--surface-shader",
         PN,
     ]);
     let picture = folder.path("split.png");
     let split = ["--split", "0.5", "--split-left", "pn-aen", "--size", "160x120", "--stats", "-"];
-    let (stats, _) =
-        both(&[&["render", "shape:cube-split", "-o", &picture, "--surface-shader", PN], &split[..]].concat());
+    let cube = ["render", "shape:cube-split", "-o", &picture, "--surface-shader", PN];
+    let (stats, _) = both(&[&cube[..], &split, &SIMPLE_LIGHT].concat());
     let stats: Value = serde_json::from_str(&stats).expect("JSON");
     assert_eq!(
         (number(&stats, "/cracks/edges"), number(&stats, "/left/cracks/edges")),
@@ -108,7 +114,18 @@ fn control_points_that_are_no_numbers_are_a_warning() {
     let nan = "edge.a + vec3<f32>(select(0.0, sqrt(-dot(edge.normal_a, edge.normal_a)), triangle.index == 5u))";
     let shader = write(&folder, "nan.wgsl", nan, "edge.b");
     let picture = folder.path("out.png");
-    let (_, said) = both(&["render", "shape:torus", "-o", &picture, "--size", "64x48", "--surface-shader", &shader]);
+    let (_, said) = both(&[
+        "render",
+        "shape:torus",
+        "--factor",
+        "4",
+        "-o",
+        &picture,
+        "--size",
+        "64x48",
+        "--surface-shader",
+        &shader,
+    ]);
     assert!(
         said.contains("warning: ") && said.contains("3 sides got control points of the surface shader that are"),
         "{said}"

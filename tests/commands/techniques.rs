@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, output, sentence, stats};
+use crate::{Folder, SIMPLE_LIGHT, failure, number, output, sentence, stats};
 
 /// A height image with a slope, a step and a single bright px, written into a folder.
 fn height_image(folder: &Folder) -> String {
@@ -56,7 +56,10 @@ fn a_displaced_mesh_stays_in_the_picture() {
     let (white, out) = (folder.path("white.png"), folder.path("out.png"));
     image::GrayImage::from_pixel(2, 2, image::Luma([255])).save(&white).expect("a folder of our own");
     let lift = ["--displacement", "on", "--height", &white, "--height-scale", "1", "--midlevel", "0"];
-    output(&[&["render", "shape:icosphere", "-o", &out, "--size", "64x64"][..], &lift].concat());
+    output(
+        &[&["render", "shape:icosphere", "--factor", "4", "-o", &out, "--size", "64x64"][..], &SIMPLE_LIGHT, &lift]
+            .concat(),
+    );
     let picture = image::open(&out).expect("a picture").to_rgba8();
     let background = picture[(0, 0)];
     let border = (0..64).flat_map(|i| [(i, 0), (i, 63), (0, i), (63, i)]);

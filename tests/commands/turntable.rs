@@ -7,7 +7,8 @@ use image::{AnimationDecoder, RgbaImage};
 
 use crate::{Folder, failure, output, sentence};
 
-const SIZE: [&str; 2] = ["--size", "96x72"];
+/// The size, and light that needs no preparation.
+const SIZE: [&str; 4] = ["--size", "96x72", "--lighting", "camera"];
 
 fn names(folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("a folder");
@@ -30,31 +31,37 @@ fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
 #[test]
 fn numbered_pictures_are_those_of_render_from_all_around() {
     let folder = Folder::new();
-    let (turn, single) = (folder.path("turn"), folder.path("single.png"));
-    let options = ["shape:cube-split", "--lod", "error", "--tolerance", "2", "--clip", "frustum"];
+    let [turn, cameras] = ["turn", "cameras.txt"].map(|name| folder.path(name));
+    let options = ["shape:cube-split", "--lod", "edge-length", "--pixels", "6", "--clip", "frustum"];
     output(&[&["turntable", "--frames", "4", "--camera", "10,20", "-o", &turn], &options[..], &SIZE].concat());
     let expected = ["frame-0000.png", "frame-0001.png", "frame-0002.png", "frame-0003.png"];
     assert_eq!(names(&turn), expected);
-    for (azimuth, name) in ["10,20", "100,20", "190,20", "280,20"].into_iter().zip(expected) {
-        output(&[&["render", "-o", &single, "--camera", azimuth], &options[..], &SIZE].concat());
+    let azimuths = ["10", "100", "190", "280"];
+    let lines = azimuths.map(|azimuth| format!("at-{azimuth} --camera {azimuth},20\n"));
+    std::fs::write(&cameras, lines.concat()).expect("a writable folder");
+    let singles = folder.path("{}.png");
+    output(&[&["render", "-o", &singles, "--cameras", &cameras], &options[..], &SIZE].concat());
+    for (azimuth, name) in azimuths.into_iter().zip(expected) {
         let own = picture(&Path::new(&turn).join(name));
+        let single = singles.replace("{}", &format!("at-{azimuth}"));
         assert!(own == picture(Path::new(&single)), "{name} isn't the picture of {azimuth}");
     }
     let [first, opposite] = [0, 2].map(|frame: usize| picture(&Path::new(&turn).join(expected[frame])));
     assert!(first != opposite);
     // Other files of a folder stay.
     std::fs::write(Path::new(&turn).join("notes.txt"), "mine").expect("a writable folder");
-    output(&[&["turntable", "shape:torus", "--frames", "2", "-o", &turn], &SIZE[..]].concat());
+    output(&[&["turntable", "shape:torus", "--factor", "3", "--frames", "2", "-o", &turn], &SIZE[..]].concat());
     assert_eq!(names(&turn), [&expected[..], &["notes.txt"]].concat());
     assert!(picture(&Path::new(&turn).join(expected[0])) != first);
-    assert_eq!(names(&folder.path("")), ["single.png", "turn"], "nothing half written stays");
+    let all = ["at-10.png", "at-100.png", "at-190.png", "at-280.png", "cameras.txt", "turn"];
+    assert_eq!(names(&folder.path("")), all, "nothing half written stays");
 }
 
 #[test]
 fn a_gif_has_the_pictures_and_repeats() {
     let folder = Folder::new();
     let (gif, turn) = (folder.path("turn.gif"), folder.path("turn"));
-    let options = ["shape:cube-split", "--frames", "3"];
+    let options = ["shape:cube-split", "--factor", "4", "--frames", "3"];
     for place in [&gif, &turn] {
         output(&[&["turntable", "--fps", "10", "-o", place, "--transparent"], &options[..], &SIZE].concat());
     }
@@ -105,6 +112,7 @@ fn what_cannot_be_written_is_said_and_leaves_nothing() {
     let missing = folder.path("no.csv");
     sentence(&["turntable", "shape:torus", "-o", &folder.path("turn"), "--factors", &missing], &["no.csv"]);
     let taken = folder.write("taken", "a file");
-    sentence(&["turntable", "shape:torus", "--frames", "2", "-o", &taken, "--size", "8x8"], &["taken", "written"]);
+    let small = ["turntable", "shape:torus", "--factor", "1", "--frames", "2", "-o", &taken, "--size", "8x8"];
+    sentence(&small, &["taken", "written"]);
     assert_eq!(names(&folder.path("")), ["taken"]);
 }

@@ -40,7 +40,7 @@ fn failures_are_one_line_and_exit_code_1() {
 fn a_picture_too_large_for_the_device_is_an_error_of_one_line() {
     let folder = Folder::new();
     let path = folder.path("out.png");
-    let output = run(&["render", "shape:torus", "-o", &path, "--size", "16384x16384"]);
+    let output = run(&["render", "shape:torus", "--factor", "1", "-o", &path, "--size", "16384x16384"]);
     let errors = String::from_utf8_lossy(&output.stderr).into_owned();
     // A device with enough memory may draw it.
     assert!(output.status.success() || output.status.code() == Some(1), "{errors}");
@@ -109,21 +109,7 @@ fn adapter_and_the_cpu_exclude_each_other() {
 }
 
 #[test]
-fn without_a_display_the_program_writes_a_picture() {
-    let folder = Folder::new();
-    let output = command(&[]).current_dir(&folder.0).output().expect("the program starts");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let said = String::from_utf8_lossy(&output.stdout).into_owned();
-    assert!(said.contains("no display") && said.contains("pnaen-preview.png"), "{said}");
-    assert_eq!(said.lines().count(), 1);
-    let picture = image::open(folder.path("pnaen-preview.png")).expect("a PNG file");
-    assert_eq!((picture.width(), picture.height()), (1280, 720));
-    let missing = command(&["nowhere.glb"]).current_dir(&folder.0).output().expect("the program starts");
-    assert_eq!(missing.status.code(), Some(1));
-}
-
-#[test]
-fn commands_never_read_the_settings_of_the_window() {
+fn without_a_display_the_program_writes_a_picture_without_the_settings_of_the_window() {
     let folder = Folder::new();
     std::fs::write(folder.path("window.json"), r#"{"settings": {"surface": "flat", "background": [255, 0, 0]}}"#)
         .expect("a writable folder");
@@ -131,20 +117,28 @@ fn commands_never_read_the_settings_of_the_window() {
         let mut preview = command(&[]);
         let output = preview.env("PNAEN_CONFIG", kept).current_dir(&folder.0).output().expect("the program starts");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(said.contains("no display") && said.contains("pnaen-preview.png"), "{said}");
+        assert_eq!(said.lines().count(), 1);
         std::fs::read(folder.path("pnaen-preview.png")).expect("a picture")
     });
     assert!(pictures[0] == pictures[1], "the same picture with settings and without");
+    let picture = image::load_from_memory(&pictures[0]).expect("a PNG file");
+    assert_eq!((picture.width(), picture.height()), (1280, 720));
     std::fs::write(folder.path("window.json"), "damaged").expect("a writable folder");
     let mut info = command(&["info", "shape:torus"]);
     assert!(info.env("PNAEN_CONFIG", folder.path("")).output().expect("the program starts").status.success());
     assert_eq!(std::fs::read(folder.path("window.json")).expect("it is still there"), b"damaged");
+    let missing = command(&["nowhere.glb"]).current_dir(&folder.0).output().expect("the program starts");
+    assert_eq!(missing.status.code(), Some(1));
 }
 
 #[test]
 fn two_overlays_that_colour_the_surface_are_wrong_usage() {
     let folder = Folder::new();
     let picture = folder.path("out.png");
-    let overlays = |list| ["render", "shape:torus", "-o", &picture, "--size", "60x40", "--overlay", list];
+    let overlays =
+        |list| ["render", "shape:torus", "--factor", "2", "-o", &picture, "--size", "60x40", "--overlay", list];
     for list in [
         "barycentric,factors",
         "triangle-size,wireframe,low-factors",

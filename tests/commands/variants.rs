@@ -13,7 +13,7 @@ fn a_variant_is_listed_chosen_and_exported_and_another_name_is_refused() {
     assert_eq!(json["variants"], serde_json::json!(["Night"]));
     for (variant, material) in [(&[][..], "red"), (&["--variant", "Night"], "blue")] {
         let out = folder.path(&format!("{material}.glb"));
-        output(&[&["tessellate", &lamp, "-o", &out], variant].concat());
+        output(&[&["tessellate", &lamp, "-o", &out, "--device", "cpu", "--factor", "1"], variant].concat());
         let json: Value = serde_json::from_str(&output(&["info", &out, "--json"])).expect("JSON");
         assert_eq!(json["materials"][0]["name"], material);
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::{Folder, failure, number, output, run, sentence};
+use crate::{Folder, SIMPLE_LIGHT, failure, number, output, run, sentence};
 
 fn json(path: &str) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).expect("a file")).expect("JSON")
@@ -23,7 +23,8 @@ fn matrix(stats: &Value) -> String {
 fn many_views_are_drawn_by_one_command_and_a_matrix_from_stats_draws_one_again() {
     let folder = Folder::new();
     let [views, stats, again] = ["views", "stats.json", "again.png"].map(|name| folder.path(name));
-    let base = ["render", "shape:torus", "--size", "80x60", "--lod", "paper", "--measure-error", "false"];
+    let torus = ["render", "shape:torus", "--size", "80x60", "--lod", "paper", "--measure-error", "false"];
+    let base = [&torus[..], &SIMPLE_LIGHT].concat();
     let around = |more: &[&str]| run(&[&base[..], &["--cameras", "3"], more].concat());
     let drawn = around(&["-o", &views, "--stats", &stats]);
     assert!(drawn.status.success(), "{}", String::from_utf8_lossy(&drawn.stderr));
@@ -54,14 +55,15 @@ fn many_views_are_drawn_by_one_command_and_a_matrix_from_stats_draws_one_again()
 fn views_of_a_file_have_its_names_and_other_files_are_refused() {
     let folder = Folder::new();
     let [cameras, out] = ["cameras.txt", "out-{}.png"].map(|name| folder.path(name));
-    let base = ["render", "shape:cone", "--size", "60x40", "--cameras", &cameras];
+    let cone = [&["render", "shape:cone", "--size", "60x40", "--factor", "3"][..], &SIMPLE_LIGHT].concat();
+    let base = [&cone[..], &["--cameras", &cameras]].concat();
     std::fs::write(&cameras, "# two\nfront --camera 0,0\n'from above' --camera 0,80,3 --orthographic\n")
         .expect("a file");
     output(&[&base[..], &["-o", &out]].concat());
     let [front, above] = ["out-front.png", "out-from above.png"].map(|name| picture(&folder.path(name)));
     assert_ne!(front, above);
     let single = folder.path("single.png");
-    output(&["render", "shape:cone", "--size", "60x40", "--camera", "0,80,3", "--orthographic", "-o", &single]);
+    output(&[&cone[..], &["--camera", "0,80,3", "--orthographic", "-o", &single]].concat());
     assert_eq!(picture(&single), above);
     std::fs::write(&cameras, "front --camera 0,0\nback --zoom 2\n").expect("a file");
     sentence(&[&base[..], &["-o", &out]].concat(), &["cameras.txt", "line 2", "--zoom"]);
@@ -114,7 +116,8 @@ fn meshes_and_factors_of_many_views_are_those_of_each_view_alone() {
 fn gates_judge_the_mesh_of_each_view_and_one_file_is_too_few() {
     let folder = Folder::new();
     let evidence = folder.path("evidence");
-    let base = ["tessellate", "shape:cube-split", "--surface", "pn", "--size", "80x60", "--cameras", "2"];
+    let cube = ["tessellate", "shape:cube-split", "--surface", "pn", "--factor", "8"];
+    let base = [&cube[..], &["--size", "80x60", "--cameras", "2"]].concat();
     let gates = ["--fail-on", "cracks,leaks", "--evidence", &evidence, "-o", &folder.path("m-{}.glb")];
     let said = failure(&[&base[..], &gates].concat(), 1);
     for line in
@@ -153,13 +156,15 @@ fn what_is_no_file_of_cameras_is_refused_in_a_sentence() {
         std::fs::write(&cameras, text).expect("a writable folder");
         let named = if text == matrix { "engine" } else { "cameras \u{e4}.txt" };
         for command in ["render", "factors"] {
-            sentence(&[command, "shape:torus", "-o", &out, "--cameras", &cameras], &[words, &[named]].concat());
+            let torus = [command, "shape:torus", "--factor", "1", "-o", &out, "--cameras", &cameras];
+            sentence(&torus, &[words, &[named]].concat());
         }
     }
     std::fs::write(&cameras, [0xff, 0xfe]).expect("a writable folder");
-    sentence(&["render", "shape:torus", "-o", &out, "--cameras", &cameras], &["isn't text in UTF-8"]);
+    let torus = ["render", "shape:torus", "--factor", "1", "-o", &out, "--cameras"];
+    sentence(&[&torus[..], &[&cameras]].concat(), &["isn't text in UTF-8"]);
     std::fs::write(&out, "").expect("a writable folder");
-    sentence(&["render", "shape:torus", "-o", &out, "--cameras", "2"], &["out", "there is a file of this name"]);
+    sentence(&[&torus[..], &["2"]].concat(), &["out", "there is a file of this name"]);
     assert_eq!(std::fs::read(&out).expect("a file"), b"", "it is left alone");
 }
 

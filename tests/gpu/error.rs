@@ -311,6 +311,32 @@ fn one_triangle_is_searched_anew_for_every_view() {
     }
 }
 
+/// How far from the surface a shape under this LOD by error is, and whether it requests more segments than there are. It is seen whole
+/// in a small picture.
+fn reached(shape: Shape, partitioning: Partitioning, tolerance: f32) -> (f64, bool, Tessellated) {
+    let (loaded, mut scene) = scene(shape);
+    let viewport = glam::vec2(160.0, 120.0);
+    let settings = by_error(Settings::from(Tessellation { partitioning, ..Tessellation::default() }), tolerance);
+    let inputs = settings.inputs(Camera::framing(&scene.bounds, viewport).lod_view(viewport, &scene.bounds));
+    engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+    let out = engine().read_tessellated(&mut scene).expect("a readback");
+    let capped = engine().factors_capped(&scene, &inputs.tessellation).expect("a readback");
+    (deviation_px(&loaded.mesh, &loaded.topology, &inputs, &out), capped > 0, out)
+}
+
+#[test]
+fn patches_that_need_very_many_triangles_get_them() {
+    for partitioning in [Partitioning::Integer, Partitioning::Rows] {
+        for tolerance in [0.025, 0.03, 0.04] {
+            let (px, is_capped, _) = reached(Shape::CubeSmooth, partitioning, tolerance as f32);
+            assert!(px <= tolerance && !is_capped, "{partitioning:?}: {px} of {tolerance} px");
+        }
+    }
+    // Beside what their neighbours ask for some patches have no rows that are enough, and ask again.
+    let (_, is_capped, out) = reached(Shape::Torus, Partitioning::Rows, 0.038);
+    assert!(!is_capped && out.triangles.len() < 13_500, "{}", out.triangles.len());
+}
+
 /// Some drivers end the loops of an invocation after so many turns, which no workgroup may need.
 #[test]
 fn a_mesh_of_many_patches_is_searched_to_its_end() {

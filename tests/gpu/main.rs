@@ -19,6 +19,7 @@ mod exported;
 mod exported_displaced;
 mod exported_levels;
 mod layers;
+mod legends;
 mod light;
 mod limits;
 mod lines;

@@ -1,9 +1,11 @@
 //! Exported shaders on the driver's own tessellation stages. A geometry shader, which is ours, writes down what comes out of the
 //! domain shader.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 use std::rc::Rc;
+use std::sync::Mutex;
 
 use ash::vk;
 use bytemuck::{Pod, Zeroable};
@@ -160,11 +162,21 @@ pub(crate) struct Stage {
     pub code: Vec<u8>,
 }
 
-/// Compiles one text. `options` say its language, stage and entry point.
+/// What was compiled, by the file's name, the options, and the text without its comments: many exports differ in few of their files.
+static COMPILED: Mutex<BTreeMap<[String; 3], Vec<u8>>> = Mutex::new(BTreeMap::new());
+
+/// Compiles one text, once. `options` say its language, stage and entry point.
 ///
 /// # Errors
 /// It doesn't compile, or the compiler can't be run.
 pub(crate) fn compiled(folder: &Path, file: &'static str, text: &str, options: &[&str]) -> Result<Vec<u8>, StageError> {
+    // A comment that ends with a backslash would go on in the next line.
+    let lines = text.lines().filter(|line| !line.starts_with("//") || line.ends_with('\\'));
+    let key = [file.to_owned(), options.join(" "), lines.collect::<Vec<_>>().join("\n")];
+    let known = COMPILED.lock().expect("nobody panics with it").get(&key).cloned();
+    if let Some(known) = known {
+        return Ok(known);
+    }
     let (source, out) = (folder.join(file), folder.join("out.spv"));
     std::fs::write(&source, text)?;
     let made = Command::new("glslangValidator").arg("-V").args(options).arg(&source).arg("-o").arg(&out).output();
@@ -172,7 +184,9 @@ pub(crate) fn compiled(folder: &Path, file: &'static str, text: &str, options: &
     if !made.status.success() {
         return Err(StageError::Compiler { file, messages: String::from_utf8_lossy(&made.stdout).into_owned() });
     }
-    Ok(std::fs::read(out)?)
+    let code = std::fs::read(out)?;
+    COMPILED.lock().expect("nobody panics with it").insert(key, code.clone());
+    Ok(code)
 }
 
 /// The text with a patch constant function that computes the sides itself. It gets them of the control points' function, which glslang 12

@@ -11,7 +11,8 @@ use crate::{Folder, failure, number, output};
 fn evidence_shows_the_worst_places() {
     let folder = Folder::new();
     let [picture, evidence] = ["cube.png", "evidence"].map(|name| folder.path(name));
-    let base = ["render", "shape:cube-split", "--surface", "pn", "-o", &picture, "--evidence", &evidence];
+    let cube = ["render", "shape:cube-split", "--surface", "pn", "--factor", "8"];
+    let base = [&cube[..], &["-o", &picture, "--evidence", &evidence]].concat();
     output(&[&base[..], &VIEW, &["--fail-on", "folds"]].concat());
     assert!(!Path::new(&evidence).exists(), "nothing failed");
     failure(&[&base[..], &VIEW, &["--fail-on", "cracks,leaks,folds,triangles:1"]].concat(), 1);
@@ -28,11 +29,7 @@ fn evidence_shows_the_worst_places() {
     }
     let written = std::fs::read(folder.path("cube.png")).expect("a file");
     let blocked = ["--fail-on", "cracks", "--evidence", &folder.path("cube.png")];
-    let said = failure(
-        &[&["render", "shape:cube-split", "--surface", "pn", "-o", &folder.path("b.png")], &VIEW[..], &blocked]
-            .concat(),
-        1,
-    );
+    let said = failure(&[&cube[..], &["-o", &folder.path("b.png")], &VIEW, &blocked].concat(), 1);
     assert!(said.contains("cube.png") && said.contains("could not be made"), "{said}");
     assert_eq!(std::fs::read(folder.path("cube.png")).expect("a file"), written);
 }
@@ -72,8 +69,8 @@ fn evidence_is_seen_from_where_nothing_hides_it() {
         let mesh = write_torn_at_the_back(&folder, shell);
         for view in views {
             let [picture, evidence, stats] = ["it.png", "evidence", "stats.json"].map(|name| folder.path(name));
-            let base =
-                ["render", &mesh, "--surface", "pn", "-o", &picture, "--stats", &stats, "--measure-error", "false"];
+            let base = ["render", &mesh, "--surface", "pn", "--factor", "8", "-o", &picture, "--stats", &stats];
+            let base = [&base[..], &["--measure-error", "false"]].concat();
             let gates = ["--fail-on", "leaks,cracks", "--evidence", &evidence];
             let said = failure(&[&base[..], &VIEW, &gates, view].concat(), 1);
             assert_eq!(red(Path::new(&picture)), 0);
@@ -117,7 +114,8 @@ fn evidence_of_an_engines_frame_comes_closer_too_and_px_are_those_of_its_picture
     let folder = Folder::new();
     let mesh = write_torn_at_the_back(&folder, false);
     let [picture, evidence, stats] = ["it.png", "evidence", "stats.json"].map(|name| folder.path(name));
-    let base = ["render", &mesh, "--surface", "pn", "-o", &picture, "--stats", &stats, "--measure-error", "false"];
+    let base = ["render", &mesh, "--surface", "pn", "--factor", "8", "-o", &picture, "--stats", &stats];
+    let base = [&base[..], &["--measure-error", "false"]].concat();
     // From behind, where the leak isn't hidden.
     let judged = |camera: &[&str]| {
         let gates = ["--fail-on", "leaks", "--evidence", &evidence];
