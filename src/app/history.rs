@@ -24,7 +24,7 @@ pub(super) struct Undoable {
     pub settings: Settings,
     /// How the mesh is prepared, but for the import, which is in the settings.
     pub preparation: Preparation,
-    pub companions: [Option<Source>; CompanionFile::ALL.len()],
+    pub companions: [Option<Source>; CompanionFile::BY_SOURCE.len()],
     /// Whether the mesh is compared with the limit of its own cage.
     pub own_limit: bool,
     /// What is left of the split in place of the mesh.
@@ -118,7 +118,7 @@ impl App {
         Undoable {
             settings: self.settings_without_files(),
             preparation: Preparation { import: Import::default(), ..prepared.unwrap_or_default() },
-            companions: CompanionFile::ALL.map(|companion| self.companion(companion)),
+            companions: CompanionFile::BY_SOURCE.map(|companion| self.companion(companion)),
             own_limit: self.has_own_limit(),
             left: self.left_mesh.as_ref().map(|left| left.from.clone()),
             left_pose: self.viewport.playback.left,
@@ -140,8 +140,8 @@ impl App {
             step.preparation = preparation.clone();
             step.settings.tessellation.displacement = settings.tessellation.displacement;
             step.own_limit = false;
-            for companion in [CompanionFile::ReferenceShape, CompanionFile::Factors] {
-                step.companions[companion as usize] = None;
+            for (companion, source) in CompanionFile::BY_SOURCE.iter().zip(&mut step.companions) {
+                source.take_if(|_| matches!(companion, CompanionFile::ReferenceShape | CompanionFile::Factors));
             }
             (step.left, step.left_pose, step.is_swapped) = (None, LeftPose::Same, false);
         });
@@ -190,7 +190,7 @@ impl App {
         if self.has_own_limit() != own_limit {
             self.close_companion(ReferenceShape);
         }
-        for (companion, source) in CompanionFile::ALL.into_iter().zip(companions) {
+        for (companion, source) in CompanionFile::BY_SOURCE.into_iter().zip(companions) {
             if self.companion(companion) != source {
                 self.close_companion(companion);
                 source.into_iter().for_each(|source| self.open_companion(context, companion, source));
@@ -198,7 +198,7 @@ impl App {
         }
         if self.left_mesh.as_ref().map(|own| &own.from) != left.as_ref() {
             match left {
-                Some(LeftChoice::Before) => self.compare_with_before(),
+                Some(LeftChoice::Kept(kept)) => self.put_left(kept),
                 Some(LeftChoice::Read(from, morphs)) => self.read_left(context, from, morphs),
                 None => self.close_companion(LeftMesh),
             }

@@ -26,7 +26,7 @@ texts! {
         NoWriting => "Another file is being written.",
         /// A reference surface that was chosen for the mesh.
         ReferenceShape => "No reference surface was chosen.",
-        /// Another mesh left of the split.
+        /// Another mesh left of the split, or the same one as it was or with weights of its own.
         LeftMesh => "Both halves show the same mesh.",
         /// The mesh before its file changed.
         Before => "The file has not changed since it was opened.",

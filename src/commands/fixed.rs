@@ -74,7 +74,7 @@ fn file() -> Vec<Command> {
             "Goes back to the exact surface of a shape, or to the limit surface of the tessellation.";
         "Mesh left of the split…" needs Document => beside(CompanionFile::LeftMesh), LEFT_MESH;
         "The same mesh left of the split" needs LeftMesh => FileAction::Close(CompanionFile::LeftMesh),
-            "Shows the mesh that is open in both halves.";
+            "Shows the mesh that is open in both halves, with the same weights.";
         "Compare with before the change" needs Before => FileAction::CompareWithBefore,
             "Shows the mesh as it was before its file changed left of the split, tessellated as the new one is.";
         "Factors of a file…" in File 2 needs Document => beside(CompanionFile::Factors),
@@ -95,11 +95,8 @@ fn file() -> Vec<Command> {
     };
     commands.extend(Shape::ALL.map(|shape| {
         let text = format!("Opens the shape {}, made in code.", shape.name());
-        let name = format!("Shape: {}", shape.title());
-        Command {
-            place: Some(Place::Submenu(Submenu::Shapes)),
-            ..Command::new(FileAction::OpenSource(Source::Shape(shape)), name, text)
-        }
+        let (open, name) = (FileAction::OpenSource(Source::Shape(shape)), format!("Shape: {}", shape.title()));
+        Command::below(Submenu::Shapes, open, name, text)
     }));
     commands.extend(writing());
     commands

@@ -6,8 +6,8 @@ use egui::{Key, KeyboardShortcut};
 
 use super::fixed::declared;
 use super::{
-    Action, Availability, CameraAction, Change, Command, FileAction, MOST_BOOKMARKS, Need, Place, Preparing, Submenu,
-    alt, plain, shift,
+    Action, Availability, CameraAction, Change, Command, FileAction, MOST_BOOKMARKS, Need, Preparing, Submenu, alt,
+    plain, shift,
 };
 use geometry::mesh::weld_preview::TOLERANCES;
 use geometry::names::shortened;
@@ -70,7 +70,7 @@ fn left_surfaces() -> Vec<Command> {
     let both = declared! {
         "Swap left and right" needs Split => Change::SwapHalves,
             "Exchanges the tessellations left and right of the split, and looks and poses that differ.";
-        "Keep this on the left" [shift(Key::J)] needs Document Surface => Action::KeepOnLeft,
+        "Keep the right half on the left" [shift(Key::J)] needs Document Surface => Action::KeepOnLeft,
             "Makes the left half of the split view a copy of the right one, with its mesh, settings and moment of a clip, to \
              compare what you change then.";
         "Blink left and right" [plain(Key::J)] needs Split => Change::BlinkHalves,
@@ -172,8 +172,7 @@ fn recent(now: &Availability) -> Vec<Command> {
     let open = |path: &PathBuf| {
         let name = format!("Recent: {}", path.file_name().unwrap_or_default().to_string_lossy());
         let text = format!("Opens {}.", path.display());
-        let place = Some(Place::Submenu(Submenu::OpenRecent));
-        Command { place, ..Command::new(FileAction::OpenSource(Source::File(path.clone())), name, text) }
+        Command::below(Submenu::OpenRecent, FileAction::OpenSource(Source::File(path.clone())), name, text)
     };
     now.recent.iter().map(open).collect()
 }
@@ -182,10 +181,7 @@ fn file_cameras(now: &Availability) -> Vec<Command> {
     let go = |(index, name): (usize, &String)| {
         let text = "Looks through this camera of the file: with its place, direction and height of view.";
         let name = format!("Camera: {}", shortened(name, 40));
-        Command {
-            place: Some(Place::Submenu(Submenu::FileCameras)),
-            ..Command::new(CameraAction::OfFile(index), name, text)
-        }
+        Command::below(Submenu::FileCameras, CameraAction::OfFile(index), name, text)
     };
     now.file_cameras.iter().enumerate().map(go).collect()
 }
@@ -195,9 +191,11 @@ const BOOKMARK_KEYS: [Key; MOST_BOOKMARKS] =
 
 fn bookmarks(now: &Availability) -> Vec<Command> {
     let go = |(index, key): (usize, Key)| {
-        let text = format!("Goes to the view of bookmark {}.", index + 1);
-        let (keys, place) = (vec![alt(key)], Some(Place::Submenu(Submenu::Bookmarks)));
-        Command { keys, place, ..Command::new(CameraAction::Bookmark(index), format!("Bookmark {}", index + 1), text) }
+        let (name, text) = (format!("Bookmark {}", index + 1), format!("Goes to the view of bookmark {}.", index + 1));
+        Command {
+            keys: vec![alt(key)],
+            ..Command::below(Submenu::Bookmarks, CameraAction::Bookmark(index), name, text)
+        }
     };
     BOOKMARK_KEYS.into_iter().enumerate().take(now.bookmarks).map(go).collect()
 }

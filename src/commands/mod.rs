@@ -112,10 +112,10 @@ pub enum FileAction {
 /// What can be open beside the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CompanionFile {
-    /// The reference surface.
-    ReferenceShape,
     /// The mesh left of the split.
     LeftMesh,
+    /// The reference surface.
+    ReferenceShape,
     Factors,
     LodShader,
     SurfaceShader,
@@ -125,8 +125,12 @@ pub enum CompanionFile {
 }
 
 impl CompanionFile {
-    pub const ALL: [Self; 7] =
-        every![CompanionFile: ReferenceShape, LeftMesh, Factors, LodShader, SurfaceShader, Matcap, Environment];
+    /// Those that their source says all about. What is left of the split is more.
+    pub const BY_SOURCE: [Self; 6] = {
+        let [_, others @ ..] =
+            every![CompanionFile: LeftMesh, ReferenceShape, Factors, LodShader, SurfaceShader, Matcap, Environment];
+        others
+    };
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -243,6 +247,10 @@ impl Command {
         Self { action, name, text, keys: Vec::new(), place: None, needs: &[] }
     }
 
+    fn below(submenu: Submenu, action: impl Into<Action>, name: String, text: impl Into<Cow<'static, str>>) -> Self {
+        Self { place: Some(Place::Submenu(submenu)), ..Self::new(action, name, text) }
+    }
+
     /// Why it is not possible now, in a sentence; none if it is.
     pub fn why_not(&self, now: &Availability) -> Option<&'static str> {
         now.why_not(self.needs)
@@ -255,22 +263,16 @@ impl Command {
 
     /// Whether its keys work even while text is being typed or a window asks for something.
     pub fn works_while_typing(&self) -> bool {
+        use Action::{Cancel, File, LargerText, SearchCommands, SmallerText, UsualText};
         use FileAction::{Ask, OpenPath, Quit};
-        match &self.action {
-            Action::File(action) => matches!(action, Ask(Purpose::Open) | OpenPath | Quit),
-            Action::Cancel | Action::SearchCommands => true,
-            Action::LargerText | Action::SmallerText | Action::UsualText => true,
-            _ => false,
-        }
+        let is_of_text = matches!(self.action, LargerText | SmallerText | UsualText);
+        is_of_text || matches!(self.action, File(Ask(Purpose::Open) | OpenPath | Quit) | Cancel | SearchCommands)
     }
 
     /// Whether its keys are left to a control that has the focus, which they move or press.
     pub fn yields_to_focus(&self) -> bool {
         use CameraAction::{Orbit, Pan, ZoomIn, ZoomOut};
-        match &self.action {
-            Action::Camera(action) => matches!(action, Orbit(_) | Pan(_) | ZoomIn | ZoomOut),
-            action => *action == Action::PlayOrPause,
-        }
+        matches!(self.action, Action::Camera(Orbit(_) | Pan(_) | ZoomIn | ZoomOut) | Action::PlayOrPause)
     }
 }
 

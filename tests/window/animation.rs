@@ -354,8 +354,9 @@ fn the_joint_under_the_resting_pointer_is_named() {
     harness.get_by_label("Joint node 1");
     rest_at(&mut harness, tip + egui::vec2(40.0, 0.0));
     assert!(harness.query_by_label_contains("Joint ").is_none(), "there is none");
-    // A joint comes before the number of the colours.
+    // The number of the colours is below it.
     choose(&mut harness, "Colours", "Factors");
     rest_at(&mut harness, tip);
-    harness.get_by_label("Joint Tip");
+    let [joint, number] = ["Joint Tip", "Factors 8.00, 8.00, 8.00"].map(|line| harness.get_by_label(line).rect());
+    assert!(joint.bottom() <= number.top(), "{joint} {number}");
 }

@@ -2,13 +2,13 @@
 
 use egui::accesskit::Role;
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::Shape;
 use geometry::tessellate::{Convention, Lod};
 use load::Source;
 use pnaen::app::App;
 
-use crate::editing::{assert_draws, copied};
+use crate::editing::{assert_draws, copied, press_with};
 use crate::{choose, click, press, run_command, settle, uniform};
 
 fn open(harness: &mut Harness<App>, path: &std::path::Path) {
@@ -68,6 +68,30 @@ fn a_triangle_that_a_file_leaves_out_is_cracked_all_around() {
     settle(&mut harness);
     assert!(harness.state().selected_edge().is_some());
     harness.get_by_label_contains("triangle 7");
+}
+
+#[test]
+fn the_lod_that_comes_back_is_copied_to_the_left_and_swapped() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let path = folder.path().join("sevens.csv");
+    run_command(["factors", "shape:icosahedron", "--factor", "7"], &path);
+    let mut harness = uniform(Some(Source::Shape(Shape::Icosahedron)));
+    choose(&mut harness, "LOD", "Edge length");
+    open(&mut harness, &path);
+    let lods = |harness: &Harness<App>| {
+        let settings = harness.state().settings();
+        [settings.left, settings.tessellation].map(|own| own.lod)
+    };
+    assert_eq!(lods(&harness)[1], Lod::Uniform, "the file's factors take its place");
+    press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::J);
+    assert_eq!(lods(&harness), [Lod::EdgeLength, Lod::Uniform]);
+    let button = harness.get_by_role_and_label(Role::Button, "Keep the right half on the left");
+    assert!(!button.accesskit_node().is_disabled(), "it does what the key does");
+    click(&mut harness, "Swap");
+    assert_eq!(lods(&harness), [Lod::EdgeLength, Lod::Uniform]);
+    harness.get_by_role_and_label(Role::Button, "Close the file").click();
+    settle(&mut harness);
+    assert_eq!(lods(&harness), [Lod::EdgeLength; 2]);
 }
 
 #[test]

@@ -1,16 +1,19 @@
 //! Both halves of a split view beside each other: their figures, and the left half as what was shown before a change.
 
-use egui::accesskit::Role;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::{Role, Toggled};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::Shape;
 use geometry::tessellate::Surface;
 use inspect::settings::SplitSide;
 use load::Source;
 use pnaen::app::App;
 
-use crate::editing::press_with;
-use crate::{choose, click, press, scroll_to, settle, uniform, uniform_of};
+use crate::driver::PATIENCE;
+use crate::editing::{copied, press_with};
+use crate::{choose, click, open_list, press, scroll_to, settle, uniform, uniform_of, window};
 
 const QUAD: &str = "v -1 0 1\nv 1 0 1\nv 1 0 -1\nv -1 0 -1\nf 1 2 3 4\n";
 
@@ -39,6 +42,10 @@ fn the_figures_of_both_halves_stand_beside_each_other() {
         harness.get_by_label(label);
     }
     harness.get_by_label_contains("Widest gap, px, Difference: -");
+    for header in ["Half", "Difference"] {
+        harness.get_by_role_and_label(Role::Label, header);
+    }
+    assert!(harness.query_by_label_contains("Half, ").is_none(), "headers aren't figures");
     assert!(harness.query_by_label_contains("Deviation, Left: ").is_none(), "the overlay is off");
     scroll_to(&mut harness, "Left and right");
     click(&mut harness, "Left and right");
@@ -85,8 +92,8 @@ fn what_is_shown_is_kept_on_the_left_and_compared_with_what_is_changed_then() {
         (left.tessellation.surface, left.overlays.wireframe)
     };
     assert_eq!(left(&harness), (Surface::PnAen, false));
-    scroll_to(&mut harness, "Keep this on the left");
-    click(&mut harness, "Keep this on the left");
+    scroll_to(&mut harness, "Keep the right half on the left");
+    click(&mut harness, "Keep the right half on the left");
     assert_eq!(left(&harness), (Surface::Pn, true));
     harness.get_by_label("Cracked edges, Left: 12");
     press(&mut harness, egui::Key::W);
@@ -110,10 +117,74 @@ fn the_reference_surface_is_shown_on_the_left_until_the_right_half_is_kept_there
     settle(&mut harness);
     choose(&mut harness, "Left mesh", "Reference surface: high.obj");
     harness.get_by_label_contains("Left: high.obj");
-    scroll_to(&mut harness, "Keep this on the left");
-    click(&mut harness, "Keep this on the left");
+    open_list(&mut harness, "Left mesh");
+    let entry = harness.get_by_label("Reference surface: high.obj").accesskit_node().toggled();
+    assert_eq!(entry, Some(Toggled::True), "the list says what is shown");
+    press(&mut harness, egui::Key::Escape);
+    scroll_to(&mut harness, "Keep the right half on the left");
+    click(&mut harness, "Keep the right half on the left");
     harness.get_by_label_contains("Left: PN-AEN");
     harness.state_mut().undo(&context);
     settle(&mut harness);
     harness.get_by_label_contains("Left: high.obj");
+}
+
+fn left_mesh(harness: &Harness<App>) -> Option<String> {
+    harness.get_by_role_and_label(Role::ComboBox, "Left mesh").accesskit_node().value()
+}
+
+#[test]
+fn the_mesh_that_is_kept_stays_when_the_right_one_is_prepared_otherwise() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::J);
+    let same = "Left: PN-AEN\n1,452 triangles, 0 cracked edges";
+    harness.get_by_label(same);
+    assert_eq!(left_mesh(&harness).as_deref(), Some("The same"));
+    let context = harness.ctx.clone();
+    harness.state_mut().prepare(&context, |own| own.crease_band = 0.1);
+    settle(&mut harness);
+    let earlier = "Left: as kept, PN-AEN\n1,452 triangles, 0 cracked edges";
+    harness.get_by_label(earlier);
+    assert!(harness.query_by_label("Triangles, Difference: 0").is_none(), "the right half alone has the band");
+    assert_eq!(left_mesh(&harness).as_deref(), Some("As kept"));
+    let command = copied(&mut harness);
+    assert!(!command.contains("--split"), "{command}");
+    harness.get_by_label_contains("no command can name the earlier version of a mesh");
+    press(&mut harness, egui::Key::Escape);
+    // Prepared as it was kept, it is the same mesh again.
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    harness.get_by_label(same);
+    let command = copied(&mut harness);
+    assert!(command.contains("--split"), "{command}");
+    press(&mut harness, egui::Key::Escape);
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    harness.get_by_label(earlier);
+    choose(&mut harness, "Left mesh", "The same");
+    harness.get_by_label("Triangles, Difference: 0");
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    harness.get_by_label(earlier);
+}
+
+#[test]
+fn figures_of_different_moments_are_not_subtracted() {
+    let mut harness = window(Some(Source::Shape(Shape::Torus)));
+    press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::J);
+    let differences = ["Triangles, Difference: 0", "Triangles, Difference: …"];
+    for _ in 0..4 {
+        let start = Instant::now();
+        harness.key_press(egui::Key::PageUp);
+        harness.run_steps(2);
+        while harness.state().is_busy() {
+            assert!(start.elapsed() < PATIENCE, "the window is still busy");
+            let is_right = differences.iter().any(|label| harness.query_by_label(label).is_some());
+            assert!(is_right, "both halves are alike at any moment");
+            std::thread::sleep(Duration::from_millis(1));
+            harness.step();
+        }
+        settle(&mut harness);
+        harness.get_by_label(differences[0]);
+    }
 }

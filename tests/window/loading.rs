@@ -261,12 +261,12 @@ fn the_mesh_before_a_change_is_undone_and_left_out_of_copied_commands() {
     harness.get_by_label("Left: before the change, PN-AEN\n242 triangles, 0 cracked edges");
     let command = copied(&mut harness);
     assert!(!command.contains("--split"), "{command}");
-    harness.get_by_label_contains("no command can name the earlier version of a file");
+    harness.get_by_label_contains("no command can name the earlier version of a mesh");
     press(&mut harness, egui::Key::Escape);
     choose(&mut harness, "Left mesh", "The same");
     harness.get_by_label("Left: PN-AEN\n121 triangles, 0 cracked edges");
     assert!(copied(&mut harness).contains("--split"), "a command can name this mesh");
-    assert!(harness.query_by_label_contains("the earlier version of a file").is_none());
+    assert!(harness.query_by_label_contains("the earlier version of a mesh").is_none());
     press(&mut harness, egui::Key::Escape);
     harness.state_mut().undo(&context);
     settle(&mut harness);

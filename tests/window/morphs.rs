@@ -12,6 +12,7 @@ use pnaen::app::App;
 
 use crate::driver::PATIENCE;
 use crate::editing::{assert_draws, copied};
+use crate::lod_shader::until;
 use crate::{click, press, scroll_to, settle, uniform, uniform_of, vase};
 
 /// The least x of the mesh: the beam's upper end, which is 1 wide, swells by 0.8 of that at a weight of 1.
@@ -83,6 +84,8 @@ fn the_left_half_has_weights_of_its_own_which_are_undone_and_copied() {
     // What it doesn't have of its own it has from the right half.
     scroll_to(&mut harness, "Edit right (B)");
     click(&mut harness, "Edit right (B)");
+    let left_mesh = harness.get_by_role_and_label(Role::ComboBox, "Left mesh").accesskit_node().value();
+    assert_eq!(left_mesh.as_deref(), Some("The same, own weights"));
     scroll_to(&mut harness, "Reset morph targets");
     assert_eq!(weight(&harness), Some(0.25));
     harness.get_by_role_and_label(Role::Slider, "Lean").set_value_accesskit(0.5);
@@ -100,6 +103,26 @@ fn the_left_half_has_weights_of_its_own_which_are_undone_and_copied() {
     let lean = harness.get_by_role_and_label(Role::Slider, "Lean").accesskit_node().numeric_value();
     assert_eq!((weight(&harness), lean), (Some(0.25), Some(0.5)));
     assert!(!copied(&mut harness).contains("--split-morph"));
+}
+
+#[test]
+fn weights_of_the_left_half_that_the_file_no_longer_has_are_dropped_with_a_sentence() {
+    let (folder, mut harness) = uniform_of("moving.glb", moving());
+    press(&mut harness, Key::S);
+    click(&mut harness, "Edit left (A)");
+    scroll_to(&mut harness, "Reset morph targets");
+    harness.get_by_role_and_label(Role::Slider, "Swell").set_value_accesskit(1.0);
+    settle(&mut harness);
+    harness.get_by_label_contains("Left: Swell 1, untessellated\n");
+    let mut changed = moving();
+    let name = changed.windows(5).position(|word| word == b"Swell").expect("the name of a morph target");
+    changed[name..name + 5].copy_from_slice(b"Puffs");
+    std::fs::write(folder.path().join("moving.glb"), changed).expect("a writable folder");
+    until(&mut harness, "the file isn't read again", |app| {
+        app.loaded().is_some_and(|loaded| loaded.contents.morph_targets.contains_key("Puffs"))
+    });
+    harness.get_by_label_contains("Left: untessellated\n");
+    harness.get_by_label_contains("; the left half has no weights of its own any more");
 }
 
 #[test]

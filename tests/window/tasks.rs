@@ -108,7 +108,7 @@ const TASKS: [Task; 31] = [
     },
     Task {
         what: "compare a change with what was before",
-        steps: &[Click("Keep this on the left"), List("Surface", "Phong")],
+        steps: &[Click("Keep the right half on the left"), List("Surface", "Phong")],
         done: |window, _| {
             let settings = window.state().settings();
             (settings.left.surface, settings.tessellation.surface) == (Surface::PnAen, Surface::Phong)

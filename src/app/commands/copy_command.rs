@@ -13,7 +13,7 @@ use load::{HeightSource, Source};
 
 const DRAWS_IT: &str = "This command draws it without a window:";
 const DRAWS_RIGHT: &str = "This command draws the right half without a window. The left half is left out, because no command can \
-                           name the earlier version of a file:";
+                           name the earlier version of a mesh:";
 
 impl App {
     /// Copies the command that draws what is shown with these choices, and shows that command in a window. A turn makes it a turntable,
@@ -27,7 +27,7 @@ impl App {
         let command = self.command_of(context.theme(), choices, &self.viewport.camera, None, turn);
         let Some(command) = command else { return };
         context.copy_text(command.clone());
-        let lacks_left = self.settings.split.is_some() && self.shows_before();
+        let lacks_left = self.settings.split.is_some() && self.shows_earlier();
         self.commands.copied = Some((command, if lacks_left { DRAWS_RIGHT } else { DRAWS_IT }));
     }
 
@@ -44,7 +44,7 @@ impl App {
     }
 
     /// The command that draws what is shown, with these choices, as this camera sees it; none without a mesh. Without an
-    /// output, the file is named after the mesh. A left half that shows the earlier version of a file is left out.
+    /// output, the file is named after the mesh. A left half that shows the earlier version of a mesh is left out.
     pub(in crate::app) fn command_of(
         &self,
         theme: egui::Theme,
@@ -59,7 +59,7 @@ impl App {
         let reference_shape = self.reference_shape().map(absolute_source);
         let (left_mesh, left_morphs) = match self.left_mesh.as_ref().map(|left| &left.from) {
             Some(LeftChoice::Read(from, morphs)) => (from.as_ref().map(absolute_source), Some(morphs)),
-            Some(LeftChoice::Before) | None => (None, None),
+            Some(LeftChoice::Kept(_)) | None => (None, None),
         };
         let mut preparation = document.loaded.preparation.clone();
         if preparation.heights.is_none() && self.has_heights() {
@@ -67,7 +67,7 @@ impl App {
         }
         preparation.heights.iter_mut().for_each(HeightSource::make_absolute);
         let settings = self.saved_settings_of(theme, choices);
-        let settings = Settings { split: settings.split.filter(|_| !self.shows_before()), ..settings };
+        let settings = Settings { split: settings.split.filter(|_| !self.shows_earlier()), ..settings };
         let left = document.scene.half(SplitSide::Left).filter(|_| settings.split.is_some());
         let left = left.filter(|_| document.scene.left_pose() != LeftPose::Same);
         let left_animation = left.map(|left| left.clip_and_time().unwrap_or((AT_REST.to_owned(), 0.0)));

@@ -34,7 +34,7 @@ impl App {
             (Need::Picture, self.viewport.picture.drawn.is_some()),
             (Need::NoWriting, !self.is_writing()),
             (Need::ReferenceShape, self.reference_shape.is_some()),
-            (Need::LeftMesh, self.left_mesh.is_some()),
+            (Need::LeftMesh, self.other_left().is_some()),
             (Need::Before, document.is_some_and(|document| document.before.is_some())),
             (Need::Factors, self.given.is_some()),
             (Need::LodShader, self.lod_shader.is_some()),

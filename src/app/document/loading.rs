@@ -178,7 +178,10 @@ impl App {
         if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {
             // Until they are found again, so that nothing in the title moves.
             document.neighbours = before.neighbours.take();
-            document.before = if document.has_changed { Some(before.loaded.clone()) } else { before.before.take() };
+            let is_prepared_alike = document.loaded.preparation == before.loaded.preparation;
+            let is_newer = document.has_changed || is_prepared_alike && document.files != before.files;
+            document.version = before.version + u64::from(is_newer);
+            document.before = if is_newer { Some(before.kept()) } else { before.before.take() };
         }
         self.say_title(context);
         self.check_mesh(context);
@@ -198,7 +201,7 @@ impl App {
             self.follow_reference_shape(context, is_turned);
         }
         if keep_view && is_turned {
-            self.forget_before();
+            self.forget_earlier();
         }
         if let Some(LeftChoice::Read(from, morphs)) = self.left_choice()
             && (from.is_none() || is_turned)

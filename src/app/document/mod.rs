@@ -10,6 +10,7 @@ use super::jobs::explain_job::Explanation;
 use super::jobs::file_watch::Stamped;
 use super::jobs::folder_job::Neighbours;
 use super::jobs::given::FromFiles;
+use super::jobs::job_list::Kept;
 use super::jobs::leak_job::LeakJob;
 use super::jobs::measure_job::MeasureJob;
 use super::jobs::mesh_checks::Checks;
@@ -34,8 +35,10 @@ pub(crate) struct Document {
     pub files: Stamped,
     /// Whether it was loaded because it had changed on disk.
     pub has_changed: bool,
-    /// The mesh before that.
-    pub before: Option<Loaded>,
+    /// The mesh before its file changed.
+    pub before: Option<Arc<Kept>>,
+    /// How often its file has changed.
+    pub version: u64,
     pub neighbours: Option<Neighbours>,
     pub edges: EdgeCounts,
     /// The moment whose pose the scene has; none at rest.
@@ -94,6 +97,7 @@ impl Document {
             files,
             has_changed: false,
             before: None,
+            version: 0,
             neighbours: None,
             edges: loaded.topology.edge_counts(),
             moment: None,
@@ -118,6 +122,11 @@ impl Document {
             loaded,
             scene,
         }
+    }
+
+    /// The mesh as it is now.
+    pub(crate) fn kept(&self) -> Arc<Kept> {
+        Arc::new(Kept { loaded: self.loaded.clone(), version: self.version })
     }
 
     /// What is measured of the right half, or of the whole view.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::job_list::{LeftChoice, Work};
+use super::job_list::{Kept, LeftChoice, Work};
 use crate::app::App;
 use crate::app::text::file_name;
 use crate::commands::CompanionFile;
@@ -58,9 +58,13 @@ impl<T> OpenFile<T> {
 }
 
 impl LeftMesh {
-    pub(crate) fn title(&self) -> String {
-        let is_before = self.from == LeftChoice::Before;
-        if is_before { "before the change".to_owned() } else { self.content.source.title() }
+    /// What it is called beside a mesh whose file has changed so often.
+    pub(crate) fn title(&self, version: u64) -> String {
+        match &self.from {
+            LeftChoice::Kept(kept) if kept.version < version => "before the change".to_owned(),
+            LeftChoice::Kept(_) => "as kept".to_owned(),
+            LeftChoice::Read(..) => self.content.source.title(),
+        }
     }
 }
 
@@ -90,9 +94,14 @@ impl App {
         self.jobs.start(context, Work::Companion(companion), title, read, move |app, _, ended| {
             match ended.unwrap_or_else(|stopped| Err(format!("reading {what} {stopped}"))) {
                 Ok(read) => take(app, read),
-                Err(why) => {
+                Err(mut why) => {
+                    let is_same_mesh = matches!(app.jobs.left, Some(LeftChoice::Read(None, _)));
                     if companion == CompanionFile::Environment {
                         app.cancel_environment();
+                    } else if companion == CompanionFile::LeftMesh && is_same_mesh {
+                        // What is there may be the mesh as it no longer is.
+                        app.close_companion(companion);
+                        why += "; the left half has no weights of its own any more";
                     }
                     app.dialogs.error = Some(why);
                 }
@@ -100,11 +109,11 @@ impl App {
         });
     }
 
-    /// What is open, or being opened, beside the mesh. What is left of the split is more than a source.
+    /// The source of what is open, or being opened, beside the mesh.
     pub(in crate::app) fn companion(&self, companion: CompanionFile) -> Option<Source> {
         let path = match companion {
             CompanionFile::ReferenceShape => return self.reference_shape().cloned(),
-            CompanionFile::LeftMesh => None,
+            CompanionFile::LeftMesh => return self.left_mesh.as_ref().map(|left| left.content.source.clone()),
             CompanionFile::Factors => self.factors_file(),
             CompanionFile::LodShader => self.open_shader_file::<LodShader>(),
             CompanionFile::SurfaceShader => self.open_shader_file::<SurfaceShader>(),
@@ -228,11 +237,19 @@ impl App {
 
 /// The mesh left of the split.
 impl App {
+    /// The mesh left of the split, unless it is the one that is open as it is prepared now.
+    pub(in crate::app) fn other_left(&self) -> Option<&LeftMesh> {
+        let open = self.document.as_ref()?;
+        let is_same =
+            |kept: &Kept| (kept.version, &kept.loaded.preparation) == (open.version, &open.loaded.preparation);
+        self.left_mesh.as_ref().filter(|left| !matches!(&left.from, LeftChoice::Kept(kept) if is_same(kept)))
+    }
+
     /// What is left of the split in place of the mesh, or is being read for it.
     pub(in crate::app) fn left_choice(&self) -> Option<LeftChoice> {
         let is_read = self.jobs.has(Work::Companion(CompanionFile::LeftMesh));
         let read = self.jobs.left.as_ref().filter(|_| is_read);
-        read.or(self.left_mesh.as_ref().map(|left| &left.from)).cloned()
+        read.or(self.other_left().map(|left| &left.from)).cloned()
     }
 
     /// Starts to load the mesh of a source for the left half, or without one the same mesh, with these weights of morph targets in place
@@ -253,26 +270,32 @@ impl App {
         });
     }
 
-    /// Forgets the mesh before its file changed, which is turned and scaled otherwise than the new one.
-    pub(in crate::app) fn forget_before(&mut self) {
+    /// Forgets the mesh as it was, which is turned and scaled otherwise than the new one.
+    pub(in crate::app) fn forget_earlier(&mut self) {
         self.document.iter_mut().for_each(|document| document.before = None);
-        if self.shows_before() {
+        if self.shows_earlier() {
             self.close_companion(CompanionFile::LeftMesh);
         }
-        self.history.change_all(|step| _ = step.left.take_if(|left| *left == LeftChoice::Before));
+        self.history.change_all(|step| _ = step.left.take_if(|left| matches!(left, LeftChoice::Kept(_))));
     }
 
     /// Shows the mesh as it was before its file changed, tessellated as the new one is.
     pub(in crate::app) fn compare_with_before(&mut self) {
-        let Some(before) = self.document.as_ref().and_then(|document| document.before.clone()) else { return };
-        self.close_companion(CompanionFile::LeftMesh);
-        self.settings.keep_on_left(self.viewport.last_split);
-        self.left_mesh = Some(Opened::new(LeftChoice::Before, before));
+        let before = self.document.as_ref().and_then(|document| document.before.clone());
+        before.into_iter().for_each(|before| self.put_left(before));
     }
 
-    /// Whether the left half is for the mesh as it was before its file changed.
-    pub(in crate::app) fn shows_before(&self) -> bool {
-        self.left_mesh.as_ref().is_some_and(|left| left.from == LeftChoice::Before)
+    /// Shows a mesh as it was left of the split, tessellated as the right half is.
+    pub(in crate::app) fn put_left(&mut self, kept: Arc<Kept>) {
+        self.close_companion(CompanionFile::LeftMesh);
+        let at = self.viewport.last_split;
+        self.change_halves(|own| own.keep_on_left(at));
+        self.left_mesh = Some(Opened::new(LeftChoice::Kept(kept.clone()), kept.loaded.clone()));
+    }
+
+    /// Whether the left half shows the mesh as it was, which no command can name.
+    pub(in crate::app) fn shows_earlier(&self) -> bool {
+        self.other_left().is_some_and(|left| matches!(left.from, LeftChoice::Kept(_)))
     }
 }
 

@@ -28,7 +28,7 @@ impl App {
         let surface = self.surface_shader.as_ref().and_then(OpenShader::shader);
         let uses_light = self.settings.halves().any(|own| own.lighting == Lighting::Environment);
         // A file's factors are for the triangles of this mesh.
-        let takes_left = self.settings.has_left_tessellation() && (self.left_mesh.is_none() || lod.is_some());
+        let takes_left = self.settings.has_left_tessellation() && (self.other_left().is_none() || lod.is_some());
         let factors = lod.map_or(factors, |(_, generation)| generation);
         FromFiles {
             factors,

@@ -1,6 +1,7 @@
 //! The jobs that are under way: one list, which is polled, waited for and stopped in one place.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::mpsc::{TryRecvError, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -9,7 +10,7 @@ use super::background_job::{BackgroundJob, Stopped, spawn};
 use crate::app::App;
 use crate::commands::CompanionFile;
 use geometry::progress::Progress;
-use inspect::engine::Preparation;
+use inspect::engine::{Loaded, Preparation};
 use inspect::settings::Settings;
 use load::files::Limits;
 use load::{MorphWeights, Source};
@@ -80,10 +81,24 @@ pub(crate) struct Load {
 /// What is left of the split in place of the mesh that is open.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum LeftChoice {
-    /// The mesh as it was before its file changed on disk.
-    Before,
+    /// The mesh as it was before its file changed on disk, or when it was kept.
+    Kept(Arc<Kept>),
     /// The mesh of a source, or without one the same mesh, with these weights of morph targets.
     Read(Option<Source>, MorphWeights),
+}
+
+/// A mesh as it was.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    pub loaded: Loaded,
+    /// How often its file had changed.
+    pub version: u64,
+}
+
+impl PartialEq for Kept {
+    fn eq(&self, other: &Self) -> bool {
+        (self.version, &self.loaded.preparation) == (other.version, &other.loaded.preparation)
+    }
 }
 
 #[derive(Default)]

@@ -189,7 +189,7 @@ impl App {
         };
         let subject = Subject {
             loaded: document.loaded.clone(),
-            left: self.left_mesh.as_ref().map(|left| left.content.clone()),
+            left: self.other_left().map(|left| left.content.clone()),
             moment: document.moment,
             left_pose: document.scene.left_pose(),
             given: document.scene.tessellator.given().cloned(),

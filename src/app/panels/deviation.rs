@@ -41,12 +41,9 @@ impl App {
 
     /// Counts changes of the deviation that the picture shows; 0 without the overlay.
     pub(in crate::app) fn deviation_shown(&self) -> u64 {
-        let jobs = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half));
-        if self.settings.any_half_shows(ColorSource::ReferenceSurface) {
-            jobs.map(|job| job.generation).sum()
-        } else {
-            0
-        }
+        let is_shown = self.settings.any_half_shows(ColorSource::ReferenceSurface);
+        let jobs = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half).filter(|_| is_shown));
+        jobs.map(|job| job.generation).sum()
     }
 
     pub(in crate::app) fn known_deviation(&self, half: SplitSide) -> Option<&DeviationResult> {
@@ -110,8 +107,8 @@ impl App {
     }
 
     pub(in crate::app) fn legend_distances(&self) -> Distances {
-        let known = |half| self.known_deviation(half);
-        let is_partial = SplitSide::BOTH.into_iter().filter_map(known).any(|found| found.left_out > 0);
+        let mut known = SplitSide::BOTH.into_iter().filter_map(|half| self.known_deviation(half));
+        let is_partial = known.any(|found| found.left_out > 0);
         let measured = SplitSide::BOTH.into_iter().filter_map(|half| self.deviating(half)?.fraction()).reduce(f32::min);
         let outlines = self.found_outlines().map(|found| found.silhouette.distances);
         Distances { scale: self.deviation_scale(), is_partial, measured, outlines }

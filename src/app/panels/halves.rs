@@ -1,6 +1,6 @@
 //! What is measured of both halves of a split view, side by side.
 
-use egui::{Align, Layout, RichText, Role, WidgetInfo};
+use egui::{Align, Layout, Response, RichText, Role, WidgetInfo};
 
 use crate::app::App;
 use crate::app::jobs::measure_job::Results;
@@ -13,7 +13,7 @@ const COLUMNS: [&str; 3] = ["Left", "Right", "Difference"];
 /// The figures of a half: each with its name and hover text.
 const FIGURES: [(&str, &str, fn(&Results) -> f64); 7] = [
     ("Triangles", "Emitted triangles.", |own| own.totals.1 as f64),
-    ("Below 3 px, %", "The part of the triangles in view that cover less than 4.5 px.", |own| {
+    ("Below 3 px, %", "Triangles in view that cover less than 4.5 px², half of a square of 3 px.", |own| {
         100.0 * own.sizes.small as f64 / own.sizes.in_view.max(1) as f64
     }),
     ("Culled patches", "Patches that emit no triangles.", |own| own.found.culled.total().into()),
@@ -30,43 +30,61 @@ impl App {
             return;
         }
         egui::Grid::new("halves").num_columns(4).min_col_width(50.0).show(ui, |ui| {
-            cells(ui, ["Half", "The difference is right minus left."], COLUMNS.map(RichText::new));
+            ui.label("Half").on_hover_text("The difference is right minus left.");
+            COLUMNS.into_iter().for_each(|column| drop(cell(ui, RichText::new(column))));
+            ui.end_row();
+            // Each half is measured by a walk of its own.
+            let mut halves = self.document.iter().flat_map(|document| &document.halves);
+            let are_current = halves.all(|own| own.measure.found().is_some() && !own.measure.is_busy());
             for (name, hover, of) in FIGURES {
-                row(ui, [name, hover], SplitSide::BOTH.map(|half| self.results_of(half).map(of)));
+                row(ui, [name, hover], SplitSide::BOTH.map(|half| self.results_of(half).map(of)), are_current);
             }
             if SplitSide::BOTH.into_iter().all(|half| self.deviates(half)) {
                 let hover = "The largest distance to the reference surface that was found, in object units.";
                 let largest = |half| self.known_deviation(half).map(|found| found.largest.at_least);
-                row(ui, ["Deviation", hover], SplitSide::BOTH.map(largest));
+                row(ui, ["Deviation", hover], SplitSide::BOTH.map(largest), true);
             }
         });
     }
 }
 
-/// A row with a figure of both halves and their difference.
-fn row(ui: &mut egui::Ui, name: [&str; 2], [left, right]: [Option<f64>; 2]) {
-    let difference = left.zip(right).map(|(left, right)| right - left);
-    let sign = if difference > Some(0.0) { "+" } else { "" };
-    let texts = [written(left), written(right), sign.to_owned() + &written(difference)];
-    cells(ui, name, texts.map(|text| RichText::new(text).monospace()));
-}
-
-/// A row of texts under the columns, after its name with a hover text.
-fn cells(ui: &mut egui::Ui, [name, hover]: [&str; 2], texts: [RichText; 3]) {
+/// A row with a figure of both halves and, if both are of what is shown, their difference.
+fn row(ui: &mut egui::Ui, [name, hover]: [&str; 2], [left, right]: [Option<f64>; 2], are_current: bool) {
+    let difference = left.zip(right).map(|(left, right)| right - left).filter(|_| are_current);
     ui.label(name).on_hover_text(hover);
-    for (column, text) in COLUMNS.into_iter().zip(texts) {
-        let says = format!("{name}, {column}: {}", text.text());
-        let cell = ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text)).inner;
+    for (column, figure) in COLUMNS.into_iter().zip([left, right, difference]) {
+        let sign = if column == COLUMNS[2] && figure > Some(0.0) { "+" } else { "" };
+        // Cells have room for six characters.
+        let [text, whole] = [1e5, f64::INFINITY].map(|below| sign.to_owned() + &written(figure, below));
+        let says = format!("{name}, {column}: {whole}");
+        let cell = cell(ui, RichText::new(text).monospace());
         cell.on_hover_text(&says).widget_info(|| WidgetInfo::labeled(Role::Label, true, &says));
     }
     ui.end_row();
 }
 
-/// A small count as a whole, any other number shortened, or an ellipsis until it is known.
-fn written(figure: Option<f64>) -> String {
+fn cell(ui: &mut egui::Ui, text: RichText) -> Response {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text)).inner
+}
+
+/// A count below a limit as a whole, any other number shortened, or an ellipsis until it is known.
+fn written(figure: Option<f64>, below: f64) -> String {
     match figure {
         None => "…".to_owned(),
-        Some(figure) if figure.fract() != 0.0 || figure.abs() >= 1e5 => short(figure),
+        Some(figure) if figure.fract() != 0.0 || figure.abs() >= below => short(figure),
         Some(figure) => (if figure < 0.0 { "-" } else { "" }).to_owned() + &grouped(figure.abs() as u64),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_counts_are_short_in_cells_and_whole_in_what_is_said_of_them() {
+        let [cell, said] = [1e5, f64::INFINITY].map(|below| move |figure| written(Some(figure), below));
+        assert_eq!([cell(1_234_567.0), said(1_234_567.0)], ["1.23e6", "1,234,567"]);
+        assert_eq!([cell(-100_000.0), said(-100_000.0)], ["-1.00e5", "-100,000"]);
+        assert_eq!([cell(99_999.0), cell(33.0), said(0.25), written(None, 1e5)], ["99,999", "33", "0.250", "…"]);
     }
 }

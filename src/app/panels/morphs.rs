@@ -16,7 +16,7 @@ impl App {
     pub(in crate::app) fn morphs_section(&mut self, ui: &mut Ui, is_left: bool) {
         let right = self.preparation().parts.morphs;
         let (from, before) = match self.left_choice().filter(|_| is_left) {
-            Some(LeftChoice::Before) => return,
+            Some(LeftChoice::Kept(_)) => return,
             Some(LeftChoice::Read(from, morphs)) => (from, morphs),
             None if is_left => Default::default(),
             None => (None, right.clone()),

@@ -2,8 +2,7 @@
 
 use super::option_rows::{option_hover, option_row, shown_option_row};
 use crate::app::App;
-use crate::app::jobs::companion_files::LeftMesh;
-use crate::app::jobs::job_list::Work;
+use crate::app::jobs::job_list::{LeftChoice, Work};
 use crate::app::sections::{Section, scrolling_column};
 use crate::app::text::short;
 use crate::app::widgets::{LABEL_WIDTH, button_row, chooser, file_row, fixed, list_row};
@@ -53,15 +52,19 @@ impl App {
             for (half, name) in [(SplitSide::Left, "Edit left (A)"), (SplitSide::Right, "Edit right (B)")] {
                 let hover = "The settings of surface, level of detail, displacement and below Advanced are those of this half; so are \
                              its looks and overlays, if Left looks gives the left half its own.";
-                ui.selectable_value(&mut self.panels.edited, half, name).on_hover_text(hover);
+                let button = egui::Button::selectable(self.panels.edited == half, name);
+                if ui.add_enabled(has_left, button).on_hover_text(hover).clicked() {
+                    self.panels.edited = half;
+                }
             }
             let now = self.availability();
             let commands = all(&now);
-            for (action, name) in [(Change::SwapHalves.into(), "Swap"), (Action::KeepOnLeft, "Keep this on the left")] {
+            let keep = (Action::KeepOnLeft, "Keep the right half on the left");
+            for (action, name) in [(Change::SwapHalves.into(), "Swap"), keep] {
                 self.command_button(ui, &commands, &now, &action, [name; 2]);
             }
         };
-        ui.add_enabled_ui(has_left, |ui| ui.horizontal_wrapped(row));
+        ui.horizontal_wrapped(row);
     }
 
     /// Shows rows whose settings are those of the half that is edited. They get whether that is the left one.
@@ -78,18 +81,27 @@ impl App {
 
     /// Which mesh the left half shows.
     fn left_mesh_row(&mut self, ui: &mut egui::Ui) {
-        let shown = self.left_mesh.as_ref().map_or_else(|| "The same".to_owned(), LeftMesh::title);
+        let (open, left) = (self.document.as_ref(), self.other_left());
+        let from = left.map(|left| left.from.clone());
+        let shown = left.zip(open).map_or_else(|| "The same".to_owned(), |(left, open)| left.title(open.version));
+        let is_weighed = matches!(from, Some(LeftChoice::Read(None, _)));
+        let shown = if is_weighed { "The same, own weights".to_owned() } else { shown };
+        let before = open.and_then(|open| open.before.clone().map(LeftChoice::Kept));
+        let file = self.reference_shape().filter(|source| source.shape().is_none()).cloned();
+        let is_reference = matches!(&from, Some(LeftChoice::Read(Some(left), _)) if Some(left) == file.as_ref());
         list_row(ui, "Left mesh", &with_note(LEFT_MESH, "--split-with"), &shown, |ui| {
-            if ui.selectable_label(self.left_mesh.is_none(), "The same").clicked() {
+            if ui.selectable_label(from.is_none(), "The same").clicked() {
                 self.close_companion(CompanionFile::LeftMesh);
             }
-            let has_before = self.document.as_ref().is_some_and(|document| document.before.is_some());
-            if has_before && ui.selectable_label(self.shows_before(), "Before the change on disk").clicked() {
+            if from.is_some() && !is_reference {
+                let _ = ui.selectable_label(true, &shown);
+            }
+            if before.is_some() && before != from && ui.selectable_label(false, "Before the change on disk").clicked() {
                 self.compare_with_before();
             }
-            let file = self.reference_shape().filter(|source| source.shape().is_none()).cloned();
             if let Some(file) = file
-                && ui.selectable_label(false, format!("Reference surface: {}", file.title())).clicked()
+                && ui.selectable_label(is_reference, format!("Reference surface: {}", file.title())).clicked()
+                && !is_reference
             {
                 self.read_left(ui.ctx(), Some(file), MorphWeights::new());
             }

@@ -140,7 +140,7 @@ impl App {
         let (results, unknown) = (self.results(), || "…".to_owned());
         let small = results.map_or_else(unknown, |results| part(results.sizes.small, results.sizes.in_view));
         let low = results.map_or_else(unknown, |results| part(results.found.patches_low.into(), patches));
-        let hover = "Triangles in view with an area below 4.5 px, half of a square with sides of 3 px, and their share of all \
+        let hover = "Triangles in view with an area below 4.5 px², half of a square with sides of 3 px, and their share of all \
                      triangles in view.";
         marked_fact(ui, WASTE_COLOR, "Below 3 px", &small, hover);
         let hover = "Patches whose factors are all below 2, and their share of all patches. They could be drawn without \

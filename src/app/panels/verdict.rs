@@ -226,8 +226,8 @@ impl App {
     }
 
     fn sizes_line(&self, color: Color32) -> Line {
-        let hover = "The part of the triangles in view that cover less than 4.5 px, half of a square of 3 x 3 px. For each of them \
-                     a GPU shades up to four times as many px as it covers. A click colours triangles by their size.";
+        let hover = "The part of the triangles in view that cover less than 4.5 px², half of a square of 3 x 3 px. For each of \
+                     them a GPU shades up to four times as many px as it covers. A click colours triangles by their size.";
         let Some(sizes) = self.results().map(|results| &results.sizes) else {
             return self.unknown("Triangles below 3 px", hover, Destination::Sizes);
         };

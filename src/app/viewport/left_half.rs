@@ -15,8 +15,8 @@ use inspect::shot::{HalfFacts, half_title, mesh_title, surface_title};
 impl App {
     /// Makes the left half's scene or drops it, as the settings want it. Waits until no picture is under way.
     pub(in crate::app) fn keep_left(&mut self, context: &egui::Context) -> Result<(), GpuError> {
+        let wanted = self.settings.split.map(|_| self.other_left().map_or(0, |left| left.generation));
         let Some(document) = self.document.as_mut().filter(|_| self.viewport.picture.is_free()) else { return Ok(()) };
-        let wanted = self.settings.split.map(|_| self.left_mesh.as_ref().map_or(0, |left| left.generation));
         if wanted.is_none() {
             self.jobs.stop(Work::LeftHalf);
         }
@@ -29,7 +29,7 @@ impl App {
         document.scene.set_left(None)?;
         let Some(wanted) = wanted else { return Ok(()) };
         let (engine, sibling) = (self.engine.clone(), document.scene.sibling(arena_bytes(&self.engine)));
-        let other = self.left_mesh.as_ref().map(|left| left.content.clone());
+        let other = self.left_mesh.as_ref().filter(|left| left.generation == wanted).map(|left| left.content.clone());
         let make = move |_: &_| match other {
             Some(other) => scene_of(&engine, &other),
             None => engine.gpu.attempt(sibling)?,
@@ -79,8 +79,8 @@ impl App {
     /// the halves, and what was counted.
     pub(in crate::app) fn half_title(&self, half: SplitSide) -> String {
         let open = self.document.as_ref();
-        let meshes = self.left_mesh.as_ref().zip(open).map(|(left, open)| {
-            let names = [left.title(), open.loaded.source.title()];
+        let meshes = self.other_left().zip(open).map(|(left, open)| {
+            let names = [left.title(open.version), open.loaded.source.title()];
             mesh_title(half, [&left.content, &open.loaded], names)
         });
         let scene = open.and_then(|document| document.scene.half(half));

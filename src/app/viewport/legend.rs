@@ -1,6 +1,6 @@
 //! The legend of the surface's colours: under the measurements, or without these in a lower corner of the picture.
 
-use egui::{Align2, Rect, Role, Sense, TextureHandle, Vec2, WidgetInfo};
+use egui::{Align2, Rect, Role, Sense, TextureHandle, Vec2, WidgetInfo, vec2};
 
 use crate::app::App;
 use inspect::render::{Legend, legend_of, legend_side};
@@ -42,12 +42,12 @@ impl PaintedLegend {
 }
 
 impl App {
-    /// Shows the legend of the colours, if they have one, at the lower end of a panel.
+    /// Shows the legend of the colours, if they have one, at the lower end of a panel, of which it takes a third at most.
     pub(in crate::app) fn legend_panel(&mut self, ui: &mut egui::Ui) {
         self.paint_legend(ui);
         // What comes after it keeps its id, and with it the focus.
         let Some(painted) = &self.viewport.legend else { return ui.skip_ahead_auto_ids(1) };
-        let size = painted.size_in(ui.available_size());
+        let size = painted.size_in(ui.available_size() / vec2(1.0, 3.0));
         let panel = egui::Panel::bottom("legend").frame(egui::Frame::NONE).resizable(false).exact_size(size.y);
         panel.show(ui, |ui| painted.show(ui, Align2::LEFT_BOTTOM.align_size_within_rect(size, ui.max_rect())));
     }

@@ -38,7 +38,7 @@ enum Search {
 }
 
 impl App {
-    /// Looks up what the colours stand for under the pointer, or the joint that is there, and shows it.
+    /// Looks up the joint that is under the pointer and what the colours stand for there, and shows them.
     ///
     /// # Errors
     /// The device was lost.
@@ -46,7 +46,8 @@ impl App {
         let place = self.place_under(response);
         // What is no longer looked for must not count as under way.
         let kept = self.viewport.pointer.take();
-        let kept = kept.filter(|kept| Some(kept.key()) == place.as_ref().map(PointerValue::key));
+        let key = |own: &PointerValue| (own.pixel, own.picture);
+        let kept = kept.filter(|kept| Some(key(kept)) == place.as_ref().map(key));
         let Some(mut place) = kept.or(place) else { return Ok(()) };
         place.search = match std::mem::replace(&mut place.search, Search::Done(None)) {
             Search::Waiting => self.start_search(&place, response)?,
@@ -59,11 +60,13 @@ impl App {
         match &place.search {
             Search::Waiting => response.ctx.request_repaint_after(REST),
             Search::UnderWay(_) => response.ctx.request_repaint(),
-            Search::Done(None) => {}
-            Search::Done(Some(value)) => {
+            Search::Done(value) => {
+                let lines: Vec<_> = self.joint_at(&place).into_iter().chain(value.clone()).collect();
                 let (layer, id) = (response.layer_id, response.id.with("value"));
-                egui::Tooltip::always_open(response.ctx.clone(), layer, id, PopupAnchor::Pointer)
-                    .show(|ui| ui.label(value));
+                if !lines.is_empty() {
+                    egui::Tooltip::always_open(response.ctx.clone(), layer, id, PopupAnchor::Pointer)
+                        .show(|ui| lines.into_iter().for_each(|line| drop(ui.label(line))));
+                }
             }
         }
         self.viewport.pointer = Some(place);
@@ -87,13 +90,9 @@ impl App {
         if place.since.elapsed() < REST {
             return Ok(Search::Waiting);
         }
-        let joint = self.joint_at(place);
         let has_numbers = self.settings.half(place.half).is_some_and(|own| has_numbers(own.overlays.colors));
-        if joint.is_some() || !has_numbers {
-            return Ok(Search::Done(joint));
-        }
         let scene = self.document.as_mut().and_then(|document| document.scene.half_mut(place.half));
-        let Some(scene) = scene else { return Ok(Search::Done(None)) };
+        let Some(scene) = scene.filter(|_| has_numbers) else { return Ok(Search::Done(None)) };
         // Looking through many chunks would take as long as drawing them.
         if scene.tessellator.chunk_count() > self.viewport.picture.short {
             return Ok(Search::Done(None));
@@ -201,11 +200,6 @@ impl App {
 }
 
 impl PointerValue {
-    /// What it is about.
-    fn key(&self) -> (Pixel, u64) {
-        (self.pixel, self.picture)
-    }
-
     /// Whether it isn't known yet.
     pub(crate) fn is_busy(&self) -> bool {
         !matches!(self.search, Search::Done(_))

@@ -70,6 +70,18 @@ fn the_legend_is_beside_a_picture_that_the_mesh_fills_unless_no_measurements_are
 }
 
 #[test]
+fn the_legend_takes_a_third_of_a_low_panel_at_most() {
+    let mut harness = uniform(None);
+    press(&mut harness, Key::B);
+    let high = harness.get_by_label(BARYCENTRIC).rect().height();
+    harness.set_size(egui::vec2(1200.0, 240.0));
+    settle(&mut harness);
+    assert!(!legend_is_over_the_picture(&harness));
+    let [picture, legend] = ["Viewport", BARYCENTRIC].map(|name| harness.get_by_label(name).rect());
+    assert!(legend.height() < high && 3.0 * legend.height() <= picture.height() + 1.0, "{legend} beside {picture}");
+}
+
+#[test]
 fn the_legend_beside_the_picture_is_legible_in_both_themes() {
     for theme in [Theme::Dark, Theme::Light] {
         let builder = Harness::builder().with_size([1200.0, 800.0]).with_theme(theme);
