@@ -32,7 +32,7 @@ fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
 fn numbered_pictures_are_those_of_render_from_all_around() {
     let folder = Folder::new();
     let [turn, cameras] = ["turn", "cameras.txt"].map(|name| folder.path(name));
-    let options = ["shape:cube-split", "--lod", "edge-length", "--pixels", "6", "--clip", "frustum"];
+    let options = ["shape:cube-split", "--lod", "error", "--tolerance", "2", "--clip", "frustum"];
     output(&[&["turntable", "--frames", "4", "--camera", "10,20", "-o", &turn], &options[..], &SIZE].concat());
     let expected = ["frame-0000.png", "frame-0001.png", "frame-0002.png", "frame-0003.png"];
     assert_eq!(names(&turn), expected);

@@ -29,7 +29,7 @@ fn seen(engine: &Engine, scene: &mut Scene, target: &Target, camera: &Camera, se
 #[test]
 fn no_pixel_differs_without_the_triangles_that_cover_nothing() {
     let engines = [sifting(f32::INFINITY), sifting(0.0)];
-    let target = Target::new(&engine().gpu, [112, 84]).expect("a small picture");
+    let target = Target::new(&engine().gpu, [160, 120]).expect("a small picture");
     let shapes = [Shape::Torus, Shape::CubeSplit, Shape::Icosphere, Shape::Cylinder, Shape::Saddle, Shape::Cone];
     let (mut emitted, mut drawn) = (0, 0);
     for (k, shape) in shapes.into_iter().enumerate() {
@@ -44,7 +44,7 @@ fn no_pixel_differs_without_the_triangles_that_cover_nothing() {
             let settings = Settings {
                 tessellation: Tessellation {
                     lod: [Lod::Uniform, Lod::EdgeLength][index as usize / 7 % 2],
-                    factor: [5.0, 12.0, 28.0][index as usize / 3 % 3],
+                    factor: [5.0, 17.0, 40.0][index as usize / 3 % 3],
                     pixels: 0.7,
                     surface: [Surface::PnAen, Surface::Pn][index as usize / 2 % 2],
                     ..Tessellation::default()
