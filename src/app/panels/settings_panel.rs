@@ -59,10 +59,8 @@ impl App {
             }
             let now = self.availability();
             let commands = all(&now);
-            let keep = (Action::KeepOnLeft, "Keep the right half on the left");
-            for (action, name) in [(Change::SwapHalves.into(), "Swap"), keep] {
-                self.command_button(ui, &commands, &now, &action, [name; 2]);
-            }
+            self.command_button(ui, &commands, &now, &Change::SwapHalves.into(), ["Swap"; 2]);
+            self.command_button(ui, &commands, &now, &Action::KeepOnLeft, ["Keep the right half on the left"; 2]);
         };
         ui.horizontal_wrapped(row);
     }
