@@ -55,9 +55,10 @@ pub(super) fn run(args: &Args) -> Result<(), CliError> {
     let engine = Engine::chosen(&args.adapter.choice())?;
     make_folder(&args.output)?;
     let mut gallery = Gallery::new(options, &engine);
-    warn(&gallery.warnings()?);
+    let (exhibits, warnings) = gallery.exhibits()?;
+    warn(&warnings);
     let (mut all, mut progress_printer) = (Vec::new(), ProgressPrinter::new());
-    for exhibit in gallery.exhibits() {
+    for exhibit in exhibits {
         let Exhibit { name, tiles, .. } = &exhibit;
         let said = |tile: usize| format!("{name}, {} of {}: {}", tile + 1, tiles.len(), tiles[tile].name);
         let (picture, shown) = gallery.draw(&exhibit, |tile| progress_printer.print(|| said(tile)))?;

@@ -35,9 +35,7 @@ pub enum HeightError {
     #[error("{} can't be read as a height image: {reason}", shown_path(path))]
     Image { path: PathBuf, reason: String },
     /// No material has an image that can be read.
-    #[error(
-        "{name} has no image to displace by: no material has a base colour image that can be read{why}; name a height image"
-    )]
+    #[error("{name} has no image to displace by: {why}; name a height image")]
     NoImage { name: String, why: String },
     /// The materials have more different images than can be used.
     #[error("{name} has more than {MAX_MAPS} images to displace by, the most that are used; name one height image")]
@@ -92,14 +90,13 @@ impl HeightSource {
     ) -> Result<Heights, HeightError> {
         progress.set(0.0);
         let images = progress.part(0.0, 0.7);
-        // Those of materials come last.
-        let parts = &parts[..parts.partition_point(|part| !is_material(&part.name))];
         let own = match self {
             Self::Materials => Vec::new(),
             Self::File(path) => vec![Some(read_map(path, budget, &images)?); mesh.materials.len()],
-            Self::Model | Self::Each(_) => of_model(self.images(), mesh, parts, budget, &images)?,
+            Self::Model | Self::Each(_) => of_model(self.images(), mesh, parts, warnings, budget, &images)?,
         };
-        let are_of_colors = own.iter().all(Option::is_none);
+        // Images of hidden things alone displace nothing.
+        let are_of_colors = self.images().is_empty() && own.iter().all(Option::is_none);
         let mut own = if are_of_colors { of_colors(mesh, warnings, budget, &images)? } else { own };
         warnings.extend(fit(mesh, parts, &mut own, budget, progress)?.into_warnings());
         let held = budget.hold(bytes_beside_maps(mesh));
@@ -169,27 +166,37 @@ pub fn load_heights(
     }
 }
 
-/// The maps of materials, then those of parts: those that the model's file gives them, or these in place of some.
+/// The maps of materials, then those of parts: those that the model's file gives them, or these in place of some. Images that
+/// mean only hidden things are left out.
 fn of_model(
     images: &[NamedImage],
     mesh: &Mesh,
     parts: &[Part],
+    warnings: &mut Vec<String>,
     budget: &Budget,
     progress: &Progress,
 ) -> Result<Vec<Option<HeightMap>>, HeightError> {
-    let of_materials = mesh.materials.iter().map(|material| [MATERIAL, &material.name].concat());
-    let paths: Vec<String> = of_materials.chain(parts.iter().map(|part| part.name.clone())).collect();
+    let of_materials = mesh.materials.iter().map(|material| ([MATERIAL, &material.name].concat(), false));
+    // Parts that are materials come last, also hidden ones, which the mesh lacks. Those of hidden parts aren't known.
+    let all: Vec<_> = of_materials.chain(parts.iter().map(|part| (part.name.clone(), part.is_hidden))).collect();
+    let parts = &parts[..parts.partition_point(|part| !is_material(&part.name))];
+    let is_meant = |name: &str| all.iter().any(|(path, _)| is_part_of(path, name));
     let fraction = |index: usize| index as f32 / images.len() as f32;
     let mut known: HashMap<&Path, HeightMap> = HashMap::new();
     let mut maps = Vec::new();
     for (index, NamedImage { part, path, amount }) in images.iter().enumerate() {
-        let is_of_materials = mesh.materials.iter().any(|material| material.name == *part);
-        let name = if is_of_materials { format!("{MATERIAL}{part}/.") } else { part.clone() };
-        if !paths.iter().any(|path| is_part_of(path, &name)) {
-            let names = paths.iter().map(|path| path.strip_prefix(MATERIAL).unwrap_or(path));
-            let known: Vec<_> = names.map(|name| format!("\"{name}\"")).collect();
+        let of_materials = format!("{MATERIAL}{part}/.");
+        let name = if is_meant(&of_materials) { of_materials } else { part.clone() };
+        if !is_meant(&name) && !parts.iter().any(|part| part.is_hidden) {
+            let named = |(path, _): &(String, bool)| format!("\"{}\"", path.strip_prefix(MATERIAL).unwrap_or(path));
+            let known: Vec<_> = all.iter().take(mesh.materials.len() + parts.len()).map(named).collect();
             let (name, known) = (mesh.name.clone(), choice(&known, "it has none"));
             return Err(HeightError::NoPart { name, part: shown(part), known });
+        }
+        if !all.iter().any(|(path, is_hidden)| !is_hidden && is_part_of(path, &name)) {
+            let said = format!("no material or part \"{}\" is shown; its height image is left out.", shown(part));
+            warnings.extend((!is_meant(&name)).then_some(said));
+            continue;
         }
         let map = match known.get(&**path) {
             Some(map) => map.clone(),
@@ -199,7 +206,7 @@ fn of_model(
         known.insert(path, map);
     }
     let of_file = mesh.materials.iter().map(|material| material.height.clone()).chain(parts.iter().map(|_| None));
-    let own = paths.iter().zip(of_file).map(|(path, of_file)| {
+    let own = all.iter().zip(of_file).map(|((path, _), of_file)| {
         let meant = maps.iter().filter(|(name, _)| is_part_of(path, name));
         meant.max_by_key(|(name, _)| closeness(path, name)).map(|(_, map)| map.clone()).or(of_file)
     });
@@ -311,12 +318,12 @@ fn of_colors(
     let textures: HashMap<_, _> = mesh.materials.iter().filter_map(of).collect();
     let count = textures.len();
     if count == 0 {
-        let left_out = warnings.iter().find(|warning| warning.starts_with("the texture of "));
-        let why = left_out.map_or(String::new(), |why| format!(" ({})", why.trim_end_matches('.')));
+        let left_out = |start: &str| warnings.iter().find(|own| own.starts_with(start) && own.contains(" is left out"));
+        let said = |start: &str| left_out(start).map(|own| own.trim_end_matches('.'));
+        let own = said("the height image of ").map_or(String::new(), |own| format!("{own}, and "));
+        let of_texture = said("the texture of ").map_or(String::new(), |own| format!(" ({own})"));
+        let why = format!("{own}no material has a base colour image that can be read{of_texture}");
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
-    }
-    if count > MAX_MAPS {
-        return Err(HeightError::TooMany { name: mesh.name.clone() });
     }
     let kept = textures.values().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
     budget.hold(kept).map_err(|refused| too_much(mesh, count, refused))?;
@@ -428,6 +435,50 @@ mod tests {
         let said = of(&["Wheels"]).expect_err("no such part");
         assert!(said.contains("has no material \"Wheels\" to displace, and no such part; "), "{said}");
         assert!(said.ends_with("; choose one of \"wall\", \"Car\", \"Car/Wheel\", \"Hat/wall\""), "{said}");
+    }
+
+    #[test]
+    fn images_of_hidden_things_are_ignored() {
+        let mut mesh = Shape::Torus.build();
+        mesh.materials[0].name = "roof".to_owned();
+        mesh.part_ranges = vec![PartRange { triangles: 1..2, part: 0 }];
+        let part = |name: &str, is_hidden| Part { name: name.to_owned(), triangles: 1, is_hidden, level: 0 };
+        // The numbers of the maps of the first triangles, and what is said. Only the roof's image can be read.
+        let of = |names: &[&str], parts: &[Part]| {
+            let path = |name: &str| if name == "roof" { assets::path("waves.png") } else { "gone.png".into() };
+            let image = |name: &&str| NamedImage { part: (*name).to_owned(), path: path(name), amount: None };
+            let (source, mut said) = (HeightSource::Each(names.iter().map(image).collect()), Vec::new());
+            let heights = source.load(&mesh, parts, &mut said, &Budget::unlimited(), &Progress::new());
+            heights.map(|heights| (maps_of(&heights), said)).map_err(|error| error.to_string())
+        };
+        let none = || Ok(([None; 3], Vec::new()));
+        let hidden_material = [part("wall", false), part("material:roof", false), part("material:wall", true)];
+        assert_eq!(of(&["wall"], &hidden_material), none(), "not the part of the same name");
+        assert_eq!(of(&["material:wall"], &hidden_material), none());
+        assert_eq!(of(&["wall", "roof"], &hidden_material), Ok(([Some(0); 3], Vec::new())));
+        let said = of(&["floor"], &hidden_material).expect_err("no such part");
+        assert!(said.contains("no material \"floor\"") && said.ends_with("choose one of \"roof\", \"wall\""), "{said}");
+        let hidden_part = [part("house", false), part("shed", true)];
+        assert_eq!(of(&["shed"], &hidden_part), none());
+        let said = "no material or part \"wall\" is shown; its height image is left out.".to_owned();
+        assert_eq!(of(&["wall"], &hidden_part), Ok(([None; 3], vec![said])), "it may be a material of the hidden part");
+    }
+
+    #[test]
+    fn without_any_image_the_error_says_why_the_files_own_one_is_left_out() {
+        let mesh = Shape::Torus.build();
+        let said = |warning: &str| {
+            let warnings = &mut vec![warning.to_owned()];
+            let heights = HeightSource::Model.load(&mesh, &[], warnings, &Budget::unlimited(), &Progress::new());
+            heights.expect_err("no image").to_string()
+        };
+        let colors = "no material has a base colour image that can be read";
+        let left_out = "the height image of material \"m\" is left out: \"gone.png\" can't be read";
+        assert!(said(&format!("{left_out}.")).contains(&format!(" to displace by: {left_out}, and {colors}; name a")));
+        let left_out = "the texture of material \"m\" is left out: it isn't there";
+        assert!(said(&format!("{left_out}.")).contains(&format!(" to displace by: {colors} ({left_out}); name a")));
+        let elsewhere = "the height image of material \"m\" lies elsewhere than its base colour.";
+        assert!(said(elsewhere).contains(&format!(" to displace by: {colors}; name a")));
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! `pnaen gallery`: its page, its pictures and its errors.
 
+use documents::cages::{CUBE, QUADS, cube};
 use image::GenericImageView;
 
-use crate::subdivision::{CUBE, QUADS};
-use crate::{Folder, failure, output, sentence};
+use crate::{Folder, both, failure, output, sentence};
 
 #[test]
 fn the_gallery_has_a_page_and_a_picture_of_every_exhibit() {
@@ -36,7 +36,7 @@ fn the_gallery_has_a_page_and_a_picture_of_every_exhibit() {
 #[test]
 fn a_cage_is_shown_beside_its_limit() {
     let folder = Folder::new();
-    let cage = folder.write("cage.obj", [CUBE, QUADS].concat());
+    let cage = folder.write("cage.obj", cube());
     let named = [&*cage, "--subdivide", "catmull-clark", "--levels", "0"];
     for mesh in [&[] as &[&str], &named] {
         let into = folder.path("out");
@@ -62,6 +62,29 @@ fn a_cage_is_shown_beside_its_limit() {
         assert!(refined.abs_diff(limit) < limit / 20, "{mesh:?}: {refined} px of {limit}");
         std::fs::remove_dir_all(&into).expect("a folder");
     }
+}
+
+#[test]
+fn tiles_of_cages_that_cannot_be_refined_are_left_out() {
+    let folder = Folder::new();
+    let made = |mesh: &str, options: &[&str]| {
+        let into = folder.path("out");
+        let named = ["gallery", mesh, "-o", &into, "--factor", "2", "--subdivide", "catmull-clark"];
+        let (_, errors) = both(&[&named[..], options].concat());
+        (std::fs::read_to_string(folder.path("out/gallery.md")).expect("a page"), errors)
+    };
+    // Three faces at one edge have no limit at any level.
+    let fin = folder.write("fin.obj", [CUBE, QUADS, "v 3 0 0\nf 1 2 9\n"].concat());
+    let (page, errors) = made(&fin, &[]);
+    assert!(page.contains("](surfaces.png)") && !page.contains("limits.png"), "{page}");
+    assert!(errors.contains("\"limit\" is left out: not all of the mesh can be refined so often."), "{errors}");
+    // 64 squares take more than 1 MiB when each becomes 256, but not when it becomes 4.
+    let points = (0..81).map(|i| format!("v {} {} 0\n", i % 9, i / 9));
+    let squares = (0..64).map(|i| i / 8 * 9 + i % 8 + 1).map(|a| format!("f {} {} {} {}\n", a, a + 1, a + 10, a + 9));
+    let grid = folder.write("grid.obj", points.chain(squares).collect::<String>());
+    let (page, errors) = made(&grid, &["--levels", "0", "--max-memory", "1MiB"]);
+    assert!(page.contains("| `pn-aen --levels 1` |") && !page.contains("| `limit` |"), "{page}");
+    assert!(errors.contains("would take") && errors.contains("\"limit\" is left out"), "{errors}");
 }
 
 #[test]

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use documents::cages::{CUBE, QUADS, cube};
+
 use super::{Folder, SIMPLE_LIGHT, both, failure, number, output, run, stats};
 
-pub(super) const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
-pub(super) const QUADS: &str = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
+use super::{Folder, both, failure, number, output, run, stats};
 
 /// The positions of the mesh that a file becomes.
 fn positions(folder: &Folder, file: &str, options: &[&str]) -> Vec<[f64; 3]> {
@@ -24,7 +25,7 @@ fn positions(folder: &Folder, file: &str, options: &[&str]) -> Vec<[f64; 3]> {
 fn a_cube_becomes_its_limit_surface_and_stays_closed() {
     let folder = Folder::new();
     let file = folder.path("cube.obj");
-    std::fs::write(&file, [CUBE, QUADS].concat()).expect("a writable folder");
+    std::fs::write(&file, cube()).expect("a writable folder");
     let of_scheme = |scheme: &str, levels: &str| {
         let options = ["--subdivide", scheme, "--levels", levels];
         let said = stats(&[&[&*file, "--factor", "2"][..], &options].concat());
@@ -66,7 +67,7 @@ fn a_cage_that_cannot_be_refined_stays_and_the_reason_is_said() {
 fn how_far_a_tessellated_cage_is_from_its_limit_surface_is_measured() {
     let folder = Folder::new();
     let file = folder.path("cube.obj");
-    std::fs::write(&file, [CUBE, QUADS].concat()).expect("a writable folder");
+    std::fs::write(&file, cube()).expect("a writable folder");
     let reference = ["--reference-surface", &*file, "--reference-subdivide", "catmull-clark"];
     let largest = |options: &[&str]| {
         let said = stats(&[&[&*file, "--surface", "flat", "--factor", "1"][..], options, &reference].concat());
@@ -90,8 +91,8 @@ fn how_far_a_tessellated_cage_is_from_its_limit_surface_is_measured() {
 }
 
 /// Writes the cube, and returns its path.
-fn cube(folder: &Folder) -> String {
-    folder.write("cube.obj", [CUBE, QUADS].concat())
+fn written(folder: &Folder) -> String {
+    folder.write("cube.obj", cube())
 }
 
 /// Options that draw a cage as it is, and compare it with its own limit.
@@ -100,7 +101,7 @@ const OWN: [&str; 6] = ["--surface", "flat", "--factor", "1", "--reference-subdi
 #[test]
 fn a_cage_is_compared_with_its_own_limit_without_naming_it_twice() {
     let folder = Folder::new();
-    let file = cube(&folder);
+    let file = written(&folder);
     let said = |options: &[&str]| stats(&[&[&*file][..], &OWN, options].concat())["accuracy"].clone();
     let own = said(&[]);
     assert_eq!(own["reference_surface"], format!("{file} (catmull-clark)"));
@@ -128,7 +129,7 @@ fn a_cage_is_compared_with_its_own_limit_without_naming_it_twice() {
 #[test]
 fn gates_charts_and_checks_take_the_own_limit() {
     let folder = Folder::new();
-    let (file, picture) = (cube(&folder), folder.path("cube.png"));
+    let (file, picture) = (written(&folder), folder.path("cube.png"));
     let render = |limit: &'static str| {
         let gate = ["-o", &picture, "--size", "64x48", "--fail-on", limit];
         run(&[&["render", &file][..], &OWN, &SIMPLE_LIGHT, &gate].concat()).status.code()
@@ -203,7 +204,7 @@ fn colours_and_texture_coordinates_are_refined_with_their_faces() {
 #[test]
 fn a_butterfly_surface_goes_through_the_corners_of_its_cage_and_is_a_reference() {
     let folder = Folder::new();
-    let file = cube(&folder);
+    let file = written(&folder);
     let options = ["--subdivide", "butterfly", "--levels", "3"];
     let points = positions(&folder, &file, &options);
     // Corners with normals of their own are written each.

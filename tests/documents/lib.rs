@@ -1,5 +1,6 @@
 //! Files that tests write and then read, and the repository's own pages.
 
+pub mod cages;
 pub mod lamp;
 pub mod moving;
 pub mod package;

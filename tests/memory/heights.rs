@@ -3,7 +3,12 @@
 use std::io::Cursor;
 use std::sync::PoisonError;
 
+use exr::prelude::{
+    AnyChannel, AnyChannels, Blocks, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
+    LayerAttributes, LineOrder, Vec2, WritableImage,
+};
 use geometry::mesh::Heights;
+use geometry::mesh::heights::HeightMap;
 use geometry::mesh::shapes::Shape;
 use geometry::progress::Progress;
 use image::{DynamicImage, ImageFormat, RgbImage};
@@ -16,16 +21,16 @@ use super::{ALONE, temporary};
 
 /// Reads an image from a file, checks the memory against what its size allows, and returns how much it took, in bytes.
 fn read(name: &str, bytes: &[u8]) -> (Result<Heights, HeightError>, usize) {
-    read_within(name, bytes, 1)
+    read_within(name, bytes, 1, Limits::default().memory)
 }
 
-/// The same of an image that may take so many times what its size allows.
-fn read_within(name: &str, bytes: &[u8], times: usize) -> (Result<Heights, HeightError>, usize) {
+/// The same of an image that may take so many times what its size and so many bytes allow.
+fn read_within(name: &str, bytes: &[u8], times: usize, free: u64) -> (Result<Heights, HeightError>, usize) {
     let file = temporary(name, bytes);
     let (mesh, source) = (Shape::CubeSplit.build(), HeightSource::File(file.to_path_buf()));
-    let budget = Budget::from_mesh(&mesh, 0, Limits::default().memory);
+    let budget = Budget::from_mesh(&mesh, 0, free);
     let (result, took) = peak_of(|| source.load(&mesh, &[], &mut Vec::new(), &budget, &Progress::new()));
-    let allowed = 4 * bytes.len() + Limits::default().memory as usize;
+    let allowed = 4 * bytes.len() + free as usize;
     println!("{name}: {} of {} MiB, read: {}", took >> 20, allowed >> 20, result.is_ok());
     assert!(took <= times * allowed, "{name}: {took} of {allowed} bytes");
     (result, took)
@@ -92,7 +97,7 @@ fn a_jpeg_fits_or_is_refused_with_both_numbers() {
     );
     // The largest image that fits, with most of its data missing. If it is progressive, its coefficients come to more.
     assert!(read("sequential.jpg", &jpeg(8500, 0xc0)).1 > 200 << 20);
-    assert!(read_within("progressive.jpg", &jpeg(8500, 0xc2), 2).1 > 400 << 20);
+    assert!(read_within("progressive.jpg", &jpeg(8500, 0xc2), 2, Limits::default().memory).1 > 400 << 20);
     let error = refusal(9000, 0xc2);
     assert!(error.contains("has 9000 x 9000 px and would take at least 5"), "{error}");
 }
@@ -117,4 +122,114 @@ fn colour_profiles_are_not_unpacked() {
     assert!(took < 17, "{took} MiB");
     let (mesh, warnings) = (loaded.mesh, loaded.warnings);
     assert!(mesh.materials[0].texture.is_some() || warnings[0].contains("is left out"), "{warnings:?}");
+}
+
+/// A TIFF image of one channel of floating-point numbers with so many bits, which has these tags too. Its data begin at byte 8.
+fn tiff(size: [u32; 2], [bits, compression]: [u32; 2], more: &[(u16, Vec<u32>)], data: &[u8]) -> Vec<u8> {
+    let [width, height] = size;
+    let all = [(256, width), (257, height), (258, bits), (259, compression), (262, 1), (339, 3)];
+    let mut tags: Vec<_> = all.map(|(tag, value)| (tag, vec![value])).into_iter().chain(more.iter().cloned()).collect();
+    tags.sort();
+    let mut bytes = [b"II\x2a\0\0\0\0\0", data].concat();
+    // TIFF 6.0: each has its number, its type (4 for 32 bits), how many values there are, and the only one, or where they are.
+    let mut directory = (tags.len() as u16).to_le_bytes().to_vec();
+    for (tag, values) in &tags {
+        let place = if let [value] = values[..] { value } else { bytes.len() as u32 };
+        if values.len() > 1 {
+            bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        }
+        directory.extend([*tag, 4].map(u16::to_le_bytes).as_flattened());
+        directory.extend([values.len() as u32, place].map(u32::to_le_bytes).as_flattened());
+    }
+    let place = bytes.len() as u32;
+    bytes[4..8].copy_from_slice(&place.to_le_bytes());
+    [&bytes, &directory[..], &[0; 4]].concat()
+}
+
+/// Zeros for a TIFF image of compression 32773 (PackBits): each pair of bytes is 128 of them.
+fn zeros(count: u32) -> Vec<u8> {
+    [0x81, 0].repeat(count as usize / 128)
+}
+
+/// What an image of 1024 px a side with one channel may take, while decoding it takes so many bytes beside its pixels.
+fn free(decoding: u64) -> u64 {
+    4 * 1024 * 1024 + HeightMap::bytes_to_build([1024; 2]).max(decoding) + (128 << 10)
+}
+
+#[test]
+fn a_tiff_of_one_channel_takes_what_is_counted() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    let strip = |count: usize| [(273, vec![8]), (278, vec![u32::MAX]), (279, vec![count as u32])];
+    let tiles = |[width, height]: [u32; 2], data: &[u8], count: usize| {
+        [(322, vec![width]), (323, vec![height]), (324, vec![8; count]), (325, vec![data.len() as u32; count])]
+    };
+    for bits in [16, 32, 64] {
+        let all = zeros(1024 * 1024 * bits / 8);
+        let own = zeros(256 * 256 * bits / 8);
+        let files = [(strip(all.len()).to_vec(), all), (tiles([256; 2], &own, 16).to_vec(), own)];
+        for (tags, data) in files {
+            let bytes = tiff([1024; 2], [bits, 32773], &tags, &data);
+            let decoding = u64::from(bits / 8) * 1024 * 1024;
+            let (result, took) = read_within("px.tif", &bytes, 1, free(decoding));
+            let heights = result.expect("an image");
+            assert!(heights.maps[0].size == [1024; 2] && took > 4 << 20, "{took} bytes");
+        }
+    }
+    let refused = |tags: &[(u16, Vec<u32>)], compression: u32, data: &[u8]| {
+        let (result, took) = read("refused.tif", &tiff([16; 2], [32, compression], tags, data));
+        assert!(took < data.len() + (1 << 20), "{took} bytes");
+        result.expect_err("a refusal").to_string()
+    };
+    // Of numbers that are stored as differences (317), a whole row of a tile is unpacked.
+    let data = zeros(1 << 16);
+    let wide = [&tiles([160 << 20, 16], &data, 1)[..], &[(317, vec![3])]].concat();
+    let said = refused(&wide, 32773, &data);
+    assert!(said.contains("has 16 x 16 px and would take at least 64"), "{said}");
+    let photo = jpeg(14000, 0xc0);
+    let said = refused(&strip(photo.len()), 7, &photo);
+    assert!(said.ends_with("its numbers are compressed as JPEG; save it with another compression"), "{said}");
+    let many = [&strip(0)[..], &[(277, vec![60_000])]].concat();
+    assert!(refused(&many, 1, &[]).contains("; save it with one channel"));
+}
+
+/// An OpenEXR image of 1024 px a side with so many layers of one channel.
+fn exr(compression: Compression, blocks: Blocks, layers: usize) -> Vec<u8> {
+    let size = Vec2(1024, 1024);
+    let px = FlatSamples::F32((0..1024 * 1024).map(|i| (i % 797) as f32).collect());
+    let encoding = Encoding { compression, blocks, line_order: LineOrder::Increasing };
+    let layer = |number: usize| {
+        let channels = [AnyChannel::new("Y", px.clone())].into_iter().collect();
+        Layer::new(size, LayerAttributes::named(&*format!("{number}")), encoding, AnyChannels::sort(channels))
+    };
+    let layers: Vec<_> = (0..layers).map(layer).collect();
+    let mut bytes = Cursor::new(Vec::new());
+    let image = Image::from_layers(ImageAttributes::new(IntegerBounds::from_dimensions(size)), layers);
+    image.write().to_buffered(&mut bytes).expect("in memory");
+    bytes.into_inner()
+}
+
+#[test]
+fn an_exr_of_one_channel_takes_what_is_counted() {
+    let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
+    for compression in [Compression::Uncompressed, Compression::ZIP16, Compression::PIZ] {
+        let lines = 1024 * compression.scan_lines_per_block() as u64;
+        let tiles = |side: usize| (Blocks::Tiles(Vec2(side, side)), (side * side) as u64);
+        for (blocks, px) in [(Blocks::ScanLines, lines), tiles(256), tiles(1024)] {
+            // Of a block there are about three copies.
+            let (result, took) = read_within("px.exr", &exr(compression, blocks, 1), 1, free(3 * 4 * px));
+            let heights = result.expect("an image");
+            assert!(heights.maps[0].size == [1024; 2] && took > 4 << 20, "{took} bytes");
+        }
+    }
+    let two = exr(Compression::ZIP16, Blocks::ScanLines, 2);
+    let mut deep = exr(Compression::ZIP16, Blocks::ScanLines, 1);
+    // As if its samples were deep, which bit 11 of its version says too.
+    let kind = b"\x0d\0\0\0scanlineimage";
+    let place = deep.windows(kind.len()).position(|own| own == kind).expect("its kind");
+    deep.splice(place..place + kind.len(), *b"\x0c\0\0\0deepscanline");
+    deep[5] |= 8;
+    for bytes in [two, deep] {
+        let (result, took) = read("refused.exr", &bytes);
+        assert!(result.is_err() && took < bytes.len() + (1 << 20), "{took} bytes");
+    }
 }

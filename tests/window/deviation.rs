@@ -1,5 +1,6 @@
 //! The deviation overlay, its section, and reference surfaces.
 
+use documents::cages::cube;
 use egui::accesskit::Role;
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -86,13 +87,9 @@ fn a_reference_surface_is_loaded_and_stays_if_the_next_one_fails() {
     assert_eq!((harness.state().reference_shape(), harness.state().deviation(SplitSide::Right)), (None, Some(limit)));
 }
 
-/// A cube of quadrilaterals.
-const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
-                    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
-
 #[test]
 fn a_mesh_is_compared_with_its_own_subdivision_limit() {
-    let (folder, mut harness) = uniform_of("cube.obj", CUBE);
+    let (folder, mut harness) = uniform_of("cube.obj", cube());
     choose(&mut harness, "Surface", "Flat");
     let context = harness.ctx.clone();
     let compare = "Compare with its subdivision limit";
@@ -128,7 +125,7 @@ fn a_mesh_is_compared_with_its_own_subdivision_limit() {
     assert_eq!(harness.state().settings().overlays.colors, Colors::Material);
     press(&mut harness, egui::Key::V);
     // The file is written anew, longer on one side.
-    std::fs::write(folder.path().join("cube.obj"), CUBE.replace("v -1", "v -1.5")).expect("a writable folder");
+    std::fs::write(folder.path().join("cube.obj"), cube().replace("v -1", "v -1.5")).expect("a writable folder");
     harness.state_mut().reload(&context);
     settle(&mut harness);
     let longer = harness.state().deviation(SplitSide::Right).expect("measured");
@@ -158,7 +155,7 @@ fn a_limit_that_is_read_while_the_mesh_is_prepared_anew_is_that_of_the_new_mesh(
     let faces = (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| 9 + y * (SIDE + 1) + x));
     let faces = faces.map(|first| format!("f {first} {} {} {}\n", first + 1, first + SIDE + 2, first + SIDE + 1));
     let sheet: String = points.chain(faces).collect();
-    let (_folder, mut harness) = uniform_of("parts.obj", format!("o cube\n{CUBE}o sheet\n{sheet}"));
+    let (_folder, mut harness) = uniform_of("parts.obj", format!("o cube\n{}o sheet\n{sheet}", cube()));
     choose(&mut harness, "Surface", "Flat");
     let context = harness.ctx.clone();
     let hide = |harness: &mut Harness<App>, part: &str| {

@@ -1,5 +1,8 @@
 //! Corners that differ in nothing but their details.
 
+use std::hash::BuildHasher;
+
+use foldhash::fast::RandomState;
 use rayon::prelude::*;
 
 use super::rig::Binding;
@@ -17,11 +20,14 @@ impl Mesh {
         if self.details.is_none() {
             return firsts;
         }
-        let mut sorted = firsts.clone();
-        sorted.par_sort_by_key(|corner| self.key(*corner));
-        let groups = sorted.chunk_by(|a, b| self.key(*a) == self.key(*b));
+        // Equal keys have equal hashes, which are sorted several times faster than the keys.
+        let hasher = RandomState::default();
+        let mut sorted: Vec<(u64, u32)> =
+            firsts.par_iter().map(|corner| (hasher.hash_one(self.key(*corner)), *corner)).collect();
+        sorted.par_sort_unstable();
+        let groups = sorted.chunk_by(|(hash, a), (other, b)| hash == other && self.key(*a) == self.key(*b));
         for alike in groups.filter(|alike| alike.len() <= MOST) {
-            alike.iter().for_each(|corner| firsts[*corner as usize] = alike[0]);
+            alike.iter().for_each(|(_, corner)| firsts[*corner as usize] = alike[0].1);
         }
         firsts
     }

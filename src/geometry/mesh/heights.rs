@@ -139,7 +139,7 @@ impl Heights {
         own: &[Option<HeightMap>],
         progress: &Progress,
     ) -> Result<Option<Self>, Cancelled> {
-        let (mut maps, mut ranges, mut known) = (Vec::new(), Vec::new(), HashMap::new());
+        let (mut maps, mut known) = (Vec::new(), HashMap::new());
         let (of_materials, of_parts) = own.split_at_checked(mesh.materials.len()).unwrap_or((own, &[]));
         let has_own = |range: &&PartRange| matches!(of_parts.get(range.part as usize), Some(Some(_)));
         let parts = mesh.part_ranges.iter().filter(has_own).map(|range| &range.triangles);
@@ -147,6 +147,7 @@ impl Heights {
         let mut ends: Vec<u32> = all.flat_map(|range| [range.start, range.end]).collect();
         ends.sort_unstable();
         ends.dedup();
+        let mut ranges = Vec::with_capacity(ends.len());
         for ends in ends.windows(2) {
             progress.check()?;
             let [start, end] = [ends[0], ends[1]];
@@ -341,8 +342,14 @@ mod tests {
 
     #[test]
     fn angles_and_bounds_take_as_many_bytes_as_is_said() {
-        let mesh = Shape::Torus.build();
+        let mut mesh = Shape::Torus.build();
         let reliefs = mesh.triangles.len() * size_of::<Relief>();
         assert!(bytes_beside_maps(&mesh) > (size_of_val(&angles(&mesh)[..]) + reliefs) as u64);
+        // Parts between whose triangles are those of a material: twice as many ranges, in a list that doesn't grow.
+        mesh.part_ranges = (0..65).map(|i| PartRange { triangles: 2 * i..2 * i + 1, part: 0 }).collect();
+        let own = [0.0, 1.0].map(|height| Some(HeightMap::new([1, 1], vec![height])));
+        let heights = Heights::of_materials(&mesh, &own, &Progress::new()).expect("not cancelled").expect("few maps");
+        assert_eq!(heights.ranges.len(), 2 * 65);
+        assert!(heights.ranges.capacity() * size_of_val(&heights.ranges[0]) < 30 * 65);
     }
 }

@@ -27,6 +27,8 @@ pub struct Loaded {
     pub mesh: Arc<Mesh>,
     /// Sentences about what was left out or repaired.
     pub warnings: Vec<String>,
+    /// Whether all of it is a refined subdivision surface.
+    pub is_refined: bool,
     /// What the file offers.
     pub contents: Arc<Contents>,
     /// Its parts as a tree.
@@ -119,7 +121,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
     let start = Instant::now();
     // Large images take longer than most meshes.
     let of_mesh = if preparation.heights.is_some() { 0.4 } else { 1.0 };
-    let LoadedMesh { mesh: mut read, mut warnings, contents, files, file_bytes, is_refined: _ } =
+    let LoadedMesh { mesh: mut read, mut warnings, contents, files, file_bytes, is_refined } =
         source.load_selected(preparation.selection(), &preparation.limits, &progress.part(0.0, of_mesh))?;
     let loaded = Instant::now();
     let budget = Budget::from_mesh(&read, file_bytes, preparation.limits.memory);
@@ -157,6 +159,7 @@ pub fn load(source: &Source, preparation: &Preparation, progress: &Progress) -> 
         mesh: cut.map_or_else(|| read.clone(), Arc::new),
         read,
         warnings,
+        is_refined,
         part_tree: Arc::new(part_tree::tree(&contents.parts)),
         contents: Arc::new(contents),
         files,

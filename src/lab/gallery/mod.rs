@@ -70,7 +70,7 @@ pub struct GalleryOptions {
 pub struct Gallery<'a> {
     options: GalleryOptions,
     engine: &'a Engine,
-    /// The meshes that were loaded already. A mesh that the user names is in every exhibit.
+    /// The current exhibit's meshes that were loaded already. A mesh that the user names is in every exhibit.
     loaded: Vec<Loaded>,
 }
 
@@ -82,10 +82,25 @@ impl<'a> Gallery<'a> {
         Self { options, engine, loaded: Vec::new() }
     }
 
-    /// The exhibits that can be shown. A mesh that the user names is a cage if its polygons are refined.
-    pub fn exhibits(&self) -> Vec<Exhibit> {
-        let has_cage = self.options.source.is_none() || self.options.preparation.import.refines_all();
-        exhibits().into_iter().filter(|exhibit| exhibit.shape.is_some() || has_cage).collect()
+    /// The exhibits that can be shown, and warnings about the mesh that the user named, at all levels of tiles; not about crease
+    /// bands, which nobody asked for. Such a mesh is a cage if its polygons are refined. Tiles for which it can't be are left out.
+    pub fn exhibits(&mut self) -> Result<(Vec<Exhibit>, Vec<String>), ShotError> {
+        let Some(source) = self.options.source.clone() else { return Ok((exhibits().into(), Vec::new())) };
+        let refines_all = self.options.preparation.import.refines_all();
+        let (mut all, mut warnings) = (Vec::new(), Vec::new());
+        for exhibit in exhibits().into_iter().filter(|exhibit| exhibit.shape.is_some() || refines_all) {
+            let mut tiles = Vec::new();
+            for tile in exhibit.tiles {
+                let loaded = self.load(source.clone(), OwnMesh { crease_band: 0.0, ..tile.own_mesh })?;
+                warnings.extend(loaded.warnings.iter().cloned());
+                let is_shown = exhibit.shape.is_some() || loaded.is_refined;
+                let said = || format!("\"{}\" is left out: not all of the mesh can be refined so often.", tile.name);
+                warnings.extend((!is_shown).then(said));
+                tiles.extend(is_shown.then_some(tile));
+            }
+            all.extend((!tiles.is_empty()).then_some(Exhibit { tiles, ..exhibit }));
+        }
+        Ok((all, distinct(warnings)))
     }
 
     /// Draws an exhibit's tiles in rows. Returns the picture, and the results of each tile in order. `starting` is called with
@@ -95,6 +110,8 @@ impl<'a> Gallery<'a> {
         exhibit: &Exhibit,
         mut starting: impl FnMut(usize),
     ) -> Result<(RgbImage, Vec<TileResults>), ShotError> {
+        // Those that only other exhibits have are forgotten.
+        self.loaded.retain(|loaded| loaded.preparation == self.options.preparation);
         let engine = self.engine;
         let target = Target::new(&engine.gpu, TILE)?;
         let camera = self.camera(exhibit, target.viewport())?;
@@ -110,17 +127,6 @@ impl<'a> Gallery<'a> {
         }
         let columns = if parts.len() % 4 == 0 { 4 } else { 3 };
         Ok((contact_sheet(&parts, columns, TEXT)?, all))
-    }
-
-    /// The warnings about the mesh that the user named, at all levels of tiles; not about crease bands, which nobody asked for.
-    pub fn warnings(&mut self) -> Result<Vec<String>, ShotError> {
-        let Some(source) = self.options.source.clone() else { return Ok(Vec::new()) };
-        let mut all = Vec::new();
-        for tile in self.exhibits().into_iter().flat_map(|exhibit| exhibit.tiles) {
-            let without_band = OwnMesh { crease_band: 0.0, ..tile.own_mesh };
-            all.extend(self.load(source.clone(), without_band)?.warnings.iter().cloned());
-        }
-        Ok(distinct(all))
     }
 
     /// The mesh of a tile, which may be the current one.

@@ -6,6 +6,7 @@ use std::fmt::Display;
 use std::io::Cursor;
 use std::path::Path;
 
+use glam::{Vec3, vec3};
 use image::{ImageDecoder, ImageError, ImageFormat, Limits};
 use png::{BitDepth, DecodingError};
 
@@ -94,14 +95,11 @@ fn brighten(line: &[u8], channels: usize, depth: u8, of_bytes: fn([u8; 2]) -> u1
         [a, b] => f32::from(of_bytes([a, b])) / 65535.0,
         _ => f32::from(px[index]) / 255.0,
     };
+    let brightness = |px: &[u8]| vec3(0.2126, 0.7152, 0.0722).dot(Vec3::from([0, 1, 2].map(|k| channel(px, k))));
     for (height, px) in out.iter_mut().zip(line.chunks_exact(depth * channels)) {
-        let own = if channels < 3 { channel(px, 0) } else { brightness([0, 1, 2].map(|k| channel(px, k))) };
+        let own = if channels < 3 { channel(px, 0) } else { brightness(px) };
         *height = own.clamp(-MOST_HEIGHT, MOST_HEIGHT);
     }
-}
-
-fn brightness([r, g, b]: [f32; 3]) -> f32 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 /// An image file that is being read, with what reading it needs.

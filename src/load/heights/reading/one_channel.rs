@@ -6,7 +6,7 @@ use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
 use image::ImageFormat;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
-use tiff::tags::{SampleFormat, Tag};
+use tiff::tags::{CompressionMethod, SampleFormat, Tag};
 
 use super::{HeightError, ImageFile, map_of_px, unpacking_bytes, watched};
 use geometry::casts::{to_f32, to_usize};
@@ -38,11 +38,14 @@ impl ImageFile<'_> {
         };
         let size = self.check(decoder.dimensions().map_err(|error| self.undecoded(error))?.into())?;
         let count = size.map(u64::from).iter().product::<u64>();
-        // What a strip or a tile unpacks to is there beside the pixels.
-        self.afford(size, bytes, 4 * count, 2 * depth * count)?;
+        // It would be unpacked whole, however large it is.
+        if decoder.find_tag_unsigned(Tag::Compression).ok().flatten() == Some(CompressionMethod::ModernJPEG.to_u16()) {
+            return Err(self.fail("its numbers are compressed as JPEG; save it with another compression".to_owned()));
+        }
+        // The file's own numbers, and a row of a tile, which may be wider than the picture. The rest is unpacked piece by piece.
+        self.afford(size, bytes, 4 * count, depth * (count + u64::from(decoder.chunk_dimensions().0)))?;
         let mut limits = Limits::default();
-        limits.decoding_buffer_size = to_usize(depth * count);
-        limits.intermediate_buffer_size = to_usize(self.budget.left().max(1 << 20));
+        (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (to_usize(depth * count), usize::MAX);
         let read = decoder.with_limits(limits).read_image();
         let px = match read.map_err(|error| self.undecoded(error))? {
             DecodingResult::F16(px) => px.into_iter().map(|own| own.to_f32()).collect(),

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::*;
+use documents::cages::cube;
 use geometry::choice::Choice;
 use geometry::numbers::short;
 use load::import::{MOST_LEVELS, Subdivide};
@@ -18,9 +19,6 @@ const FACTOR: f32 = 8.0;
 
 /// Distances of which more than this part may be missing from the reference are only bounded.
 const CERTAIN: f64 = 0.1;
-
-const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
-                    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 3 4 8 7\nf 2 3 7 6\nf 4 1 5 8\n";
 
 /// The edges of the cube's front, infinitely sharp.
 const SHARP_FRONT: &str = "t crease 5/1/0 4 5 6 7 4 10\n";
@@ -46,13 +44,13 @@ fn triangles(mesh: &Mesh) -> String {
 }
 
 fn cages() -> [Cage; 3] {
-    let cube = "A cube under Catmull-Clark";
+    let smooth = "A cube under Catmull-Clark";
     let creased = "The same cube with infinitely sharp edges around one face";
     let icosahedron = triangles(&Shape::Icosahedron.build());
     [
-        Cage { title: cube, obj: CUBE.to_owned(), scheme: Subdivide::CatmullClark },
+        Cage { title: smooth, obj: cube(), scheme: Subdivide::CatmullClark },
         Cage { title: "An icosahedron under Loop", obj: icosahedron, scheme: Subdivide::Loop },
-        Cage { title: creased, obj: [CUBE, SHARP_FRONT].concat(), scheme: Subdivide::CatmullClark },
+        Cage { title: creased, obj: cube() + SHARP_FRONT, scheme: Subdivide::CatmullClark },
     ]
 }
 
@@ -107,6 +105,14 @@ impl Compared {
         let row = |surface: Surface| {
             let factor = if surface.is_flat() { 1.0 } else { FACTOR };
             (surface, std::array::from_fn(|levels| Cell::new(&limit, &emitted(&meshes[levels], surface, factor))))
+        };
+        let e = emitted(&meshes[levels], surface, factor);
+                    let te = t.elapsed();
+                    let c = Cell::new(&limit, &e);
+                    eprintln!("{surface:?} {levels}: {te:?} {:?} {:?}", t.elapsed(), c.distance);
+                    c
+                }),
+            )
         };
         let has_creases = Topology::new(&meshes[0]).edge_counts().split > 0;
         let same = |a, b| {
