@@ -325,6 +325,9 @@ fn of_colors(
         let why = format!("{own}no material has a base colour image that can be read{of_texture}");
         return Err(HeightError::NoImage { name: mesh.name.clone(), why });
     }
+    if count > MAX_MAPS {
+        return Err(HeightError::TooMany { name: mesh.name.clone() });
+    }
     let kept = textures.values().map(|texture| HeightMap::bytes_to_build(texture.size)).sum();
     budget.hold(kept).map_err(|refused| too_much(mesh, count, refused))?;
     let mut maps = HashMap::new();

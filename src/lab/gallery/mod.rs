@@ -86,9 +86,8 @@ impl<'a> Gallery<'a> {
     /// bands, which nobody asked for. Such a mesh is a cage if its polygons are refined. Tiles for which it can't be are left out.
     pub fn exhibits(&mut self) -> Result<(Vec<Exhibit>, Vec<String>), ShotError> {
         let Some(source) = self.options.source.clone() else { return Ok((exhibits().into(), Vec::new())) };
-        let refines_all = self.options.preparation.import.refines_all();
-        let (mut all, mut warnings) = (Vec::new(), Vec::new());
-        for exhibit in exhibits().into_iter().filter(|exhibit| exhibit.shape.is_some() || refines_all) {
+        let (mut all, mut warnings, import) = (Vec::new(), Vec::new(), self.options.preparation.import);
+        for exhibit in exhibits().into_iter().filter(|exhibit| exhibit.shape.is_some() || import.refines_all()) {
             let mut tiles = Vec::new();
             for tile in exhibit.tiles {
                 let loaded = self.load(source.clone(), OwnMesh { crease_band: 0.0, ..tile.own_mesh })?;

@@ -19,7 +19,7 @@ use crate::memory_budget::Budget;
 use crate::watched_bytes::watched;
 use crate::webp;
 use geometry::casts::to_usize;
-use geometry::mesh::build_limits::{Borrowed, MemoryRefused, borrowing};
+use geometry::mesh::build_limits::{Borrowed, MemoryRefused};
 use geometry::mesh::heights::{HeightMap, MAX_KEPT};
 use geometry::mesh::mipmap::MipFilter;
 use geometry::progress::{Cancelled, Progress};
@@ -216,9 +216,8 @@ impl ImageFile<'_> {
                 "it has {width} x {height} px and {refused}; {side}, or save it as a PNG that isn't interlaced"
             ))
         };
-        let all =
-            px.saturating_add(kept.max(decoding)).saturating_add(bytes.len() as u64).saturating_add(self.reserved);
-        borrowing(self.budget, || self.budget.borrow(all)).map_err(too_much)?;
+        let all = [px, kept.max(decoding), bytes.len() as u64, self.reserved];
+        self.budget.check(all.into_iter().fold(0, u64::saturating_add)).map_err(too_much)?;
         self.budget.hold(kept).map_err(too_much)
     }
 }

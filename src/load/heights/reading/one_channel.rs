@@ -24,8 +24,7 @@ impl ImageFile<'_> {
             _ => None,
         };
         let Some((size, px)) = read else { return Ok(None) };
-        let progress = self.progress.part(0.6, 1.0);
-        Ok(Some(map_of_px(size, [1, 4], bytemuck::cast_slice(&px), &progress)?))
+        Ok(Some(map_of_px(size, [1, 4], bytemuck::cast_slice(&px), &self.progress.part(0.6, 1.0))?))
     }
 
     fn read_tiff(&self, bytes: &[u8]) -> Result<Option<Numbers>, HeightError> {
