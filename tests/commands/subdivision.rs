@@ -6,8 +6,6 @@ use documents::cages::{CUBE, QUADS, cube};
 
 use super::{Folder, SIMPLE_LIGHT, both, failure, number, output, run, stats};
 
-use super::{Folder, both, failure, number, output, run, stats};
-
 /// The positions of the mesh that a file becomes.
 fn positions(folder: &Folder, file: &str, options: &[&str]) -> Vec<[f64; 3]> {
     let written = folder.path("refined.obj");

@@ -10,8 +10,10 @@ use inspect::settings::SplitSide;
 
 const COLUMNS: [&str; 3] = ["Left", "Right", "Difference"];
 
-/// The figures of a half: each with its name and hover text.
-const FIGURES: [(&str, &str, fn(&Results) -> f64); 7] = [
+/// A figure's name, its hover text, and what it is of a half.
+type Figure = (&'static str, &'static str, fn(&Results) -> f64);
+
+const FIGURES: [Figure; 7] = [
     ("Triangles", "Emitted triangles.", |own| own.totals.1 as f64),
     ("Below 3 px, %", "Triangles in view that cover less than 4.5 px², half of a square of 3 px.", |own| {
         100.0 * own.sizes.small as f64 / own.sizes.in_view.max(1) as f64

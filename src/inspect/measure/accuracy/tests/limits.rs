@@ -106,14 +106,6 @@ impl Compared {
             let factor = if surface.is_flat() { 1.0 } else { FACTOR };
             (surface, std::array::from_fn(|levels| Cell::new(&limit, &emitted(&meshes[levels], surface, factor))))
         };
-        let e = emitted(&meshes[levels], surface, factor);
-                    let te = t.elapsed();
-                    let c = Cell::new(&limit, &e);
-                    eprintln!("{surface:?} {levels}: {te:?} {:?} {:?}", t.elapsed(), c.distance);
-                    c
-                }),
-            )
-        };
         let has_creases = Topology::new(&meshes[0]).edge_counts().split > 0;
         let same = |a, b| {
             let [a, b] = [a, b].map(|surface| emitted(&meshes[0], surface, FACTOR).vertices);
