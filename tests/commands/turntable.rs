@@ -7,8 +7,7 @@ use image::{AnimationDecoder, RgbaImage};
 
 use crate::{Folder, failure, output, sentence};
 
-/// The size, and light that needs no preparation.
-const SIZE: [&str; 4] = ["--size", "96x72", "--lighting", "camera"];
+const SIZE: [&str; 2] = ["--size", "96x72"];
 
 fn names(folder: &str) -> Vec<String> {
     let entries = std::fs::read_dir(folder).expect("a folder");

@@ -31,18 +31,18 @@ fn the_figures_of_both_halves_stand_beside_each_other() {
     for label in [
         "Triangles, Left: 156",
         "Triangles, Right: 1,452",
-        "Triangles, Difference: +1,296",
+        "Triangles, Change: +1,296",
         "Culled patches, Left: 0",
-        "At max factor, Difference: 0",
+        "At max factor, Change: 0",
         "Cracked edges, Left: 12",
         "Cracked edges, Right: 0",
-        "Cracked edges, Difference: -12",
+        "Cracked edges, Change: -12",
         "Widest gap, px, Right: 0",
     ] {
         harness.get_by_label(label);
     }
-    harness.get_by_label_contains("Widest gap, px, Difference: -");
-    for header in ["Half", "Difference"] {
+    harness.get_by_label_contains("Widest gap, px, Change: -");
+    for header in ["Half", "Change"] {
         harness.get_by_role_and_label(Role::Label, header);
     }
     assert!(harness.query_by_label_contains("Half, ").is_none(), "headers aren't figures");
@@ -65,7 +65,7 @@ fn the_deviations_of_both_halves_are_compared_if_both_show_it() {
     // The distance between the inscribed and the circumscribed sphere, and a third of it or less.
     harness.get_by_label("Deviation, Left: 0.205");
     harness.get_by_label_contains("Deviation, Right: 0.06");
-    harness.get_by_label_contains("Deviation, Difference: -0.1");
+    harness.get_by_label_contains("Deviation, Change: -0.1");
     choose(&mut harness, "Left looks", "Its own");
     press(&mut harness, egui::Key::V);
     assert!(harness.state().deviation(SplitSide::Left).is_some());
@@ -80,10 +80,10 @@ fn what_is_shown_is_kept_on_the_left_and_compared_with_what_is_changed_then() {
     let kept = *harness.state().settings();
     assert!(kept.split.is_some(), "the split opens");
     assert_eq!((kept.left, kept.left_looks), (before.tessellation, None));
-    harness.get_by_label("Triangles, Difference: 0");
+    harness.get_by_label("Triangles, Change: 0");
     choose(&mut harness, "Surface", "PN");
     harness.get_by_label("Cracked edges, Left: 0");
-    harness.get_by_label("Cracked edges, Difference: +12");
+    harness.get_by_label("Cracked edges, Change: +12");
     // Looks of its own are those of the right half, too.
     choose(&mut harness, "Left looks", "Its own");
     press(&mut harness, egui::Key::W);
@@ -145,7 +145,7 @@ fn the_mesh_that_is_kept_stays_when_the_right_one_is_prepared_otherwise() {
     settle(&mut harness);
     let earlier = "Left: as kept, PN-AEN\n1,452 triangles, 0 cracked edges";
     harness.get_by_label(earlier);
-    assert!(harness.query_by_label("Triangles, Difference: 0").is_none(), "the right half alone has the band");
+    assert!(harness.query_by_label("Triangles, Change: 0").is_none(), "the right half alone has the band");
     assert_eq!(left_mesh(&harness).as_deref(), Some("As kept"));
     let command = copied(&mut harness);
     assert!(!command.contains("--split"), "{command}");
@@ -162,7 +162,7 @@ fn the_mesh_that_is_kept_stays_when_the_right_one_is_prepared_otherwise() {
     settle(&mut harness);
     harness.get_by_label(earlier);
     choose(&mut harness, "Left mesh", "The same");
-    harness.get_by_label("Triangles, Difference: 0");
+    harness.get_by_label("Triangles, Change: 0");
     harness.state_mut().undo(&context);
     settle(&mut harness);
     harness.get_by_label(earlier);
@@ -172,7 +172,7 @@ fn the_mesh_that_is_kept_stays_when_the_right_one_is_prepared_otherwise() {
 fn figures_of_different_moments_are_not_subtracted() {
     let mut harness = window(Some(Source::Shape(Shape::Torus)));
     press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::J);
-    let differences = ["Triangles, Difference: 0", "Triangles, Difference: …"];
+    let differences = ["Triangles, Change: 0", "Triangles, Change: …"];
     for _ in 0..4 {
         let start = Instant::now();
         harness.key_press(egui::Key::PageUp);

@@ -8,7 +8,7 @@ use crate::app::sections::Section;
 use crate::app::text::{grouped, short};
 use inspect::settings::SplitSide;
 
-const COLUMNS: [&str; 3] = ["Left", "Right", "Difference"];
+const COLUMNS: [&str; 3] = ["Left", "Right", "Change"];
 
 /// A figure's name, its hover text, and what it is of a half.
 type Figure = (&'static str, &'static str, fn(&Results) -> f64);
@@ -32,7 +32,7 @@ impl App {
             return;
         }
         egui::Grid::new("halves").num_columns(4).min_col_width(50.0).show(ui, |ui| {
-            ui.label("Half").on_hover_text("The difference is right minus left.");
+            ui.label("Half").on_hover_text("The change is right minus left.");
             COLUMNS.into_iter().for_each(|column| drop(cell(ui, RichText::new(column))));
             ui.end_row();
             // Each half is measured by a walk of its own.

@@ -81,9 +81,15 @@ impl App {
     fn left_mesh_row(&mut self, ui: &mut egui::Ui) {
         let (open, left) = (self.document.as_ref(), self.other_left());
         let from = left.map(|left| left.from.clone());
-        let shown = left.zip(open).map_or_else(|| "The same".to_owned(), |(left, open)| left.title(open.version));
-        let is_weighed = matches!(from, Some(LeftChoice::Read(None, _)));
-        let shown = if is_weighed { "The same, own weights".to_owned() } else { shown };
+        let shown = match &from {
+            None => "The same".to_owned(),
+            Some(LeftChoice::Read(None, _)) => "The same, own weights".to_owned(),
+            Some(LeftChoice::Read(Some(source), _)) => source.title(),
+            Some(LeftChoice::Kept(kept)) if open.is_some_and(|open| kept.version < open.version) => {
+                "Before the change on disk".to_owned()
+            }
+            Some(LeftChoice::Kept(_)) => "As kept".to_owned(),
+        };
         let before = open.and_then(|open| open.before.clone().map(LeftChoice::Kept));
         let file = self.reference_shape().filter(|source| source.shape().is_none()).cloned();
         let is_reference = matches!(&from, Some(LeftChoice::Read(Some(left), _)) if Some(left) == file.as_ref());
