@@ -1,5 +1,6 @@
 //! The legend of the surface's colours: under the measurements, or without these in a lower corner of the picture.
 
+use egui::emath::GuiRounding;
 use egui::{Align2, Rect, Role, Sense, TextureHandle, Vec2, WidgetInfo, vec2};
 
 use crate::app::App;
@@ -34,6 +35,8 @@ impl PaintedLegend {
     }
 
     fn show(&self, ui: &egui::Ui, place: Rect) {
+        // Between px, letters would be blurred.
+        let place = place.round_to_pixels(ui.pixels_per_point());
         let response = ui.interact(place, ui.scope_id().with("legend"), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("Legend: {}", self.legend.spoken())));
         response.on_hover_text(&self.legend.meaning);
