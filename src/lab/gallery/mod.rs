@@ -44,7 +44,7 @@ const FRAMING_FACTOR: f32 = 4.0;
 
 /// A surface that reaches farther than this from the mesh's middle, in bounding radii, doesn't count for the camera. Patches
 /// that fly away leave the picture, so that the rest stays large.
-const FARTHEST: f32 = 1.1;
+const FARTHEST: f32 = 1.5;
 
 /// The cage that is shown if no mesh is named: a cube, in OBJ.
 const CAGE: &[u8] = b"v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
