@@ -6,7 +6,7 @@ use serde_json::Value;
 use crate::picture_file::{ADAPTER, texts};
 use crate::{Folder, assert_says, both, command, failure, number};
 
-const SCENE: [&str; 8] = ["render", "shape:torus", "--size", "160x120", "--factor", "3", "--lighting", "camera"];
+const SCENE: [&str; 6] = ["render", "shape:torus", "--size", "160x120", "--factor", "3"];
 
 /// Draws the scene with more options, and returns what is said of it. It fails or doesn't, as it must.
 fn compared(folder: &Folder, reference: &str, more: &[&str], is_same: bool) -> String {
@@ -64,7 +64,7 @@ fn all_px_must_be_equal_where_the_same_driver_drew_both() {
     let map = image::open(folder.path("now-diff.png")).expect("a PNG file").to_luma8();
     let bright: Vec<_> = map.enumerate_pixels().filter(|(.., pixel)| pixel[0] > 0).map(|(x, y, _)| (x, y)).collect();
     assert_eq!(bright, [(80, 60)]);
-    compared(&folder, &golden, &["--camera", "31,20"], false);
+    compared(&folder, &golden, &["--light-rotation", "2"], false);
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn pictures_of_other_drivers_and_of_unknown_ones_may_differ_a_little() {
             said.contains("differs by 1.00 steps on average, and 1.5 are allowed since") && said.contains(why),
             "{said}"
         );
-        let said = compared(&folder, &golden, &["--camera", "40,20"], false);
+        let said = compared(&folder, &golden, &["--light-rotation", "10"], false);
         assert!(said.contains(" on average, and 1.5 are allowed since") && said.contains(why), "{said}");
     }
     // A threshold that is given holds whatever drew the reference.
@@ -135,7 +135,7 @@ fn stats_say_which_comparison_was_made() {
         assert_eq!(stats["reference"]["is_same"], output.status.success(), "{stats}");
         stats["reference"].clone()
     };
-    let exact = reference(&["--background", "ff0000"]);
+    let exact = reference(&["--exposure", "0.2"]);
     assert_eq!((&exact["comparison"], &exact["threshold"]), (&"exact".into(), &Value::Null));
     assert!(number(&exact, "/px_different") > 1000.0 && number(&exact, "/largest_step") > 5.0, "{exact}");
     let tolerant = reference(&["--threshold", "2.5"]);

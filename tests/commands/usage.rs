@@ -113,16 +113,17 @@ fn without_a_display_the_program_writes_a_picture_without_the_settings_of_the_wi
     let folder = Folder::new();
     std::fs::write(folder.path("window.json"), r#"{"settings": {"surface": "flat", "background": [255, 0, 0]}}"#)
         .expect("a writable folder");
-    let pictures = ["", &folder.path("")].map(|kept| {
+    let pictures = [None, Some(""), Some(&*folder.path(""))].map(|kept| {
         let mut preview = command(&[]);
-        let output = preview.env("PNAEN_CONFIG", kept).current_dir(&folder.0).output().expect("the program starts");
+        preview.env_remove("PNAEN_CONFIG").envs(kept.map(|kept| ("PNAEN_CONFIG", kept)));
+        let output = preview.current_dir(&folder.0).output().expect("the program starts");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let said = String::from_utf8_lossy(&output.stdout).into_owned();
         assert!(said.contains("no display") && said.contains("pnaen-preview.png"), "{said}");
         assert_eq!(said.lines().count(), 1);
         std::fs::read(folder.path("pnaen-preview.png")).expect("a picture")
     });
-    assert!(pictures[0] == pictures[1], "the same picture with settings and without");
+    assert!(pictures.iter().all(|own| *own == pictures[0]), "the same picture with settings and without");
     let picture = image::load_from_memory(&pictures[0]).expect("a PNG file");
     assert_eq!((picture.width(), picture.height()), (1280, 720));
     std::fs::write(folder.path("window.json"), "damaged").expect("a writable folder");

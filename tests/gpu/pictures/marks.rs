@@ -9,7 +9,7 @@ use inspect::render::{Camera, Scene, Target, t_junction_lines};
 use inspect::settings::{ARENA_BYTES, Overlay, Overlays, Settings};
 use inspect::shot::{BETWEEN_DRIVERS, compare};
 
-use super::{SIZE, pixels_of};
+use super::{SIZE, pixels_of, pn_under};
 use crate::stability::{case, seen};
 use crate::{engine, picture, scene};
 
@@ -24,12 +24,7 @@ fn lines_have_the_colours_of_their_legend() {
     ];
     for (shape, overlay, color) in legend {
         let (_, mut scene) = scene(shape);
-        let overlays = Overlays::new(&[overlay]).expect("one overlay");
-        let settings = Settings {
-            tessellation: Tessellation { surface: Surface::Pn, ..Tessellation::default() },
-            overlays,
-            ..Settings::default()
-        };
+        let settings = pn_under(overlay);
         let found = pixels_of(&picture(&mut scene, &settings, [640, 480]), color);
         assert!(found > 50, "{shape:?} {overlay:?}: {found} px of {color:?}");
     }
