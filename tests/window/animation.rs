@@ -145,7 +145,7 @@ fn a_moment_that_is_kept_on_the_left_stays_while_the_right_half_moves() {
     show(&mut harness, 0.25);
     harness.get_by_label_contains("Left: All at 0.5 s, PN-AEN");
     harness.get_by_label_contains("Right: All at 0.25 s, PN-AEN");
-    harness.get_by_label("Triangles, Difference: 0");
+    harness.get_by_label("Triangles, Change: 0");
     let context = harness.ctx.clone();
     harness.state_mut().undo(&context);
     settle(&mut harness);
