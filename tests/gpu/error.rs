@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use geometry::mesh::{HeightMap, Heights, Mesh, Shape, Topology};
+use geometry::mesh::mesh_builder::{InputCorner, MeshBuilder};
+use geometry::mesh::{HeightMap, Heights, Material, Mesh, Shape, Topology};
 use geometry::progress::Progress;
 use geometry::tessellate::{
     self, Convention, Displacement, Edges, HullFactors, Inputs, Lod, Partitioning, Surface, Tessellated, Tessellation,
     hull_factors, minimum_triangles, tessellate,
 };
-use glam::Vec2;
+use glam::{Vec2, Vec3, vec3};
 use gpu::{ComputePipelines, Timing, take_times};
 use inspect::engine::{Loaded, Preparation, load};
 use inspect::measure::{EmittedChunk, ScreenErrorMeasurement, Visitor};
@@ -527,4 +528,51 @@ fn lod_by_error_needs_fewer_triangles_for_the_error_that_another_lod_has() {
     let of_given = count(&mut scene, &inputs);
     assert_eq!(compared(&mut scene, &inputs, 0.5), Some(expected));
     assert_eq!((scene.tessellator.given(), scene.tessellator.totals().1), (Some(&given.into()), of_given));
+}
+
+/// A mesh of pairs of triangles, one of which takes a pattern of thousands; its camera, and the settings for it.
+fn long_searches(copies: u8, tolerance: f32) -> (Mesh, Camera, Settings) {
+    let [top, tip] = [vec3(0.60090736, 0.6576263, 0.8565229), vec3(-0.52053875, 0.79913324, 0.30070817)];
+    let tilted = vec3(-0.8186292, 0.0, 0.5743224);
+    let soup = [
+        [
+            (top, vec3(-0.8168664, 0.12585162, 0.5629304)),
+            (vec3(-1.0, 0.0, -0.16707182), tip),
+            (vec3(-0.9, 0.0, 0.0), tip),
+        ],
+        [(Vec3::ZERO, tilted), (vec3(0.0, -0.619506, 0.0), tilted), (top, Vec3::X)],
+    ];
+    let mut builder = MeshBuilder::new();
+    let material = builder.material(Material::plain("pairs", [0.6, 0.6, 0.6, 1.0]));
+    for (copy, corners) in (0..copies).flat_map(|copy| soup.map(|corners| (copy, corners))) {
+        // Corners with other texture coordinates are others.
+        let corner = |(position, normal)| InputCorner { position, normal: Some(normal), uv: Vec2::splat(copy.into()) };
+        builder.triangle(material, corners.map(corner));
+    }
+    let mesh = builder.finish("pairs".to_owned(), &Progress::default()).expect("nobody cancels");
+    let (target, distance) = (vec3(0.107374824, 0.0311045, 1.3861056), 0.60535274);
+    let far = Camera::framing(&mesh.bounds(), VIEWPORT);
+    let camera = Camera { target, azimuth: 309.46902, elevation: -49.88636, distance, orthographic: true, ..far };
+    let (surface, partitioning) = (Surface::Nagata, Partitioning::Integer);
+    let settings = Settings::from(Tessellation { surface, partitioning, ..Tessellation::default() });
+    (mesh, camera, by_error(settings, tolerance))
+}
+
+#[test]
+fn long_searches_end_on_a_driver_that_limits_loops() {
+    // More patches than are searched by whole workgroups may find nothing in time, and then have the largest factors.
+    for (copies, tolerance) in [(1, 0.3), (1, 0.2), (1, 0.1), (70, 0.3), (70, 0.1)] {
+        let (mesh, camera, settings) = long_searches(copies, tolerance);
+        let topology = Topology::build(&mesh, &Progress::default()).expect("nobody cancels");
+        let inputs = settings.inputs(camera.lod_view(VIEWPORT, &mesh.bounds()));
+        let (mesh, topology) = (Arc::new(mesh), Arc::new(topology));
+        let mut scene = engine().scene_of(mesh.clone(), topology.clone(), ARENA_BYTES).expect("a small mesh");
+        engine().count(&mut scene, &inputs, &mut Timing::Off).expect("counts");
+        let (own, expected) =
+            (scene.tessellator.hull_factors().expect("a readback"), hull_factors(&mesh, &topology, &inputs));
+        for (own, expected) in own.iter().zip(&expected) {
+            let is_capped = copies > 1 && own.is_capped(Partitioning::Integer);
+            assert!(own == expected || is_capped, "{copies} of {tolerance} px: {own:?}, not {expected:?}");
+        }
+    }
 }
