@@ -152,6 +152,8 @@ pub enum Written {
 pub enum Purpose {
     Open,
     Heights,
+    /// The height image of the part that was chosen last.
+    PartHeights,
     CompanionFile(CompanionFile),
     Write(Written),
 }

@@ -61,7 +61,7 @@ pub use read_error::{FilePosition, ReadError};
 pub use uri::percent_decoded;
 
 pub use format::Format;
-pub use heights::HeightSource;
+pub use heights::{HeightSource, NamedImage};
 pub use import::{FileUnit, Import, LengthUnit, UNIT_METRES, is_of_lacking_normals};
 pub use memory_budget::Budget;
 pub use selection::{MorphWeights, ShownParts};

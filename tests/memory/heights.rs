@@ -124,10 +124,11 @@ fn colour_profiles_are_not_unpacked() {
     assert!(mesh.materials[0].texture.is_some() || warnings[0].contains("is left out"), "{warnings:?}");
 }
 
-/// A TIFF image of one channel of floating-point numbers with so many bits, which has these tags too. Its data begin at byte 8.
+/// A TIFF image of one channel of floating-point numbers with so many bits, or of whole ones with 8, which has these tags too. Its data begin at byte 8.
 fn tiff(size: [u32; 2], [bits, compression]: [u32; 2], more: &[(u16, Vec<u32>)], data: &[u8]) -> Vec<u8> {
     let [width, height] = size;
-    let all = [(256, width), (257, height), (258, bits), (259, compression), (262, 1), (339, 3)];
+    let all =
+        [(256, width), (257, height), (258, bits), (259, compression), (262, 1), (339, if bits == 8 { 1 } else { 3 })];
     let mut tags: Vec<_> = all.map(|(tag, value)| (tag, vec![value])).into_iter().chain(more.iter().cloned()).collect();
     tags.sort();
     let mut bytes = [b"II\x2a\0\0\0\0\0", data].concat();
@@ -157,7 +158,7 @@ fn free(decoding: u64) -> u64 {
 }
 
 #[test]
-fn a_tiff_of_one_channel_takes_what_is_counted() {
+fn a_tiff_takes_what_is_counted() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let strip = |count: usize| [(273, vec![8]), (278, vec![u32::MAX]), (279, vec![count as u32])];
     let tiles = |[width, height]: [u32; 2], data: &[u8], count: usize| {
@@ -175,21 +176,22 @@ fn a_tiff_of_one_channel_takes_what_is_counted() {
             assert!(heights.maps[0].size == [1024; 2] && took > 4 << 20, "{took} bytes");
         }
     }
-    let refused = |tags: &[(u16, Vec<u32>)], compression: u32, data: &[u8]| {
-        let (result, took) = read("refused.tif", &tiff([16; 2], [32, compression], tags, data));
+    let refused = |tags: &[(u16, Vec<u32>)], own: [u32; 2], data: &[u8]| {
+        let (result, took) = read("refused.tif", &tiff([16; 2], own, tags, data));
         assert!(took < data.len() + (1 << 20), "{took} bytes");
         result.expect_err("a refusal").to_string()
     };
+    let (data, photo) = (zeros(1 << 16), jpeg(14000, 0xc0));
     // Of numbers that are stored as differences (317), a whole row of a tile is unpacked.
-    let data = zeros(1 << 16);
-    let wide = [&tiles([160 << 20, 16], &data, 1)[..], &[(317, vec![3])]].concat();
-    let said = refused(&wide, 32773, &data);
-    assert!(said.contains("has 16 x 16 px and would take at least 64"), "{said}");
-    let photo = jpeg(14000, 0xc0);
-    let said = refused(&strip(photo.len()), 7, &photo);
-    assert!(said.ends_with("its numbers are compressed as JPEG; save it with another compression"), "{said}");
+    for (bits, differences) in [(8, 2), (32, 3)] {
+        let wide = [&tiles([160 << 20, 16], &data, 1)[..], &[(317, vec![differences])]].concat();
+        let said = refused(&wide, [bits, 32773], &data);
+        assert!(said.contains("has 16 x 16 px and would take at least 5"), "{said}");
+        let said = refused(&strip(photo.len()), [bits, 7], &photo);
+        assert!(said.ends_with("its numbers are compressed as JPEG; save it with another compression"), "{said}");
+    }
     let many = [&strip(0)[..], &[(277, vec![60_000])]].concat();
-    assert!(refused(&many, 1, &[]).contains("; save it with one channel"));
+    assert!(refused(&many, [32, 1], &[]).contains("; save it with one channel"));
 }
 
 /// An OpenEXR image of 1024 px a side with so many layers of one channel.

@@ -188,3 +188,36 @@ fn figures_of_different_moments_are_not_subtracted() {
         harness.get_by_label(differences[0]);
     }
 }
+
+#[test]
+fn swap_exchanges_the_meshes_of_two_files_and_undo_keeps_them_there() {
+    let (folder, mut harness) = uniform_of("quad.obj", QUAD);
+    let path = folder.path().join("half.obj");
+    std::fs::write(&path, QUAD.replace("f 1 2 3 4", "f 1 2 3")).expect("a writable folder");
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Left", "PN");
+    let context = harness.ctx.clone();
+    harness.state_mut().open_reference_shape(&context, Source::File(path));
+    settle(&mut harness);
+    choose(&mut harness, "Left mesh", "Reference surface: half.obj");
+    let camera = *harness.state().camera();
+    let shown = |harness: &Harness<App>, [left, right, change]: [&str; 3]| {
+        harness.get_by_label_contains(&format!("Left: {left}: "));
+        harness.get_by_label_contains(&format!("Right: {right}: "));
+        harness.get_by_label(&format!("Triangles, Change: {change}"));
+        assert_eq!(*harness.state().camera(), camera, "the view stays");
+    };
+    shown(&harness, ["half.obj, PN", "quad.obj, PN-AEN", "+121"]);
+    scroll_to(&mut harness, "Swap");
+    click(&mut harness, "Swap");
+    shown(&harness, ["quad.obj, PN-AEN", "half.obj, PN", "-121"]);
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert_eq!(harness.state().loaded().map(|loaded| loaded.source.title()).as_deref(), Some("half.obj"));
+    assert_eq!(left_mesh(&harness).as_deref(), Some("quad.obj"), "no step takes the exchange back");
+    harness.state_mut().redo(&context);
+    settle(&mut harness);
+    scroll_to(&mut harness, "Swap");
+    click(&mut harness, "Swap");
+    shown(&harness, ["half.obj, PN", "quad.obj, PN-AEN", "+121"]);
+}

@@ -107,6 +107,28 @@ fn the_left_half_has_weights_of_its_own_which_are_undone_and_copied() {
 }
 
 #[test]
+fn swap_exchanges_the_weights_of_both_halves() {
+    let (_folder, mut harness) = uniform_of("moving.glb", moving());
+    press(&mut harness, Key::S);
+    scroll_to(&mut harness, "Edit left (A)");
+    click(&mut harness, "Edit left (A)");
+    scroll_to(&mut harness, "Reset morph targets");
+    harness.get_by_role_and_label(Role::Slider, "Swell").set_value_accesskit(1.0);
+    settle(&mut harness);
+    for (swell, of_left) in [(-0.6, "Swell 1"), (-0.9, "Swell 0.25"), (-0.6, "Swell 1")] {
+        assert!((least(&harness) - swell).abs() < 1e-5, "{}", least(&harness));
+        harness.get_by_label_contains(&format!("Left: {of_left}, "));
+        scroll_to(&mut harness, "Swap");
+        click(&mut harness, "Swap");
+    }
+    let context = harness.ctx.clone();
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert!((least(&harness) + 0.6).abs() < 1e-5, "it is one step: {}", least(&harness));
+    harness.get_by_label_contains("Left: Swell 1, ");
+}
+
+#[test]
 fn weights_of_the_left_half_that_the_file_no_longer_has_are_dropped_with_a_sentence() {
     let (folder, mut harness) = uniform_of("moving.glb", moving());
     press(&mut harness, Key::S);

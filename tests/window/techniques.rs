@@ -1,14 +1,18 @@
 //! Choosing surfaces, normals and displacement.
 
+use std::path::Path;
+
 use egui::Key;
 use egui::accesskit::Role;
+use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
-use geometry::mesh::Shape;
+use geometry::mesh::{HeightAmount, Shape};
 use geometry::tessellate::{Displacement, Normals, Surface};
-use load::{HeightSource, Source};
+use load::{HeightSource, NamedImage, Source};
+use pnaen::app::App;
 
 use crate::editing::copied;
-use crate::{choose, press, settle, uniform};
+use crate::{choose, click, press, scroll_to, settle, uniform, uniform_of};
 
 #[test]
 fn every_surface_can_be_chosen_and_only_those_that_tear_have_cracks() {
@@ -109,6 +113,62 @@ fn a_file_is_displaced_by_the_height_images_of_its_materials() {
     press(&mut harness, Key::R);
     let app = harness.state();
     assert_eq!(app.settings().tessellation.displacement, Displacement::Off, "loading it again changes nothing");
+}
+
+#[test]
+fn a_part_gets_a_height_image_and_an_amount_of_its_own() {
+    let mesh = "v 0 0 0\nv 2 0 0\nv 2 0 3\nv 0 0 3\nv 0 1 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+                o floor\nf 1/1 4/4 3/3 2/2\no wall\nf 1/1 2/2 6/3 5/4\n";
+    let (folder, mut harness) = uniform_of("room.obj", mesh);
+    let path = |name: &str, level: u8| {
+        let path = folder.path().join(name);
+        image::GrayImage::from_pixel(2, 2, image::Luma([level])).save(&path).expect("a writable temporary folder");
+        path
+    };
+    let (white, grey) = (path("white.png", 255), path("grey.png", 128));
+    let open = |harness: &mut Harness<App>, path: &Path| {
+        while harness.state().path_asked_for().is_none() {
+            harness.step();
+        }
+        assert!(matches!(harness.state().path_asked_for(), Some(("Height image path", Some(_)))));
+        harness.run_steps(2);
+        let field = harness.get_by_label("A .png, .jpg, .webp, .tga, .ktx2, .tif or .exr image");
+        field.type_text(&path.display().to_string());
+        settle(harness);
+        click(harness, "Open");
+    };
+    let images = |harness: &Harness<App>| match &harness.state().loaded().expect("a mesh").preparation.heights {
+        Some(HeightSource::Each(images)) => images.clone(),
+        _ => Vec::new(),
+    };
+    scroll_to(&mut harness, "wall");
+    harness.get_by_role_and_label(Role::CheckBox, "wall").click_secondary();
+    settle(&mut harness);
+    click(&mut harness, "Its height image…");
+    open(&mut harness, &white);
+    let image = NamedImage { part: "wall".to_owned(), path: white, amount: None };
+    assert_eq!(images(&harness), std::slice::from_ref(&image));
+    harness.get_by_role_and_label(Role::Slider, "Midlevel");
+    for (label, number) in [("Height scale of wall", 0.5), ("Midlevel of wall", 0.25)] {
+        scroll_to(&mut harness, label);
+        harness.get_by_role_and_label(Role::SpinButton, label).set_value_accesskit(number);
+        settle(&mut harness);
+    }
+    let amount = HeightAmount::new(0.5, 0.25);
+    assert_eq!(images(&harness), [NamedImage { amount, ..image.clone() }]);
+    assert!(harness.query_by_role_and_label(Role::Slider, "Midlevel").is_none(), "the image has its own");
+    let command = copied(&mut harness);
+    assert!(command.contains("white.png,scale=0.5,midlevel=0.25"), "{command}");
+    press(&mut harness, Key::Escape);
+    click(&mut harness, "Another image of wall");
+    open(&mut harness, &grey);
+    assert_eq!(images(&harness), [NamedImage { amount, path: grey, ..image }]);
+    click(&mut harness, "No image of wall");
+    assert_eq!(harness.state().loaded().expect("a mesh").preparation.heights, None);
+    let context = harness.ctx.clone();
+    harness.state_mut().undo(&context);
+    settle(&mut harness);
+    assert_eq!(images(&harness).len(), 1);
 }
 
 #[test]

@@ -83,7 +83,7 @@ impl App {
         match action {
             Action::File(action) => self.perform_on_files(context, action),
             Action::Camera(action) => self.move_camera_by(context, *action),
-            Action::Setting(Change::SwapHalves) => self.swap_halves(),
+            Action::Setting(Change::SwapHalves) => self.swap_halves(context),
             Action::Setting(change) => self.settings.change_half_looks(self.panels.edited, |own| change.apply(own)),
             Action::Prepare(preparing) => self.prepare(context, |own| match preparing.clone() {
                 Preparing::Heights(heights) => own.heights = heights,

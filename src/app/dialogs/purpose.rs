@@ -42,7 +42,7 @@ impl AskedFile {
             ),
             Purpose::CompanionFile(CompanionFile::ReferenceShape) => mesh("Reference surface path", "or shape:NAME"),
             Purpose::CompanionFile(CompanionFile::LeftMesh) => mesh("Left mesh path", "or shape:NAME"),
-            Purpose::Heights => {
+            Purpose::Heights | Purpose::PartHeights => {
                 let images = [images, &["tga", "bmp", "ktx2", "tif", "tiff", "exr"]].concat();
                 beside("Height image path", "A .png, .jpg, .webp, .tga, .ktx2, .tif or .exr image", "Images", &images)
             }

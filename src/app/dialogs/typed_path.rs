@@ -197,6 +197,7 @@ impl App {
             {
                 found(Source::File(path.into()))
             }
+            Purpose::PartHeights => found(Source::File(path.into())),
             _ => path.parse::<Source>().map_err(|error| error.to_string()).and_then(found),
         };
         match source.and_then(|source| self.take_source(context, purpose, source)) {
@@ -222,6 +223,7 @@ impl App {
                 }
                 self.open_companion(context, beside, source);
             }
+            (Purpose::PartHeights, Source::File(path)) => self.displace_part(context, path),
             (_, Source::File(path)) => self.open_path(context, path),
             (_, source) => self.open(context, source),
         }

@@ -81,9 +81,16 @@ impl App {
 
     /// Begins a load that is under way anew, on another device.
     pub(in crate::app) fn load_anew(&mut self, context: &egui::Context) {
-        if let Some(Load { source, preparation, keep_view, .. }) = self.jobs.load() {
-            self.load(context, source.clone(), preparation.clone(), *keep_view);
+        if let Some(&Load { ref source, ref preparation, keep_view, exchanges, .. }) = self.jobs.load() {
+            self.load(context, source.clone(), preparation.clone(), keep_view);
+            self.jobs.last_load.iter_mut().for_each(|load| load.exchanges = exchanges);
         }
+    }
+
+    /// Starts to load the mesh of the left half, which is then exchanged with the one that is open.
+    pub(super) fn exchange_meshes(&mut self, context: &egui::Context, source: Source, preparation: Preparation) {
+        self.load(context, source, preparation, false);
+        self.jobs.last_load.iter_mut().for_each(|load| load.exchanges = true);
     }
 
     fn load(&mut self, context: &egui::Context, source: Source, preparation: Preparation, keep_view: bool) {
@@ -91,7 +98,7 @@ impl App {
         let (wanted, prepared) = (source.clone(), preparation.clone());
         let read = move |progress: &Progress| load(&engine, &wanted, &prepared, &settings, progress);
         self.jobs.start(context, Work::Mesh, format!("Loading {}", source.title()), read, Self::take_loaded);
-        self.jobs.last_load = Some(Load { source, preparation, keep_view, has_changed: false });
+        self.jobs.last_load = Some(Load { source, preparation, keep_view, has_changed: false, exchanges: false });
     }
 
     /// The preparation of the mesh, or of the load of the same mesh that is under way.
@@ -148,8 +155,9 @@ impl App {
     }
 
     fn take_loaded(&mut self, context: &egui::Context, ended: Result<Result<Document, String>, Stopped>) {
-        let Some(Load { source, keep_view, has_changed, .. }) = self.jobs.last_load.take() else { return };
+        let Some(Load { source, keep_view, has_changed, exchanges, .. }) = self.jobs.last_load.take() else { return };
         match ended.unwrap_or_else(|stopped| Err(panicked(&source, &stopped))) {
+            Ok(document) if exchanges => self.take_exchanged(context, document),
             Ok(document) => self.take_document(context, Document { has_changed, ..document }, keep_view),
             Err(mut why) => {
                 let is_there = |path: &PathBuf| path.try_exists().unwrap_or(true);
@@ -167,7 +175,7 @@ impl App {
     }
 
     /// Puts a document in the place of the one before, with which all goes that belonged to it. The same mesh keeps its view.
-    fn take_document(&mut self, context: &egui::Context, document: Document, keep_view: bool) {
+    pub(super) fn take_document(&mut self, context: &egui::Context, document: Document, keep_view: bool) {
         self.dialogs.typed = None;
         self.jobs.stop_of_document();
         self.viewport.preview.forget();
@@ -215,7 +223,7 @@ impl App {
         }
         self.take_heights(before.is_some_and(|document| document.loaded.mesh.heights.is_some()));
         if !keep_view {
-            self.panels.dragged_morphs = None;
+            (self.panels.dragged_morphs, self.panels.dragged_heights) = (None, None);
             self.take_placement();
             self.take_preparation();
         }

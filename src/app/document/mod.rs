@@ -1,5 +1,6 @@
 //! The mesh that is open, with all that belongs to it and goes with it.
 
+mod halves;
 pub(super) mod loading;
 
 use std::sync::Arc;

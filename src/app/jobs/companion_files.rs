@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::job_list::{Kept, LeftChoice, Work};
+use super::job_list::{LeftChoice, Work};
 use crate::app::App;
 use crate::app::text::file_name;
 use crate::commands::CompanionFile;
@@ -82,7 +82,7 @@ pub(crate) fn new_generation() -> u64 {
 impl App {
     /// Starts to read `what`, a source as messages name it. `take` gets what was read; until then, all stays as it is. `read` fails with
     /// a sentence.
-    pub(super) fn read_companion<T: Send + 'static>(
+    pub(in crate::app) fn read_companion<T: Send + 'static>(
         &mut self,
         context: &egui::Context,
         companion: CompanionFile,
@@ -232,70 +232,6 @@ impl App {
             }
             _ => limit(),
         }
-    }
-}
-
-/// The mesh left of the split.
-impl App {
-    /// The mesh left of the split, unless it is the one that is open as it is prepared now.
-    pub(in crate::app) fn other_left(&self) -> Option<&LeftMesh> {
-        let open = self.document.as_ref()?;
-        let is_same =
-            |kept: &Kept| (kept.version, &kept.loaded.preparation) == (open.version, &open.loaded.preparation);
-        self.left_mesh.as_ref().filter(|left| !matches!(&left.from, LeftChoice::Kept(kept) if is_same(kept)))
-    }
-
-    /// What is left of the split in place of the mesh, or is being read for it.
-    pub(in crate::app) fn left_choice(&self) -> Option<LeftChoice> {
-        let is_read = self.jobs.has(Work::Companion(CompanionFile::LeftMesh));
-        let read = self.jobs.left.as_ref().filter(|_| is_read);
-        read.or(self.other_left().map(|left| &left.from)).cloned()
-    }
-
-    /// Starts to load the mesh of a source for the left half, or without one the same mesh, with these weights of morph targets in place
-    /// of its own. Until it is loaded, what is there stays.
-    pub(in crate::app) fn read_left(&mut self, context: &egui::Context, from: Option<Source>, morphs: MorphWeights) {
-        if from.is_none() && morphs.is_empty() {
-            return self.close_companion(CompanionFile::LeftMesh);
-        }
-        let Some(source) = from.clone().or_else(|| self.source().cloned()) else { return };
-        let preparation = self.preparation().of_left(from.is_some(), &morphs);
-        let (choice, what) = (LeftChoice::Read(from, morphs), source.title());
-        self.jobs.left = Some(choice.clone());
-        let load =
-            move |progress: &Progress| engine::load(&source, &preparation, progress).map_err(|error| error.to_string());
-        let title = format!("Loading {what} for the left half");
-        self.read_companion(context, CompanionFile::LeftMesh, title, what, load, |app, loaded| {
-            app.left_mesh = Some(Opened::new(choice, loaded));
-        });
-    }
-
-    /// Forgets the mesh as it was, which is turned and scaled otherwise than the new one.
-    pub(in crate::app) fn forget_earlier(&mut self) {
-        self.document.iter_mut().for_each(|document| document.before = None);
-        if self.shows_earlier() {
-            self.close_companion(CompanionFile::LeftMesh);
-        }
-        self.history.change_all(|step| _ = step.left.take_if(|left| matches!(left, LeftChoice::Kept(_))));
-    }
-
-    /// Shows the mesh as it was before its file changed, tessellated as the new one is.
-    pub(in crate::app) fn compare_with_before(&mut self) {
-        let before = self.document.as_ref().and_then(|document| document.before.clone());
-        before.into_iter().for_each(|before| self.put_left(before));
-    }
-
-    /// Shows a mesh as it was left of the split, tessellated as the right half is.
-    pub(in crate::app) fn put_left(&mut self, kept: Arc<Kept>) {
-        self.close_companion(CompanionFile::LeftMesh);
-        let at = self.viewport.last_split;
-        self.change_halves(|own| own.keep_on_left(at));
-        self.left_mesh = Some(Opened::new(LeftChoice::Kept(kept.clone()), kept.loaded.clone()));
-    }
-
-    /// Whether the left half shows the mesh as it was, which no command can name.
-    pub(in crate::app) fn shows_earlier(&self) -> bool {
-        self.other_left().is_some_and(|left| matches!(left.from, LeftChoice::Kept(_)))
     }
 }
 

@@ -76,6 +76,8 @@ pub(crate) struct Load {
     pub keep_view: bool,
     /// Whether it is loaded because it has changed on disk.
     pub has_changed: bool,
+    /// Whether it is the mesh of the left half, which gets the one that is open.
+    pub exchanges: bool,
 }
 
 /// What is left of the split in place of the mesh that is open.

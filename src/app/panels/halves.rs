@@ -8,6 +8,9 @@ use crate::app::sections::Section;
 use crate::app::text::{grouped, short};
 use inspect::settings::SplitSide;
 
+/// How many characters a cell has room for.
+const CELL: usize = 7;
+
 const COLUMNS: [&str; 3] = ["Left", "Right", "Change"];
 
 /// A figure's name, its hover text, and what it is of a half.
@@ -56,8 +59,8 @@ fn row(ui: &mut egui::Ui, [name, hover]: [&str; 2], [left, right]: [Option<f64>;
     ui.label(name).on_hover_text(hover);
     for (column, figure) in COLUMNS.into_iter().zip([left, right, difference]) {
         let sign = if column == COLUMNS[2] && figure > Some(0.0) { "+" } else { "" };
-        // Cells have room for six characters.
-        let [text, whole] = [1e5, f64::INFINITY].map(|below| sign.to_owned() + &written(figure, below));
+        let whole = sign.to_owned() + &written(figure, f64::INFINITY);
+        let text = in_cell(sign, figure);
         let says = format!("{name}, {column}: {whole}");
         let cell = cell(ui, RichText::new(text).monospace());
         cell.on_hover_text(&says).widget_info(|| WidgetInfo::labeled(Role::Label, true, &says));
@@ -67,6 +70,15 @@ fn row(ui: &mut egui::Ui, [name, hover]: [&str; 2], [left, right]: [Option<f64>;
 
 fn cell(ui: &mut egui::Ui, text: RichText) -> Response {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.label(text)).inner
+}
+
+/// A figure in a cell, with fewer digits if it would take more room.
+fn in_cell(sign: &str, figure: Option<f64>) -> String {
+    let text = sign.to_owned() + &written(figure, 1e5);
+    match figure {
+        Some(figure) if text.chars().count() > CELL => format!("{sign}{figure:.0e}"),
+        _ => text,
+    }
 }
 
 /// A count below a limit as a whole, any other number shortened, or an ellipsis until it is known.
@@ -88,5 +100,8 @@ mod tests {
         assert_eq!([cell(1_234_567.0), said(1_234_567.0)], ["1.23e6", "1,234,567"]);
         assert_eq!([cell(-100_000.0), said(-100_000.0)], ["-1.00e5", "-100,000"]);
         assert_eq!([cell(99_999.0), cell(33.0), said(0.25), written(None, 1e5)], ["99,999", "33", "0.250", "…"]);
+        let small = [("+", 4.08e-12), ("", -4.08e-12), ("", 2.56e-8), ("+", 99_999.0)];
+        let cells = small.map(|(sign, figure)| in_cell(sign, Some(figure)));
+        assert_eq!(cells, ["+4e-12", "-4e-12", "2.56e-8", "+99,999"]);
     }
 }

@@ -33,7 +33,7 @@ use std::collections::HashSet;
 
 use geometry::tessellate::Displacement;
 use inspect::settings::SplitSide;
-use load::MorphWeights;
+use load::{MorphWeights, NamedImage};
 
 use crate::app::jobs::chart_job::Chart;
 use crate::app::sections::OpenSections;
@@ -56,6 +56,10 @@ pub(super) struct Panels {
     pub morphs_filter: String,
     /// Weights of morph targets that are dragged while the mesh is still being loaded with those before.
     pub dragged_morphs: Option<MorphWeights>,
+    /// The material or part that a height image is asked for.
+    pub displaced_part: String,
+    /// Height images whose numbers are dragged while the mesh is still being loaded with those before.
+    pub dragged_heights: Option<Vec<NamedImage>>,
     /// The paths of groups in the list of parts that are folded.
     pub folded_groups: HashSet<String>,
     /// The width of the crease band while it is being dragged, as a part of the bounding diagonal.

@@ -38,6 +38,8 @@ enum PartAction {
     Solo(usize),
     Frame(usize),
     CopyName(usize),
+    /// Asks for its height image.
+    Displace(usize),
     /// Gives it a style of its own.
     Style(usize, PartStyle),
     ShowAll,
@@ -121,6 +123,7 @@ impl App {
             PartAction::ShowAll => parts.show_only(Vec::new()),
             PartAction::Frame(at) => self.frame_part(tree, at),
             PartAction::Style(at, style) => parts.set_style(&tree[at].name, style),
+            PartAction::Displace(at) => self.ask_for_heights_of(context, &tree[at].name),
             PartAction::CopyName(at) => context.copy_text(tree[at].name.clone()),
         }
         self.prepare(context, |preparation| preparation.parts = parts);
@@ -249,6 +252,9 @@ fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize, selected: &ShownP
     };
     let mut chosen = entries.into_iter().filter_map(chosen).last();
     let style = style_entries(ui, selected.style(&branch.name));
+    if ui.add_enabled(is_shown, egui::Button::new("Its height image…")).clicked() {
+        chosen = Some(PartAction::Displace(at));
+    }
     chosen = style.map(|style| PartAction::Style(at, style)).or(chosen);
     if chosen.is_some() {
         ui.close();

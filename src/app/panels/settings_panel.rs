@@ -15,6 +15,11 @@ use inspect::settings::{
 };
 use load::MorphWeights;
 
+/// Rows with a label and a control or a number each.
+fn grid(name: &str) -> egui::Grid {
+    egui::Grid::new(name).num_columns(2).min_col_width(LABEL_WIDTH)
+}
+
 impl App {
     pub(in crate::app) fn settings_panel(&mut self, ui: &mut egui::Ui) {
         scrolling_column(ui, 0.0, |ui| {
@@ -27,7 +32,10 @@ impl App {
             self.of_half(|app, is_left| {
                 app.section(ui, Section::Surface, Self::surface_rows);
                 app.section(ui, Section::LevelOfDetail, Self::lod_rows);
-                app.section(ui, Section::Displacement, Self::height_rows);
+                if app.section(ui, Section::Displacement, Self::height_map_row) {
+                    app.part_heights(ui);
+                    grid("displacement").show(ui, |ui| app.displacement_rows(ui));
+                }
                 app.parts_section(ui);
                 app.morphs_section(ui, is_left);
                 app.section(ui, Section::Look, Self::look_rows);
@@ -138,11 +146,18 @@ impl App {
         }
     }
 
-    /// A section of rows with a label and a control or a number each.
-    pub(super) fn section(&mut self, ui: &mut egui::Ui, section: Section, rows: impl FnOnce(&mut Self, &mut egui::Ui)) {
-        if self.panels.open.title(ui, section) {
-            egui::Grid::new(section.title()).num_columns(2).min_col_width(LABEL_WIDTH).show(ui, |ui| rows(self, ui));
+    /// A section of rows with a label and a control or a number each. Returns whether it is open.
+    pub(super) fn section(
+        &mut self,
+        ui: &mut egui::Ui,
+        section: Section,
+        rows: impl FnOnce(&mut Self, &mut egui::Ui),
+    ) -> bool {
+        let is_open = self.panels.open.title(ui, section);
+        if is_open {
+            grid(section.title()).show(ui, |ui| rows(self, ui));
         }
+        is_open
     }
 
     fn surface_rows(&mut self, ui: &mut egui::Ui) {

@@ -5,7 +5,6 @@ use geometry::defaults::with_defaults;
 use geometry::mesh::Moment;
 use geometry::mesh::rig::Clip;
 use inspect::render::LeftPose;
-use inspect::settings::Settings;
 
 /// How many clips the list shows.
 pub(in crate::app) const LISTED: usize = 1000;
@@ -83,27 +82,6 @@ impl App {
         if was_framed {
             self.frame();
         }
-    }
-
-    /// Exchanges what is left and right of the split, with their poses.
-    pub(in crate::app) fn swap_halves(&mut self) {
-        self.change_halves(Settings::swap_halves);
-        self.swap_poses();
-    }
-
-    /// Changes the settings of both halves. Those that files take the place of are as they are again when these are closed.
-    pub(in crate::app) fn change_halves(&mut self, change: impl FnOnce(&mut Settings)) {
-        let mut own = self.settings_without_files();
-        change(&mut own);
-        self.put_settings(own);
-    }
-
-    /// Makes the left half a copy of the right one, and opens the split. The mesh and a moment of a clip stay there as they are; a pose
-    /// at rest goes on being shared.
-    pub(in crate::app) fn keep_on_left(&mut self) {
-        let Some(kept) = self.document.as_ref().map(|open| open.kept()) else { return };
-        self.put_left(kept);
-        self.viewport.playback.left = self.moment().map_or(LeftPose::Same, |moment| LeftPose::Own(Some(moment)));
     }
 
     /// Exchanges the poses of both halves, if the left one has its own.

@@ -190,6 +190,7 @@ impl ImageFile<'_> {
         let (color, count) = (decoder.color_type(), decoder.total_bytes());
         let blocks = match format {
             Some(ImageFormat::OpenExr) => unpacking_bytes(bytes).map_err(|fault| self.fail(fault.to_string()))?,
+            Some(ImageFormat::Tiff) => self.unpacking_tiff(bytes)?,
             _ => 0,
         };
         let decoding = (decoding_bytes(&decoder) - count).saturating_add(if is_deep { count } else { 0 });

@@ -1,6 +1,8 @@
 //! Reads images of one channel of floating-point numbers, as which sculpting and painting programs save displacement: TIFF and OpenEXR.
 //! `image` has no pixels of that kind.
 
+use std::io::Cursor;
+
 use exr::image::read::read;
 use exr::prelude::{ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
 use image::ImageFormat;
@@ -28,6 +30,7 @@ impl ImageFile<'_> {
     }
 
     fn read_tiff(&self, bytes: &[u8]) -> Result<Option<Numbers>, HeightError> {
+        let unpacking = self.unpacking_tiff(bytes)?;
         let Ok(mut decoder) = Decoder::new(watched(bytes, self.progress.part(0.0, 0.6))) else { return Ok(None) };
         let formats = decoder.find_tag_unsigned_vec::<u16>(Tag::SampleFormat);
         let are_floats = matches!(formats, Ok(Some(formats)) if formats == [SampleFormat::IEEEFP.to_u16()]);
@@ -37,12 +40,8 @@ impl ImageFile<'_> {
         };
         let size = self.check(decoder.dimensions().map_err(|error| self.undecoded(error))?.into())?;
         let count = size.map(u64::from).iter().product::<u64>();
-        // It would be unpacked whole, however large it is.
-        if decoder.find_tag_unsigned(Tag::Compression).ok().flatten() == Some(CompressionMethod::ModernJPEG.to_u16()) {
-            return Err(self.fail("its numbers are compressed as JPEG; save it with another compression".to_owned()));
-        }
-        // The file's own numbers, and a row of a tile, which may be wider than the picture. The rest is unpacked piece by piece.
-        self.afford(size, bytes, 4 * count, depth * (count + u64::from(decoder.chunk_dimensions().0)))?;
+        // The file's own numbers are held beside those of the picture.
+        self.afford(size, bytes, 4 * count, depth * count + unpacking)?;
         let mut limits = Limits::default();
         (limits.decoding_buffer_size, limits.intermediate_buffer_size) = (to_usize(depth * count), usize::MAX);
         let read = decoder.with_limits(limits).read_image();
@@ -53,6 +52,17 @@ impl ImageFile<'_> {
             _ => return Ok(None),
         };
         Ok(Some((size, px)))
+    }
+
+    /// The bytes that unpacking a TIFF image takes beside its pixels: a row of a tile, which may be wider than the picture. The rest is
+    /// unpacked piece by piece, but for JPEG, which would be unpacked whole, however large it is; that fails.
+    pub(super) fn unpacking_tiff(&self, bytes: &[u8]) -> Result<u64, HeightError> {
+        const MOST_OF_PX: u64 = 32;
+        let Ok(mut decoder) = Decoder::new(Cursor::new(bytes)) else { return Ok(0) };
+        if decoder.find_tag_unsigned(Tag::Compression).ok().flatten() == Some(CompressionMethod::ModernJPEG.to_u16()) {
+            return Err(self.fail("its numbers are compressed as JPEG; save it with another compression".to_owned()));
+        }
+        Ok(MOST_OF_PX * u64::from(decoder.chunk_dimensions().0))
     }
 
     /// Reads the only channel of a file, whatever its name; alpha doesn't count.
@@ -87,7 +97,6 @@ impl ImageFile<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Cursor;
     use std::path::Path;
 
     use exr::prelude::{
