@@ -45,14 +45,14 @@ fn search_workgroups_main() {
 // How large a factor a pattern has that is searched by a whole workgroup.
 const LARGE: f32 = 4.0;
 
-// Of fewer patches than this (LARGE_PATCHES in src/gpu/pipelines.rs) each may need thousands of triangles, and is searched by a whole
+// Of fewer patches than this each may need thousands of triangles, and is searched by a whole
 // workgroup. A smaller team may take more turns than a software driver gives its loops, and then that workgroup never ends its search:
 // its invocations no longer meet at barriers.
-const FEW_PATCHES: u32 = 128u;
+const MANY_PATCHES: u32 = 128u;
 
 // Puts a patch on a list. These factors will be among its pattern's.
 fn search_later(list: u32, patch_index: u32, edges: vec3<f32>, inside: f32) {
-    if params.patch_count < FEW_PATCHES || max(max(max(edges.x, edges.y), edges.z), inside) >= LARGE {
+    if params.patch_count < MANY_PATCHES || max(max(max(edges.x, edges.y), edges.z), inside) >= LARGE {
         let i = atomicAdd(&edge_factors[list_counter_at(list, LARGE_PATCHES)], 1u);
         atomicStore(&edge_factors[listed_at(list, i)], patch_index);
     } else {

@@ -69,8 +69,8 @@ fn left_surfaces() -> Vec<Command> {
     };
     let both = declared! {
         "Swap left and right" needs Split => Change::SwapHalves,
-            "Exchanges what both halves show: their meshes, tessellations, and looks, poses and weights that differ. A mesh that was \
-             kept stays on the left.";
+            "Exchanges what both halves show: their files, tessellations, and looks, poses and weights that differ. An earlier \
+             version of the mesh stays on the left.";
         "Keep the right half on the left" [shift(Key::J)] needs Document Surface => Action::KeepOnLeft,
             "Makes the left half of the split view a copy of the right one, with its mesh, settings and moment of a clip, to \
              compare what you change then.";

@@ -46,7 +46,7 @@ pub use error::GpuError;
 pub use lazy::{Lazy, made_once};
 pub(crate) use mesh_buffers::MeshBuffers;
 pub use mesh_buffers::{CURVE_SURFACE_STEP, DETAIL_STEP, SEARCH_COUNTERS, TEXTURED};
-pub use pipelines::{ComputePipelines, GRID_WIDTH, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
+pub use pipelines::{ComputePipelines, GRID_WIDTH, MANY_PATCHES, MOST_WORKGROUPS, WORKGROUP, bind_group, grid};
 pub use readback::{Readback, read_buffer, read_buffers, read_texture};
 pub use recorder::{DRAWING, PASSES, PassTime, RecordPasses, Recorder, Timing, ms_of, submit_untimed, take_times};
 pub use tessellator::{ChunkBuffers, Tessellator};

@@ -72,8 +72,8 @@ impl Default for ComputePipelines {
 
 /// Fewer patches than this don't fill a GPU with 32 invocations each.
 const FEW_PATCHES: u32 = 512;
-/// Of fewer patches than this each may need thousands of triangles.
-const LARGE_PATCHES: u32 = 128;
+/// `MANY_PATCHES` in `shaders/pass_requests.wgsl`: of fewer patches than this each may need thousands of triangles.
+pub const MANY_PATCHES: u32 = 128;
 
 impl ComputePipelines {
     /// Those with workgroups of these sizes for searches: for large meshes on a software driver, for most, and for small ones on
@@ -102,7 +102,7 @@ impl ComputePipelines {
     pub(super) fn search(&self, gpu: &Gpu, pass: Pass, patches: u32) -> Pass {
         let [small, medium, large] = self.groups;
         let size = match (gpu.is_software(), patches) {
-            (true, LARGE_PATCHES..) => small,
+            (true, MANY_PATCHES..) => small,
             (false, ..FEW_PATCHES) => large,
             _ => medium,
         };

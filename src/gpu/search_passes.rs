@@ -26,8 +26,8 @@ pub(super) fn search_passes(on: &PassInputs, has_rows: bool) -> Vec<(Pass, Workg
     let patches = mesh.patch_count;
     let [each_patch, each_edge] = [patches, mesh.factor_count].map(|items| Workgroups::Grid(grid(items)));
     let line = |workgroups| Workgroups::Grid([workgroups, 1, 1]);
-    let sized = |pass| on.pipelines.search(on.gpu, pass, patches);
-    let search = sized(SEARCH_PATCHES).with("SEARCHES_ROWS", has_rows.into()).with("ROUNDS", rounds(has_rows));
+    let search = on.pipelines.search(on.gpu, SEARCH_PATCHES, patches);
+    let search = search.with("SEARCHES_ROWS", has_rows.into()).with("ROUNDS", rounds(has_rows));
     // Software drivers take time for what has nothing to do, and GPUs take less for that than for counting what has.
     let search = match software {
         true => vec![(COUNT_WORKGROUPS, line(1)), (search, Workgroups::Counted(mesh.search_workgroups.clone()))],
@@ -37,10 +37,13 @@ pub(super) fn search_passes(on: &PassInputs, has_rows: bool) -> Vec<(Pass, Workg
     let first = [&list[..], &search].concat();
     let round = [&first[..], &search].concat();
     let [adding, searching] = UNIFORM_WORKGROUPS[usize::from(software)];
+    // Where a software driver ends loops, invocations that it computes together stop together. Others would no longer meet at barriers,
+    // and a factor that isn't enough would be taken.
+    let uniform_search = on.pipelines.search(on.gpu, SEARCH_UNIFORM_FACTOR, if software { u32::MAX } else { patches });
     let uniform = [
         (SUM_TRIANGLES, line(patches.div_ceil(WORKGROUP).min(adding))),
         (CANDIDATES, line(1)),
-        (sized(SEARCH_UNIFORM_FACTOR), line(patches.min(searching))),
+        (uniform_search, line(patches.min(searching))),
         (TAKE_UNIFORM_FACTOR, each_edge),
     ];
     let rounds = (0..rounds(has_rows)).flat_map(|_| round.clone());

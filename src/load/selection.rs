@@ -80,6 +80,17 @@ impl ShownParts {
         }
     }
 
+    /// Forgets what is said of a part or morph target. Returns whether anything was.
+    pub fn forget(&mut self, name: &str) -> bool {
+        let count = |own: &Self| own.hidden.len() + own.only.len() + own.styles.len() + own.morphs.len();
+        let before = count(self);
+        self.hidden.retain(|own| own != name);
+        self.only.retain(|own| own != name);
+        self.styles.retain(|(own, _)| own != name);
+        self.morphs.remove(name);
+        count(self) < before
+    }
+
     /// The names of parts and groups that are left out, and of those that alone are read, for [`hides`].
     pub(super) fn names(&self) -> [Names; 2] {
         [&self.hidden, &self.only].map(Names::new)

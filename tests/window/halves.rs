@@ -8,7 +8,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use geometry::mesh::Shape;
 use geometry::tessellate::Surface;
 use inspect::settings::SplitSide;
-use load::Source;
+use load::{HeightSource, Source};
 use pnaen::app::App;
 
 use crate::driver::PATIENCE;
@@ -190,34 +190,40 @@ fn figures_of_different_moments_are_not_subtracted() {
 }
 
 #[test]
-fn swap_exchanges_the_meshes_of_two_files_and_undo_keeps_them_there() {
-    let (folder, mut harness) = uniform_of("quad.obj", QUAD);
-    let path = folder.path().join("half.obj");
+fn swap_exchanges_the_meshes_of_two_files_as_they_are() {
+    let quad = QUAD.replace("f 1", "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1").replace("2 3 4", "2/2 3/3 4/4");
+    let (folder, mut harness) = uniform_of("quad.obj", &quad);
+    let (path, heights) = (folder.path().join("half.obj"), folder.path().join("heights.png"));
     std::fs::write(&path, QUAD.replace("f 1 2 3 4", "f 1 2 3")).expect("a writable folder");
+    image::GrayImage::from_pixel(2, 2, image::Luma([255])).save(&heights).expect("a writable folder");
     press(&mut harness, egui::Key::S);
     choose(&mut harness, "Left", "PN");
     let context = harness.ctx.clone();
-    harness.state_mut().open_reference_shape(&context, Source::File(path));
+    harness.state_mut().displace(&context, Some(HeightSource::File(heights)));
+    harness.state_mut().open_reference_shape(&context, Source::File(path.clone()));
     settle(&mut harness);
     choose(&mut harness, "Left mesh", "Reference surface: half.obj");
     let camera = *harness.state().camera();
     let shown = |harness: &Harness<App>, [left, right, change]: [&str; 3]| {
-        harness.get_by_label_contains(&format!("Left: {left}: "));
-        harness.get_by_label_contains(&format!("Right: {right}: "));
+        harness.get_by_label_contains(&format!("Left: {left}"));
+        harness.get_by_label_contains(&format!("Right: {right}"));
         harness.get_by_label(&format!("Triangles, Change: {change}"));
         assert_eq!(*harness.state().camera(), camera, "the view stays");
+        assert_eq!(harness.state().reference_shape(), Some(&Source::File(path.clone())), "it stays, too");
     };
-    shown(&harness, ["half.obj, PN", "quad.obj, PN-AEN", "+121"]);
+    let before = ["half.obj, PN", "quad.obj, PN-AEN", "+121"];
+    shown(&harness, before);
+    let drawn = harness.state_mut().read_picture().expect("a picture");
     scroll_to(&mut harness, "Swap");
     click(&mut harness, "Swap");
     shown(&harness, ["quad.obj, PN-AEN", "half.obj, PN", "-121"]);
+    assert_eq!(harness.state().loaded().map(|loaded| loaded.preparation.heights.is_some()), Some(false));
+    // No step goes back to meshes that were there.
     harness.state_mut().undo(&context);
     settle(&mut harness);
-    assert_eq!(harness.state().loaded().map(|loaded| loaded.source.title()).as_deref(), Some("half.obj"));
-    assert_eq!(left_mesh(&harness).as_deref(), Some("quad.obj"), "no step takes the exchange back");
-    harness.state_mut().redo(&context);
-    settle(&mut harness);
+    shown(&harness, ["quad.obj, PN-AEN", "half.obj, PN", "-121"]);
     scroll_to(&mut harness, "Swap");
     click(&mut harness, "Swap");
-    shown(&harness, ["half.obj, PN", "quad.obj, PN-AEN", "+121"]);
+    shown(&harness, before);
+    assert!(harness.state_mut().read_picture().expect("a picture") == drawn, "as before, with heights");
 }

@@ -11,6 +11,7 @@ use load::Source;
 use pnaen::app::App;
 
 use crate::editing::{assert_draws, copied};
+use crate::lod_shader::until;
 use crate::{PATIENCE, STOP, choose, click, copy_vase, press, settle, uniform, uniform_of, vase};
 
 #[derive(Debug)]
@@ -169,6 +170,64 @@ fn the_meshes_of_a_folder_are_stepped_through() {
     wait_for_label(&mut harness, "1/3");
     click(&mut harness, "Previous mesh");
     assert_eq!(harness.state().source(), Some(&Source::File(last)));
+}
+
+#[test]
+fn steps_through_a_folder_go_past_meshes_that_cannot_be_loaded_and_none_is_lost() {
+    let folder = tempfile::tempdir().expect("a writable temporary folder");
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("a writable temporary folder");
+        path
+    };
+    let paths = ["a.obj", "b.obj", "c.obj", "d.obj"].map(|name| write(name, if name == "b.obj" { "" } else { QUAD }));
+    let mut harness = uniform(Some(Source::File(paths[0].clone())));
+    wait_for_label(&mut harness, "1/4");
+    let source = |harness: &Harness<App>| harness.state().source().cloned();
+    click(&mut harness, "Next mesh");
+    harness.get_by_label_contains("b.obj is empty");
+    assert_eq!(source(&harness), Some(Source::File(paths[0].clone())), "the last good one stays");
+    click(&mut harness, "Next mesh");
+    assert_eq!(source(&harness), Some(Source::File(paths[2].clone())));
+    std::fs::remove_file(&paths[3]).expect("it is there");
+    click(&mut harness, "Next mesh");
+    harness.get_by_label_contains("d.obj can't be read");
+    // Two at once.
+    write("b.obj", QUAD);
+    for _ in 0..2 {
+        harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::PageDown);
+        harness.step();
+    }
+    settle(&mut harness);
+    assert_eq!(source(&harness), Some(Source::File(paths[1].clone())));
+    wait_for_label(&mut harness, "2/3");
+}
+
+#[test]
+fn parts_that_vanish_on_disk_are_forgotten_and_the_rest_is_shown() {
+    let part = |name: &str| format!("o {name}\n{}", QUAD.replace("f 1 2 3 4", "f -4 -3 -2 -1"));
+    let parts = |names: &[&str]| names.iter().map(|name| part(name)).collect::<String>();
+    let (folder, mut harness) = uniform_of("parts.obj", parts(&["A", "B", "C"]));
+    let path = folder.path().join("parts.obj");
+    let context = harness.ctx.clone();
+    let triangles = |harness: &Harness<App>| harness.state().loaded().map(|loaded| loaded.mesh.triangles.len());
+    harness.state_mut().prepare(&context, |own| own.parts.hidden = vec!["A".to_owned(), "B".to_owned()]);
+    settle(&mut harness);
+    assert_eq!(triangles(&harness), Some(2));
+    std::fs::write(&path, parts(&["B", "C", "D"])).expect("a writable folder");
+    wait_for_label(&mut harness, "changed on disk, loaded anew");
+    settle(&mut harness);
+    assert_eq!(triangles(&harness), Some(4), "B is hidden still");
+    let loaded = harness.state().loaded().expect("a mesh");
+    assert_eq!(loaded.preparation.parts.hidden, ["B"]);
+    assert_eq!(loaded.warnings[0], "it no longer has the part A; what was set for it is forgotten.");
+    harness.state_mut().prepare(&context, |own| own.parts.show_only(vec!["D".to_owned()]));
+    settle(&mut harness);
+    assert_eq!(triangles(&harness), Some(2));
+    std::fs::write(&path, part("C")).expect("a writable folder");
+    until(&mut harness, "all parts are shown", |app| {
+        app.loaded().is_some_and(|own| own.preparation.parts.only.is_empty() && own.mesh.triangles.len() == 2)
+    });
 }
 
 #[test]

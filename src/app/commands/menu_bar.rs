@@ -28,8 +28,8 @@ impl App {
         ui.separator();
         let Some(document) = &self.document else { return };
         let (title, whole) = (document.loaded.source.title(), document.loaded.source.to_string());
-        let (has_changed, neighbours) = (document.has_changed, document.neighbours.clone());
-        if let Some(Neighbours { number, count, .. }) = neighbours {
+        let has_changed = document.has_changed;
+        if let Some([number, count]) = document.neighbours.as_ref().map(Neighbours::numbers) {
             let now = self.availability();
             let commands = all(&now);
             for (action, label, name) in

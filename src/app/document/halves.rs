@@ -8,46 +8,52 @@ use crate::app::jobs::companion_files::{LeftMesh, Opened};
 use crate::app::jobs::job_list::{Kept, LeftChoice, Work};
 use crate::commands::CompanionFile;
 use geometry::progress::Progress;
-use inspect::engine;
+use inspect::engine::{self, Loaded};
 use inspect::render::LeftPose;
 use inspect::settings::Settings;
 use load::{MorphWeights, Source};
 
 /// What both halves show is exchanged.
 impl App {
-    /// Exchanges what both halves show: settings, poses, weights of morph targets, and meshes of two files, which takes a load. A
-    /// mesh as it was stays on the left, because no file has it.
+    /// Exchanges what both halves show: settings, poses, weights of morph targets, and meshes of two files. A mesh as it was before a
+    /// change stays on the left.
     pub(in crate::app) fn swap_halves(&mut self, context: &egui::Context) {
-        let right = self.preparation();
-        match self.left_choice() {
-            Some(LeftChoice::Read(Some(source), morphs)) => {
-                return self.exchange_meshes(context, source, right.of_left(true, &morphs));
-            }
-            Some(LeftChoice::Read(None, morphs)) => {
-                let contents = self.contents();
-                let before = |name: &String| right.parts.morphs.get(name).or(contents.morph_targets.get(name)).copied();
-                let of_right = morphs.keys().filter_map(|name| Some((name.clone(), before(name)?))).collect();
-                self.read_left(context, None, of_right);
-                self.prepare(context, |own| own.parts.morphs.extend(morphs));
-            }
-            Some(LeftChoice::Kept(_)) | None => {}
+        let left = self.other_left().map(|left| left.content.clone());
+        if let Some(left) = left.filter(|left| Some(&left.source) != self.source()) {
+            return self.exchange_meshes(context, left);
+        }
+        if let Some(LeftChoice::Read(None, morphs)) = self.left_choice() {
+            let (contents, right) = (self.contents(), self.preparation().parts.morphs);
+            let before = |name: &String| right.get(name).or(contents.morph_targets.get(name)).copied();
+            let of_right = morphs.keys().filter_map(|name| Some((name.clone(), before(name)?))).collect();
+            self.read_left(context, None, of_right);
+            self.prepare(context, |own| own.parts.morphs.extend(morphs));
         }
         self.change_halves(Settings::swap_halves);
         self.swap_poses();
     }
 
-    /// Takes the mesh of the left half, as which the document was loaded, and shows the one before on the left. This isn't a step of
-    /// undo: all steps have their halves exchanged from now on.
+    /// Takes the mesh of the left half, and shows the one before on the left as it is. No step of undo goes back from there.
     pub(super) fn take_exchanged(&mut self, context: &egui::Context, document: Document) {
-        let Some(before) = self.document.as_ref().map(|before| before.loaded.clone()) else { return };
-        let (source, morphs) = (before.source, before.preparation.parts.morphs);
-        let camera = self.viewport.camera;
+        let Some(before) = self.document.as_ref().map(Document::kept) else { return };
+        let (moment, left_pose) = (self.moment(), self.viewport.playback.left);
+        let (camera, frozen, reference) = (self.viewport.camera, self.viewport.frozen, self.reference_shape.take());
         self.change_halves(Settings::swap_halves);
-        self.history.change_all(|step| step.settings.swap_halves());
         self.take_document(context, document, false);
-        self.viewport.camera = camera;
-        self.read_left(context, Some(source.clone()), morphs.clone());
-        self.history.change_all(|step| step.left = Some(LeftChoice::Read(Some(source.clone()), morphs.clone())));
+        if let LeftPose::Own(Some(own)) = left_pose {
+            self.choose_clip(Some(own.clip));
+            self.viewport.playback.time = own.time;
+        }
+        self.viewport.playback.left = moment.map_or(LeftPose::Same, |moment| LeftPose::Own(Some(moment)));
+        (self.viewport.camera, self.viewport.frozen, self.reference_shape) = (camera, frozen, reference);
+        let Loaded { source, preparation, .. } = before.loaded.clone();
+        let morphs = preparation.parts.morphs.clone();
+        // What a command can name can be read again.
+        let is_plain = preparation == self.preparation().of_left(true, &morphs);
+        let kept = LeftChoice::Kept(before.clone());
+        let from = if is_plain { LeftChoice::Read(Some(source), morphs) } else { kept };
+        self.left_mesh = Some(Opened::new(from, before.loaded.clone()));
+        self.history = Default::default();
     }
 
     /// Changes the settings of both halves. Those that files take the place of are as they are again when these are closed.
@@ -71,8 +77,7 @@ impl App {
     /// The mesh left of the split, unless it is the one that is open as it is prepared now.
     pub(in crate::app) fn other_left(&self) -> Option<&LeftMesh> {
         let open = self.document.as_ref()?;
-        let is_same =
-            |kept: &Kept| (kept.version, &kept.loaded.preparation) == (open.version, &open.loaded.preparation);
+        let is_same = |kept: &Kept| kept.version == open.version && kept.loaded.is_prepared_as(&open.loaded);
         self.left_mesh.as_ref().filter(|left| !matches!(&left.from, LeftChoice::Kept(kept) if is_same(kept)))
     }
 

@@ -10,14 +10,15 @@ use crate::app::jobs::file_watch::{Stamped, sources};
 use crate::app::jobs::job_list::{LeftChoice, Load, Work};
 use crate::app::jobs::scenes::scene_of;
 use crate::commands::CompanionFile;
+use geometry::names::shown;
 use geometry::progress::{Progress, Stage};
 use gpu::GpuError;
-use inspect::engine::{self, Engine, Preparation};
+use inspect::engine::{self, Engine, Loaded, Preparation};
 use inspect::render::Camera;
 use inspect::settings::Settings;
 use load::environment_file::is_environment;
 use load::format::Format;
-use load::{Contents, Import, Source};
+use load::{Contents, Import, LoadError, Source};
 
 fn panicked(source: &Source, stopped: &Stopped) -> String {
     format!("{}: loading it {stopped}; the file may be damaged", source.title())
@@ -31,15 +32,56 @@ const READ: f32 = 0.8;
 fn load(
     engine: &Engine,
     source: &Source,
-    preparation: &Preparation,
+    (preparation, is_again): (&Preparation, bool),
     settings: &Settings,
     progress: &Progress,
 ) -> Result<Document, String> {
     let read_from = Stamped::now(sources(source, preparation.heights.as_ref()));
-    let loaded = engine::load(source, preparation, &progress.part(0.0, READ)).map_err(|error| error.to_string())?;
-    let no_room = |error: GpuError| format!("{}: {error}", source.title());
-    progress.enter(Stage::Device);
+    let reading = progress.part(0.0, READ);
+    let loaded = if is_again {
+        load_again(source, preparation.clone(), &reading)
+    } else {
+        engine::load(source, preparation, &reading)
+    };
+    let loaded = loaded.map_err(|error| error.to_string())?;
     progress.set(READ);
+    document_of(engine, loaded, settings, read_from, progress)
+}
+
+/// Loads a mesh again, whose file may have changed: what is said of parts and morph targets that it no longer has is forgotten, with a
+/// warning.
+fn load_again(source: &Source, mut preparation: Preparation, progress: &Progress) -> Result<Loaded, LoadError> {
+    let mut forgotten = Vec::new();
+    loop {
+        let error = match engine::load(source, &preparation, progress) {
+            Ok(loaded) => return Ok(Loaded { warnings: [forgotten, loaded.warnings].concat(), ..loaded }),
+            Err(error) => error,
+        };
+        let parts = &mut preparation.parts;
+        match &error {
+            LoadError::Absent { what, name, .. } if parts.forget(name) => {
+                forgotten
+                    .push(format!("it no longer has the {what} {}; what was set for it is forgotten.", shown(name)));
+            }
+            LoadError::Empty { .. } if !parts.only.is_empty() => {
+                parts.only.clear();
+                forgotten.push("it no longer has the parts that alone were shown; all are.".to_owned());
+            }
+            _ => return Err(error),
+        }
+    }
+}
+
+/// A mesh that was read from these files, and those that it names, with all that a picture needs. Fails with a sentence.
+fn document_of(
+    engine: &Engine,
+    loaded: Loaded,
+    settings: &Settings,
+    read_from: Stamped,
+    progress: &Progress,
+) -> Result<Document, String> {
+    let no_room = |error: GpuError| format!("{}: {error}", loaded.source.title());
+    progress.enter(Stage::Device);
     let scene = scene_of(engine, &loaded).map_err(no_room)?;
     engine.prepare(&scene, settings).map_err(no_room)?;
     let named = Stamped::now(loaded.files.iter().cloned());
@@ -81,22 +123,25 @@ impl App {
 
     /// Begins a load that is under way anew, on another device.
     pub(in crate::app) fn load_anew(&mut self, context: &egui::Context) {
-        if let Some(&Load { ref source, ref preparation, keep_view, exchanges, .. }) = self.jobs.load() {
-            self.load(context, source.clone(), preparation.clone(), keep_view);
-            self.jobs.last_load.iter_mut().for_each(|load| load.exchanges = exchanges);
+        if let Some(Load { source, preparation, keep_view, exchanges: false, .. }) = self.jobs.load() {
+            self.load(context, source.clone(), preparation.clone(), *keep_view);
         }
     }
 
-    /// Starts to load the mesh of the left half, which is then exchanged with the one that is open.
-    pub(super) fn exchange_meshes(&mut self, context: &egui::Context, source: Source, preparation: Preparation) {
-        self.load(context, source, preparation, false);
-        self.jobs.last_load.iter_mut().for_each(|load| load.exchanges = true);
+    /// Starts to open a mesh that was loaded for the left half, which then gets the one that is open.
+    pub(super) fn exchange_meshes(&mut self, context: &egui::Context, left: Loaded) {
+        let (engine, settings) = (self.engine.clone(), self.settings);
+        let (source, preparation) = (left.source.clone(), left.preparation.clone());
+        let files = sources(&source, preparation.heights.as_ref());
+        let read = move |progress: &Progress| document_of(&engine, left, &settings, Stamped::now(files), progress);
+        self.jobs.start(context, Work::Mesh, format!("Exchanging {}", source.title()), read, Self::take_loaded);
+        self.jobs.last_load = Some(Load { source, preparation, keep_view: false, has_changed: false, exchanges: true });
     }
 
     fn load(&mut self, context: &egui::Context, source: Source, preparation: Preparation, keep_view: bool) {
         let (engine, settings) = (self.engine.clone(), self.settings);
         let (wanted, prepared) = (source.clone(), preparation.clone());
-        let read = move |progress: &Progress| load(&engine, &wanted, &prepared, &settings, progress);
+        let read = move |progress: &Progress| load(&engine, &wanted, (&prepared, keep_view), &settings, progress);
         self.jobs.start(context, Work::Mesh, format!("Loading {}", source.title()), read, Self::take_loaded);
         self.jobs.last_load = Some(Load { source, preparation, keep_view, has_changed: false, exchanges: false });
     }
@@ -183,9 +228,14 @@ impl App {
             |document: &Document| (document.loaded.contents.scene, document.loaded.preparation.import.placement());
         let placed = place(&document);
         let mut before = self.document.replace(document);
+        // Until they are found again, so that nothing in the title moves.
+        let neighbours = before.as_mut().and_then(|before| before.neighbours.take());
+        if let (Some(document), Some(neighbours)) = (&mut self.document, neighbours)
+            && let Source::File(path) = &document.loaded.source
+        {
+            document.neighbours = neighbours.of(path);
+        }
         if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {
-            // Until they are found again, so that nothing in the title moves.
-            document.neighbours = before.neighbours.take();
             let is_prepared_alike = document.loaded.preparation == before.loaded.preparation;
             let is_newer = document.has_changed || is_prepared_alike && document.files != before.files;
             document.version = before.version + u64::from(is_newer);

@@ -1,7 +1,8 @@
 //! Watches files for changes on disk.
 
 use std::path::PathBuf;
-use std::time::Duration;
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::job_list::Work;
 use crate::app::App;
@@ -37,20 +38,50 @@ impl Stamped {
     }
 }
 
-/// Calls `changed` after every change of the files, once two looks find them the same: what is still being written is waited for. Ends
-/// when nobody wants it any more, or when `changed` returns false.
-pub(super) fn watch(mut known: Stamped, wanted: &Progress, mut changed: impl FnMut() -> bool) {
-    let mut last = known.clone();
+/// How many looks must find changed files the same before they count as written completely. A program that writes for minutes makes
+/// pauses: where files change again soon after they seemed complete, more looks are needed the next time.
+#[derive(Default)]
+pub(crate) struct Patience(Mutex<(Option<Instant>, u32)>);
+
+impl Patience {
+    /// The most looks, which is 5 s.
+    const MOST: u32 = 25;
+    /// What is soon.
+    const SOON: Duration = Duration::from_secs(10);
+
+    /// Files begin to change. Returns how many looks are needed.
+    fn begin(&self) -> u32 {
+        let mut own = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_soon = own.0.is_some_and(|ended| ended.elapsed() < Self::SOON);
+        own.1 = if is_soon { (4 * own.1).min(Self::MOST) } else { 1 };
+        own.1
+    }
+
+    /// Files seem to be complete.
+    fn end(&self) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).0 = Some(Instant::now());
+    }
+}
+
+/// Calls `changed` after every change of the files, once enough looks find them the same: what is still being written is waited for.
+/// Ends when nobody wants it any more, or when `changed` returns false.
+pub(super) fn watch(mut known: Stamped, patience: &Patience, wanted: &Progress, mut changed: impl FnMut() -> bool) {
+    let (mut last, mut needed, mut alike) = (known.clone(), 0, 0);
     while wanted.check().is_ok() {
         std::thread::sleep(EVERY);
         let now = Stamped::now(known.0.iter().map(|(path, _)| path.clone()));
-        if now != known && now == last && now.is_there() {
-            known = now;
+        if now == last {
+            alike += 1;
+        } else {
+            needed = if last == known { patience.begin() } else { needed };
+            (last, alike) = (now, 0);
+        }
+        if last != known && alike >= needed && last.is_there() {
+            known = last.clone();
+            patience.end();
             if !changed() {
                 return;
             }
-        } else {
-            last = now;
         }
     }
 }
@@ -70,12 +101,30 @@ impl App {
         if !matches!(self.source(), Some(Source::File(_))) {
             return;
         }
-        let watch = move |wanted: &Progress, changed: &dyn Fn(()) -> bool| watch(files, wanted, || changed(()));
+        let patience = self.jobs.patience.clone();
+        let watch =
+            move |wanted: &Progress, changed: &dyn Fn(()) -> bool| watch(files, &patience, wanted, || changed(()));
         self.jobs.follow(context, Work::MeshFiles, watch, |app, context, change| {
             if change.is_some() && app.jobs.load().is_none_or(|load| load.keep_view) {
                 app.reload(context);
                 app.jobs.last_load.iter_mut().for_each(|load| load.has_changed = true);
             }
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_change_again_soon_are_waited_for_longer() {
+        let patience = Patience::default();
+        let looks = [1, 4, 16, 25, 25].map(|expected| {
+            let looks = patience.begin();
+            patience.end();
+            (looks, expected)
+        });
+        assert!(looks.iter().all(|(looks, expected)| looks == expected), "{looks:?}");
     }
 }

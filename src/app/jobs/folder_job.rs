@@ -1,6 +1,7 @@
 //! The meshes beside the one that is open: those of its folder, or those that were dropped with it.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::companion_files::absolute_path;
 use super::job_list::Work;
@@ -12,21 +13,34 @@ use load::format::Format;
 /// Where a mesh is in the list of meshes that it belongs to.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Neighbours {
-    /// Its number, from 1 on.
-    pub number: usize,
-    pub count: usize,
-    /// The mesh before it; that of the first one is the last one.
-    pub before: PathBuf,
-    pub after: PathBuf,
+    list: Arc<[PathBuf]>,
+    /// An index into the list, as is the next one.
+    place: usize,
+    /// The mesh that was asked for last. It may still be loaded, or can't be.
+    asked: usize,
 }
 
 impl Neighbours {
     /// Finds a mesh in a list. None if it isn't there, or is alone.
-    fn new(path: &Path, list: &[PathBuf]) -> Option<Self> {
-        let count = list.len();
-        let place = list.iter().position(|other| other == path).filter(|_| count > 1)?;
-        let beside = |steps: usize| list[(place + steps) % count].clone();
-        Some(Self { number: place + 1, count, before: beside(count - 1), after: beside(1) })
+    fn new(path: &Path, list: Arc<[PathBuf]>) -> Option<Self> {
+        let place = list.iter().position(|other| other == path).filter(|_| list.len() > 1)?;
+        Some(Self { list, place, asked: place })
+    }
+
+    /// The mesh's number, from 1 on, and how many there are.
+    pub(crate) fn numbers(&self) -> [usize; 2] {
+        [self.place + 1, self.list.len()]
+    }
+
+    /// Where another mesh is in the same list.
+    pub(crate) fn of(self, path: &Path) -> Option<Self> {
+        Self::new(path, self.list)
+    }
+
+    /// The mesh after the one that was asked for last, or before it. The list goes round.
+    fn step(&mut self, forward: bool) -> PathBuf {
+        self.asked = (self.asked + if forward { 1 } else { self.list.len() - 1 }) % self.list.len();
+        self.list[self.asked].clone()
     }
 }
 
@@ -52,7 +66,7 @@ impl App {
         let dropped = self.dropped.contains(&path).then(|| self.dropped.clone());
         let find = move |progress: &Progress| {
             let list = dropped.map_or_else(|| meshes_of(path.parent().unwrap_or(Path::new(".")), progress), Ok)?;
-            Ok::<_, Cancelled>(Neighbours::new(&path, &list))
+            Ok::<_, Cancelled>(Neighbours::new(&path, list.into()))
         };
         self.jobs.start(context, Work::Folder, String::new(), find, |app, _, found| {
             if let (Some(document), Ok(Ok(neighbours))) = (&mut app.document, found) {
@@ -61,14 +75,11 @@ impl App {
         });
     }
 
-    /// Opens the mesh before or after the one that is open.
-    pub(in crate::app) fn open_neighbour(
-        &mut self,
-        context: &egui::Context,
-        which: impl FnOnce(Neighbours) -> PathBuf,
-    ) {
-        if let Some(neighbours) = self.document.as_ref().and_then(|document| document.neighbours.clone()) {
-            self.open(context, Source::File(which(neighbours)));
+    /// Opens the mesh after the one that is open, or before it: one further, if that is being loaded or can't be.
+    pub(in crate::app) fn open_neighbour(&mut self, context: &egui::Context, forward: bool) {
+        if let Some(neighbours) = self.document.as_mut().and_then(|document| document.neighbours.as_mut()) {
+            let path = neighbours.step(forward);
+            self.open(context, Source::File(path));
         }
     }
 }
@@ -79,15 +90,15 @@ mod tests {
 
     #[test]
     fn the_list_goes_round() {
-        let list = ["a.obj", "b.glb", "c.stl"].map(PathBuf::from);
-        let of = |name: &str| Neighbours::new(Path::new(name), &list);
-        let found = |number, before: &str, after: &str| {
-            Some(Neighbours { number, count: 3, before: before.into(), after: after.into() })
-        };
-        assert_eq!(of("a.obj"), found(1, "c.stl", "b.glb"));
-        assert_eq!(of("c.stl"), found(3, "b.glb", "a.obj"));
+        let list: Arc<[PathBuf]> = ["a.obj", "b.glb", "c.stl"].map(PathBuf::from).into();
+        let of = |name: &str| Neighbours::new(Path::new(name), list.clone());
+        let mut own = of("a.obj").expect("it is there");
+        assert_eq!(own.numbers(), [1, 3]);
+        let steps = [true, true, true, false, false].map(|forward| own.step(forward));
+        assert_eq!(steps, ["b.glb", "c.stl", "a.obj", "c.stl", "b.glb"].map(PathBuf::from));
+        assert_eq!(own.clone().of(Path::new("c.stl")), of("c.stl"));
         assert_eq!(of("d.obj"), None);
-        assert_eq!(Neighbours::new(Path::new("a.obj"), &list[..1]), None, "it is alone");
+        assert_eq!(Neighbours::new(Path::new("a.obj"), list[..1].into()), None, "it is alone");
     }
 
     #[test]

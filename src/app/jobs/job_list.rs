@@ -7,6 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::background_job::{BackgroundJob, Stopped, spawn};
+use super::file_watch::Patience;
 use crate::app::App;
 use crate::commands::CompanionFile;
 use geometry::progress::Progress;
@@ -99,7 +100,7 @@ pub(crate) struct Kept {
 
 impl PartialEq for Kept {
     fn eq(&self, other: &Self) -> bool {
-        (self.version, &self.loaded.preparation) == (other.version, &other.loaded.preparation)
+        self.version == other.version && self.loaded.is_prepared_as(&other.loaded)
     }
 }
 
@@ -118,6 +119,8 @@ pub(crate) struct Jobs {
     pub reference: (Option<Source>, bool),
     /// What is being read for the left half, or was read last.
     pub left: Option<LeftChoice>,
+    /// Of the mesh's files, which are watched.
+    pub patience: Arc<Patience>,
 }
 
 impl Jobs {

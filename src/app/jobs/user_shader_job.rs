@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::background_job::caught;
 use super::companion_files::{absolute_path, new_generation};
-use super::file_watch::{Stamped, watch};
+use super::file_watch::{Patience, Stamped, watch};
 use super::job_list::Work;
 use crate::app::App;
 use crate::app::text::file_name;
@@ -121,7 +121,7 @@ fn read_versions<S: UserShaderSlot>(engine: &Engine, path: &Path, take: &dyn Fn(
         take(version.unwrap_or_else(|stopped| Err(format!("reading {} {stopped}", shown_path(path)))))
     };
     if send() {
-        watch(files, wanted, send);
+        watch(files, &Patience::default(), wanted, send);
     }
 }
 

@@ -93,6 +93,7 @@ impl App {
             None => "The same".to_owned(),
             Some(LeftChoice::Read(None, _)) => "The same, own weights".to_owned(),
             Some(LeftChoice::Read(Some(source), _)) => source.title(),
+            Some(LeftChoice::Kept(kept)) if Some(&kept.loaded.source) != self.source() => kept.loaded.source.title(),
             Some(LeftChoice::Kept(kept)) if open.is_some_and(|open| kept.version < open.version) => {
                 "Before the change on disk".to_owned()
             }

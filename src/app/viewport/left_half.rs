@@ -80,7 +80,7 @@ impl App {
     pub(in crate::app) fn half_title(&self, half: SplitSide) -> String {
         let open = self.document.as_ref();
         let meshes = self.other_left().zip(open).map(|(left, open)| {
-            let names = [left.title(open.version), open.loaded.source.title()];
+            let names = [left.title(open), open.loaded.source.title()];
             mesh_title(half, [&left.content, &open.loaded], names)
         });
         let scene = open.and_then(|document| document.scene.half(half));

@@ -46,6 +46,11 @@ impl Loaded {
         Self { read: mesh.clone(), mesh, topology, ..Self::default() }
     }
 
+    /// Whether both are of the same source, prepared alike. Its file may have changed since.
+    pub fn is_prepared_as(&self, other: &Self) -> bool {
+        self.source == other.source && self.preparation == other.preparation
+    }
+
     /// Returns this mesh at a moment of one of its clips, deformed on the CPU. Without a moment it is at rest.
     pub fn posed(&self, moment: Option<Moment>) -> Self {
         let (mesh, topology) = (self.mesh.clone(), self.topology.clone());

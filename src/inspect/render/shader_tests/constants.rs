@@ -35,7 +35,9 @@ use geometry::tessellate::shared_constants::{
 use gpu::domain::{DOMAIN_POINTS, DOMAIN_TRIANGLES};
 use gpu::layout::LOD_GIVEN;
 use gpu::shader_constants::enum_constants;
-use gpu::{CURVE_SURFACE_STEP, DETAIL_STEP, GRID_WIDTH, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP};
+use gpu::{
+    CURVE_SURFACE_STEP, DETAIL_STEP, GRID_WIDTH, MANY_PATCHES, MOST_WORKGROUPS, SEARCH_COUNTERS, TEXTURED, WORKGROUP,
+};
 
 /// Constants that only WGSL has, with the reason.
 const WGSL_ALONE: &[(&[&str], &str)] = &[
@@ -253,6 +255,7 @@ fn of_the_mathematics() -> Vec<(&'static str, Expected)> {
         ("ROW_REACH", number(ROW_REACH)),
         ("FINEST_GRID", number(FINEST_GRID)),
         ("PARTIAL_STEPS", number(PARTIAL_STEPS)),
+        ("MANY_PATCHES", number(MANY_PATCHES)),
         ("MOST_WORKGROUPS", number(MOST_WORKGROUPS)),
         ("SEARCH_COUNTERS", number(SEARCH_COUNTERS)),
         ("SPREAD", number(SPREAD)),
