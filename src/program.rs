@@ -9,8 +9,10 @@ use clap::Parser;
 #[cfg(feature = "app")]
 use crate::app::{self, WindowError};
 use crate::cli::{self, Cli};
+use geometry::names::shown_path;
 #[cfg(feature = "app")]
 use inspect::engine::Preparation;
+use load::Source;
 
 /// The picture's file when no window can be opened.
 const PREVIEW: &str = "pnaen-preview.png";
@@ -25,6 +27,14 @@ pub fn run() -> ExitCode {
     }
     if let Some(command) = arguments.command {
         return cli::run(command);
+    }
+    if let Some(Source::File(path)) = &arguments.file
+        && matches!(path.try_exists(), Ok(false))
+    {
+        let path = shown_path(path);
+        return cli::fail(&format!(
+            "{path} can't be read: there is no such file, and no such command; see pnaen --help"
+        ));
     }
     let reason = match open_window(&arguments) {
         Ok(reason) => reason,

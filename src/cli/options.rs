@@ -52,7 +52,7 @@ pub struct SurfaceOptions {
     /// brightness from 0 (black) to 1 (white); `material`, the brightness of each material's base colour image; or `file`, the images
     /// that the file gives its materials. NAME=IMAGE,scale=S,midlevel=H (S in object units) replaces that of a material, or gives
     /// a part or group one of its own; may be given several times. A part's image counts before its material's
-    #[arg(long, value_name = "IMAGE|material|file|NAME=IMAGE", value_parser = heights())]
+    #[arg(long, value_name = "IMAGE|material|file|NAME=IMAGE[,scale=S,midlevel=H]", value_parser = heights())]
     pub height: Vec<HeightSource>,
     /// Memory for output on the device, in MiB, 1 to 65536; output that doesn't fit is made in chunks
     #[arg(long, value_name = "MIB", default_value_t = ARENA_BYTES >> 20, value_parser = whole(1..=65_536_u64))]

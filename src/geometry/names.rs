@@ -19,7 +19,8 @@ const MAX_LENGTH: usize = 200;
 
 /// Replaces every control character by U+FFFD, so that a name can neither break a line nor command a terminal.
 pub fn on_one_line(text: &str) -> String {
-    text.replace(char::is_control, "\u{fffd}")
+    let reorders = |c| matches!(c, '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    text.replace(|c: char| c.is_control() || reorders(c), "\u{fffd}")
 }
 
 /// Cuts a text to at most `most` characters; a text that was cut ends in an ellipsis.
@@ -71,6 +72,7 @@ mod tests {
     #[test]
     fn names_are_on_one_line_and_short() {
         assert_eq!(shown("\x1b[2Jred\nblue\u{9b}é"), "\u{fffd}[2Jred\u{fffd}blue\u{fffd}é");
+        assert_eq!(shown("gpj.\u{202e}exe\u{2066}"), "gpj.\u{fffd}exe\u{fffd}", "nothing turns the order around");
         assert_eq!([shortened("Walk", 4), shortened("Walking", 4)], ["Walk", "Wal…"]);
         let long = shown(&"ä".repeat(1000));
         assert!(long.chars().count() == MAX_LENGTH && long.ends_with("ä…"));

@@ -79,6 +79,7 @@ pub(super) fn read_here(bytes: Vec<u8>, file: &ModelFile) -> Result<LoadedMesh, 
     let (mut faces, details, binder) = surfaces.into_parts(&mut notes);
     let of_node = |node: usize| Some(&*scene.nodes[node].element.name).filter(|name| !name.is_empty());
     let bones = bones(nodes::joints(&scene, &drawn), of_node, &placed.scene, &placed.global, binder.as_ref());
+    notes.append(std::mem::take(&mut faces.notes));
     faces.notes = notes;
     budget.release(scene.metadata.result_memory_used as u64 + meshes.memory);
     let morph_targets = morphs::file_weights(&scene);

@@ -24,6 +24,19 @@ pub struct LoadedMesh {
     pub file_bytes: u64,
 }
 
+impl LoadedMesh {
+    /// Says why not all of it is a refined subdivision surface, where that was wanted.
+    pub fn why_not_refined(&self) -> String {
+        let of_cage =
+            self.warnings.iter().filter(|warning| *warning == NOT_REFINED || warning.contains("control cage"));
+        of_cage.cloned().collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// The warning about what was to be refined, and has no polygons that can be.
+pub(super) const NOT_REFINED: &str =
+    "It isn't refined as a subdivision surface: only polygons of FBX, OBJ, PLY, OFF, STL and 3MF files can be.";
+
 /// What a file offers to choose from.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Contents {

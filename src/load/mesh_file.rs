@@ -8,7 +8,7 @@ use super::content::{self, Content};
 use super::format::{Format, extension_of, known_extensions};
 use super::gltf::{self, GltfError, scenes};
 use super::heights::HeightError;
-use super::loaded_mesh::{Contents, LoadedMesh};
+use super::loaded_mesh::{Contents, LoadedMesh, NOT_REFINED};
 use super::model_file::ModelFile;
 use super::read_error::ReadError;
 use super::selection::{Names, Selection, ShownParts, choice, is_material};
@@ -16,6 +16,7 @@ use super::text_lines::in_utf8;
 use super::unread_formats::{self, UnreadFormat};
 use super::{fbx, obj, off, ply, stl, threemf};
 use crate::files::{FileError, Limits, Stamp, read_file};
+use geometry::mesh::rig::LARGEST_COORDINATE;
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
 
@@ -95,10 +96,6 @@ pub fn load(path: &Path, limits: &Limits, progress: &Progress) -> Result<LoadedM
     load_selected(path, Selection::default(), limits, progress)
 }
 
-/// The warning about what was to be refined and isn't.
-pub const NOT_REFINED: &str = "Not all of it is refined as a subdivision surface: only polygons of FBX, OBJ, PLY, OFF, STL and \
-                           3MF files can be.";
-
 /// Loads a mesh as [`load`] does, with the materials of a variant, or another scene than the default one.
 ///
 /// # Errors
@@ -121,7 +118,8 @@ pub fn load_selected(
     let mut mesh = read(format, if is_utf16 { in_utf8(bytes) } else { bytes }, path, selected, limits, progress)?;
     mesh.warnings.splice(0..0, warning);
     if selected.import.refines_all() && !mesh.is_refined {
-        mesh.warnings.push(NOT_REFINED.to_owned());
+        let is_said = mesh.cage_warnings().next().is_some();
+        mesh.warnings.extend((!is_said).then(|| NOT_REFINED.to_owned()));
     }
     before.check(path)?;
     check_selected(path, selected, &mesh.contents)?;
@@ -281,6 +279,13 @@ pub fn read(
         Format::ThreeMf => threemf::read(bytes, file).map_err(broken),
     }?;
     selected.import.place(&mut loaded.mesh);
+    let bounds = loaded.mesh.bounds();
+    // What isn't a number isn't within.
+    if !(bounds.min.abs().max(bounds.max.abs()).max_element() <= LARGEST_COORDINATE) {
+        let reason =
+            format!("has coordinates beyond {LARGEST_COORDINATE:e} in this unit; choose a smaller one with --unit");
+        return Err(not_read(path, reason));
+    }
     Ok(loaded)
 }
 

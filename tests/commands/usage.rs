@@ -132,6 +132,20 @@ fn without_a_display_the_program_writes_a_picture_without_the_settings_of_the_wi
     assert_eq!(std::fs::read(folder.path("window.json")).expect("it is still there"), b"damaged");
     let missing = command(&["nowhere.glb"]).current_dir(&folder.0).output().expect("the program starts");
     assert_eq!(missing.status.code(), Some(1));
+    // With a display, too.
+    let mut mistyped = command(&["rendr"]);
+    let mistyped = mistyped.env("DISPLAY", ":0").current_dir(&folder.0).output().expect("the program starts");
+    assert_eq!(mistyped.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&mistyped.stderr);
+    assert_eq!(said, "pnaen: rendr can't be read: there is no such file, and no such command; see pnaen --help\n");
+}
+
+#[test]
+fn a_unit_in_which_numbers_reach_too_far_is_refused() {
+    let folder = Folder::new();
+    let mesh = folder.path("large.obj");
+    std::fs::write(&mesh, "v 0 0 0\nv 1e36 0 0\nv 1e36 1e36 0\nf 1 2 3\n").expect("a writable folder");
+    sentence(&["info", &mesh, "--unit", "1000"], &["large.obj", "has coordinates beyond 1e37 in this unit"]);
 }
 
 #[test]

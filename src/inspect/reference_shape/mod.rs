@@ -26,7 +26,6 @@ use geometry::mesh::{Mesh, Shape};
 use geometry::near::{Goal, farthest};
 use geometry::progress::Progress;
 use load::files::Limits;
-use load::mesh_file::NOT_REFINED;
 use load::selection::Selection;
 use load::{Import, LoadError, NormalSource, ShownParts, Source};
 
@@ -157,10 +156,7 @@ impl ReferenceShape {
             let import = if shape.is_some() { Import::default() } else { import };
             let loaded = source.load_selected(Selection { import, ..selected }, limits, progress)?;
             if refines_all && !loaded.is_refined {
-                // Other warnings aren't about what is refined.
-                let of_cage = |warning: &&String| warning.contains("control cage");
-                let said = loaded.warnings.iter().filter(of_cage).cloned().collect::<Vec<_>>().join(" ");
-                return Err(refused(if said.is_empty() { NOT_REFINED } else { &said }));
+                return Err(refused(&loaded.why_not_refined()));
             }
             let read = Reference::new(&loaded.mesh).ok_or_else(|| refused("it has no triangles"))?;
             Ok((read, loaded.is_refined))

@@ -48,6 +48,10 @@ impl HeightSource {
 impl NamedImage {
     fn parse(text: &str) -> Option<Self> {
         let (part, mut path) = text.split_once('=').filter(|(part, _)| !part.is_empty())?;
+        // An image alone has no numbers of its own.
+        if [",scale", ",midlevel"].iter().any(|option| part.ends_with(option)) {
+            return None;
+        }
         let mut numbers = [None; 2];
         while let Some((before, option)) = path.rsplit_once(',') {
             let number = |name| option.strip_prefix(name);
@@ -100,8 +104,15 @@ mod tests {
             let is_file = matches!(expected, HeightSource::File(_));
             assert!(is_file || HeightSource::parse((&texts[0]).into()) == Ok(expected), "{texts:?}");
         }
-        let bad =
-            ["=a.png", "wall=", "wall=,scale=1", "wall=a.png,scale=x", "wall=a.png,scale=inf", "wall=a.png,midlevel=0"];
+        let bad = [
+            "=a.png",
+            "wall=",
+            "wall=,scale=1",
+            "wall=a.png,scale=x",
+            "wall=a.png,scale=inf",
+            "wall=a.png,midlevel=0",
+            "a.png,scale=1",
+        ];
         assert!(bad.iter().all(|text| HeightSource::parse(text.into()).is_err()));
         for path in ["file", "a=b.png", "-x.png"] {
             let texts = HeightSource::File(path.into()).texts();

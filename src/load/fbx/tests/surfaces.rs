@@ -339,6 +339,19 @@ fn vertices_of_a_cage_at_one_place_stay_apart() {
 }
 
 #[test]
+fn a_cage_that_takes_too_much_memory_stays_and_says_so() {
+    let marked = prism(vec![one("Smoothness", 2), one("PreviewDivisionLevels", 10)]);
+    let objects = vec![marked, model(20, "prism", "Mesh", &[])];
+    let bytes = document(true, 1.0, objects, &[Link(20, 0, ""), Link(10, 20, "")]);
+    let (limits, progress) = (Limits { memory: 1 << 20, ..Limits::default() }, Progress::new());
+    let mesh =
+        read_here(text(&bytes), &ModelFile { limits, ..ModelFile::from_test("test", &progress) }).expect("the cage");
+    assert_eq!(mesh.triangles.len(), 20);
+    let said = mesh.why_not_refined();
+    assert!(said.starts_with("A subdivision surface is shown as its control cage: "), "{said}");
+}
+
+#[test]
 fn a_cage_that_the_file_shows_as_such_stays() {
     for (mode, levels, triangles) in [(1, 2, 20), (2, 2, 36 * 4 * 2), (3, 1, 36 * 2), (3, 0, 20)] {
         let marked = prism(vec![one("Smoothness", mode), one("PreviewDivisionLevels", levels)]);
