@@ -27,9 +27,13 @@ pub struct LoadedMesh {
 impl LoadedMesh {
     /// Says why not all of it is a refined subdivision surface, where that was wanted.
     pub fn why_not_refined(&self) -> String {
-        let of_cage =
-            self.warnings.iter().filter(|warning| *warning == NOT_REFINED || warning.contains("control cage"));
-        of_cage.cloned().collect::<Vec<_>>().join(" ")
+        let said = self.cage_warnings().cloned().collect::<Vec<_>>().join(" ");
+        if said.is_empty() { NOT_REFINED.to_owned() } else { said }
+    }
+
+    /// Those of the warnings that are about what isn't refined.
+    pub(super) fn cage_warnings(&self) -> impl Iterator<Item = &String> {
+        self.warnings.iter().filter(|warning| warning.contains("control cage"))
     }
 }
 
