@@ -227,3 +227,26 @@ fn swap_exchanges_the_meshes_of_two_files_as_they_are() {
     shown(&harness, before);
     assert!(harness.state_mut().read_picture().expect("a picture") == drawn, "as before, with heights");
 }
+
+#[test]
+fn the_selected_patch_has_the_factors_of_the_half_that_is_edited() {
+    let mut harness = uniform(Some(Source::Shape(Shape::CubeSplit)));
+    harness.state_mut().select_triangle(Some(0));
+    settle(&mut harness);
+    assert!(harness.query_by_label("Of the right half").is_none(), "the view isn't split");
+    press(&mut harness, egui::Key::S);
+    choose(&mut harness, "Left", "PN");
+    let has = |harness: &Harness<App>, factor: &str| harness.query_all_by_label_contains(factor).next().is_some();
+    harness.get_by_label("Of the right half");
+    assert!(has(&harness, "8.000") && !has(&harness, "3.000"));
+    click(&mut harness, "Edit left (A)");
+    choose(&mut harness, "Partitioning", "Integer");
+    harness.get_by_role_and_label(Role::Slider, "Factor").set_value_accesskit(3.0);
+    settle(&mut harness);
+    harness.get_by_label("Of the left half");
+    assert!(has(&harness, "3.000") && !has(&harness, "8.000"));
+    scroll_to(&mut harness, "Edit right (B)");
+    click(&mut harness, "Edit right (B)");
+    harness.get_by_label("Of the right half");
+    assert!(has(&harness, "8.000") && !has(&harness, "3.000"));
+}

@@ -214,8 +214,10 @@ fn image_row(
         let hover = "How far white is above black, in object units.";
         let first = number(&mut scale, 0.002 * radius, "Height scale", hover);
         ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-            let label = ui.add(Label::new(shortened(&name, LONGEST)).truncate());
-            label.on_hover_text(format!("{name}: {} (--height)", shown_path(&image.path)));
+            // As in the list of parts.
+            let own = name.rsplit('/').find(|own| *own != ".").unwrap_or(&name);
+            let label = Label::new(shortened(own, LONGEST)).truncate().show_tooltip_when_elided(false);
+            ui.add(label).on_hover_text(format!("{name}: {} (--height)", shown_path(&image.path)));
         });
         first
     });

@@ -9,7 +9,7 @@ use crate::app::text::{grouped, short};
 use inspect::settings::SplitSide;
 
 /// How many characters a cell has room for.
-const CELL: usize = 7;
+const CELL: usize = 8;
 
 const COLUMNS: [&str; 3] = ["Left", "Right", "Change"];
 
@@ -74,9 +74,9 @@ fn cell(ui: &mut egui::Ui, text: RichText) -> Response {
 
 /// A figure in a cell, with fewer digits if it would take more room.
 fn in_cell(sign: &str, figure: Option<f64>) -> String {
-    let text = sign.to_owned() + &written(figure, 1e5);
+    let text = sign.to_owned() + &written(figure, 1e6);
     match figure {
-        Some(figure) if text.chars().count() > CELL => format!("{sign}{figure:.0e}"),
+        Some(figure) if text.chars().count() > CELL => format!("{sign}{figure:.1e}"),
         _ => text,
     }
 }
@@ -96,12 +96,13 @@ mod tests {
 
     #[test]
     fn large_counts_are_short_in_cells_and_whole_in_what_is_said_of_them() {
-        let [cell, said] = [1e5, f64::INFINITY].map(|below| move |figure| written(Some(figure), below));
+        let cell = |figure| in_cell("", Some(figure));
+        let said = |figure| written(Some(figure), f64::INFINITY);
         assert_eq!([cell(1_234_567.0), said(1_234_567.0)], ["1.23e6", "1,234,567"]);
-        assert_eq!([cell(-100_000.0), said(-100_000.0)], ["-1.00e5", "-100,000"]);
-        assert_eq!([cell(99_999.0), cell(33.0), said(0.25), written(None, 1e5)], ["99,999", "33", "0.250", "…"]);
+        assert_eq!([cell(-138_676.0), said(-138_676.0)], ["-138,676", "-138,676"]);
+        assert_eq!([cell(999_999.0), cell(33.0), said(0.25), in_cell("", None)], ["999,999", "33", "0.250", "…"]);
         let small = [("+", 4.08e-12), ("", -4.08e-12), ("", 2.56e-8), ("+", 99_999.0)];
         let cells = small.map(|(sign, figure)| in_cell(sign, Some(figure)));
-        assert_eq!(cells, ["+4e-12", "-4e-12", "2.56e-8", "+99,999"]);
+        assert_eq!(cells, ["+4.1e-12", "-4.1e-12", "2.56e-8", "+99,999"]);
     }
 }

@@ -96,10 +96,7 @@ impl App {
         let tree = self.part_tree();
         let picked = self.picked_part().filter(|_| leaves(&tree).count() > 1);
         let picked = picked.and_then(|part| tree.iter().position(|branch| branch.part == Some(part)));
-        let action = picked.and_then(|at| {
-            ui.strong(shortened(&shown(&tree[at].path), LONGEST));
-            part_entries(ui, &tree, at, &self.preparation().parts)
-        });
+        let action = picked.and_then(|at| part_entries(ui, &tree, at, &self.preparation().parts));
         if picked.is_some() {
             ui.separator();
         }
@@ -238,6 +235,7 @@ fn named_switch(ui: &mut egui::Ui, is_on: bool, text: &str, name: &str, hover: &
 /// What can be done with a part or a group.
 fn part_entries(ui: &mut egui::Ui, tree: &[Branch], at: usize, selected: &ShownParts) -> Option<PartAction> {
     let (branch, are_hidden) = (&tree[at], leaves(tree).any(|leaf| leaf.shown == 0));
+    ui.strong(shortened(&shown(&branch.path), LONGEST));
     let (is_shown, what) = (branch.shown > 0, if branch.part.is_some() { "part" } else { "group" });
     let entries = [
         (PartAction::Frame(at), format!("Frame this {what}"), is_shown),

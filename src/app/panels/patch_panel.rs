@@ -18,7 +18,7 @@ use geometry::tessellate::{
 };
 use inspect::measure::EdgeSide;
 use inspect::render::layout::FACTOR_COLORS;
-use inspect::settings::Choice;
+use inspect::settings::{Choice, SplitSide};
 
 /// What is to be done once the rows are shown.
 type Wish = Box<dyn FnOnce(&mut App)>;
@@ -26,6 +26,7 @@ type Wish = Box<dyn FnOnce(&mut App)>;
 /// The selected triangle, its patch, and what is known about them.
 pub(super) struct SelectedPatch<'a> {
     app: &'a App,
+    half: SplitSide,
     mesh: &'a Mesh,
     pub topology: &'a Topology,
     triangle: u32,
@@ -57,12 +58,14 @@ impl App {
                 let (question, is_of_shader) = (self.emitted_patch(patch), self.uses_surface_shader());
                 let given_by = self.given.as_ref().map(|_| "from the file of factors");
                 let given_by = given_by.or(self.uses_lod_shader().then_some("computed by the LOD shader"));
-                let results = self.results();
+                let half = self.patch_half();
+                let results = self.results_of(half);
                 let found = results.map(|results| &results.found);
                 let convention =
                     results.map_or(self.convention(), |results| results.seen.inputs.tessellation.convention);
                 let shown = SelectedPatch {
                     app: self,
+                    half,
                     mesh,
                     topology,
                     triangle,
@@ -76,6 +79,12 @@ impl App {
                 if let Some((part, document)) = self.picked_part().zip(self.document.as_ref()) {
                     let name = names::shown(&document.loaded.contents.parts[part].name);
                     ui.add(egui::Label::new(RichText::new(&name).strong()).truncate()).on_hover_text(name);
+                }
+                if self.settings.split.is_some() {
+                    let hover =
+                        "Edit left and Edit right choose whose factors these are, if both halves show the same mesh.";
+                    let of = if half == SplitSide::Left { "Of the left half" } else { "Of the right half" };
+                    ui.weak(of).on_hover_text(hover);
                 }
                 // The tables have less space between lines than the rest of the panel.
                 ui.scope(|ui| {
@@ -101,7 +110,7 @@ impl App {
 
     /// What the selected patch's explanation is about: how the patch was emitted. None until that is measured, and if nothing was emitted.
     fn emitted_patch(&self, patch: u32) -> Option<EmittedPatch> {
-        let results = self.results()?;
+        let results = self.results_of(self.patch_half())?;
         let factors = results.found.outlines.factors(patch);
         let emitted = EmittedPatch { tessellation: results.of, patch, inputs: results.seen.inputs, factors };
         // What explains a patch computes its surface on the CPU, which doesn't know a shader's.
@@ -185,7 +194,8 @@ impl SelectedPatch<'_> {
     }
 
     pub(super) fn lod(&self) -> Lod {
-        self.app.settings.tessellation.used_lod()
+        let own = self.app.settings.half(self.half).unwrap_or(self.app.settings);
+        own.tessellation.used_lod()
     }
 
     /// The factor that LOD gave the edge whose factor the hull shader writes as factor `i`.

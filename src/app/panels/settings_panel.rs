@@ -36,7 +36,10 @@ impl App {
                     app.part_heights(ui);
                     grid("displacement").show(ui, |ui| app.displacement_rows(ui));
                 }
-                app.parts_section(ui);
+                // Those of another mesh on the left aren't listed.
+                if !is_left || app.other_left().is_none() {
+                    app.parts_section(ui);
+                }
                 app.morphs_section(ui, is_left);
                 app.section(ui, Section::Look, Self::look_rows);
                 app.section(ui, Section::Import, Self::import_rows);

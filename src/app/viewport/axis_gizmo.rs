@@ -35,7 +35,8 @@ pub(super) fn axes_place(picture: Rect, split: Option<f32>) -> Option<Rect> {
     let has_room = picture.width() >= LEAST_PICTURE.x && picture.height() >= LEAST_PICTURE.y;
     let place = Align2::RIGHT_TOP.align_size_within_rect(Vec2::splat(SIZE), picture.shrink(4.0));
     let divider = split.map(|split| picture.left() + split * picture.width());
-    let is_narrow = divider.is_some_and(|divider| place.left() - divider < TITLE.x);
+    // The title of a right half that ends there needs the room above.
+    let is_narrow = divider.is_some_and(|divider| place.left() - divider < TITLE.x && divider < picture.right());
     let place = if is_narrow { place.translate(vec2(0.0, TITLE.y)) } else { place };
     has_room.then_some(place)
 }

@@ -390,7 +390,10 @@ impl App {
         let left_takes_long = self.jobs.get(Work::LeftHalf).is_some_and(|job| job.since.elapsed() > NOTICED);
         if self.document.is_some() && !is_cancelled && (is_old || left_takes_long) {
             let text = note_text(ui, "Tessellating…", egui::Color32::from_gray(235));
-            let place = egui::Align2::CENTER_TOP.align_size_within_rect(text.size(), rect.shrink(40.0));
+            // Below the titles of both halves.
+            let from_top = if self.settings.split.is_some() { 112.0 } else { 40.0 };
+            let place =
+                egui::Align2::CENTER_TOP.align_size_within_rect(text.size(), rect.shrink2(egui::vec2(40.0, from_top)));
             paint_note(ui, place, text);
         }
         if let Some(under_way) = self.under_way() {

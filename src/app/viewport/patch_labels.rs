@@ -10,7 +10,6 @@ use crate::app::widgets::rgb;
 use geometry::tessellate::{factor_side, segments};
 use geometry::view::{ScreenView, project};
 use inspect::render::layout::FACTOR_COLORS;
-use inspect::settings::SplitSide;
 
 /// The smallest extent of a patch on screen, in points, that is labelled.
 const LEAST_EXTENT: f32 = 60.0;
@@ -34,7 +33,7 @@ impl App {
         let middle = ((a.to_vec2() + b.to_vec2() + c.to_vec2()) / 3.0).to_pos2();
         let corner = |(k, place)| (place, format!("{k} {}", letter(self.convention(), k)), Color32::from_gray(235));
         let corners: Vec<_> = (0..).zip([a, b, c]).map(corner).collect();
-        let edges = (0..).zip(self.patch_edges(topology, patch, SplitSide::Right)).filter_map(|(i, points)| {
+        let edges = (0..).zip(self.patch_edges(topology, patch, self.patch_half())).filter_map(|(i, points)| {
             let [before, after] = [points.get((points.len() - 1) / 2)?, points.get(points.len() / 2)?];
             let place = at((*before + *after) / 2.0)?;
             Some((i, place, self.factor_text(patch, i), rgb(FACTOR_COLORS[i as usize])))
@@ -55,7 +54,7 @@ impl App {
 
     /// Factor `i` of a patch as LOD gave it, and the number of segments.
     fn factor_text(&self, patch: u32, i: u32) -> String {
-        let (Some(document), Some(found)) = (&self.document, self.found(SplitSide::Right)) else {
+        let (Some(document), Some(found)) = (&self.document, self.found(self.patch_half())) else {
             return " = …".into();
         };
         let Some(sides) = found.outlines.patch(&document.loaded.topology, patch) else { return String::new() };

@@ -55,6 +55,13 @@ impl App {
         self.document.as_ref()?.loaded.topology.patch_of(self.selected_triangle()?)
     }
 
+    /// The half whose factors of the selected patch are shown: the one that is edited, if it shows the same mesh.
+    pub(in crate::app) fn patch_half(&self) -> SplitSide {
+        let own = self.panels.edited;
+        let is_shown = self.document.as_ref().is_some_and(|document| document.scene.shares_pose(own));
+        if is_shown && self.settings.split.is_some() { own } else { SplitSide::Right }
+    }
+
     pub(in crate::app) fn convention(&self) -> Convention {
         self.settings.tessellation.convention
     }
