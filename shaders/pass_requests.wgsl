@@ -79,7 +79,10 @@ fn set_known(patch_index: u32, edges: vec3<f32>, inner: f32) {
     atomicStore(&edge_factors[known_at(patch_index)], word);
 }
 
-fn request(patch_index: u32, requested: vec3<f32>) {
+// A patch with no inside factor within the tolerance comes as close as it can.
+fn request(patch_index: u32, own: vec3<f32>, inside: f32) {
+    let least = select(1.0, last_factor(params.partitioning), inside == BEYOND_LAST);
+    let requested = max(own, vec3<f32>(least));
     for (var i = 0u; i < 3u; i++) {
         let edge = patches[patch_index].factors[(i + 1u) % 3u] >> 3u;
         atomicMax(&edge_factors[edge], bitcast<u32>(requested[i]));
@@ -125,7 +128,7 @@ fn list_patches_main(invocation: Invocation) {
         }
     }
     if is_first && inside > 0.0 {
-        request(index, edges);
+        request(index, edges, inside);
     }
     set_inside(index, inside);
     set_known(index, edges, known.inner);
@@ -207,7 +210,7 @@ fn search_patches_main(invocation: Invocation) {
                 set_known(index, found.edges, found.inner);
             }
             if list == REQUESTING {
-                request(index, found.edges);
+                request(index, found.edges, found.inside);
             } else if before + 1u < 2u * ROUNDS && needs_more(chosen, found) {
                 search_later(REQUESTING, index, known.edges, heights);
             }

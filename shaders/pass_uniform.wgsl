@@ -87,17 +87,21 @@ fn search_uniform_factor_main(invocation: Invocation) {
     var factors = factors_left();
     while any(factors != vec2<u32>(0u)) && index < params.patch_count {
         var seen = load_seen(index);
+        let wanted = factors;
+        var tried = vec2<u32>(0u);
         while any(factors != vec2<u32>(0u)) {
             let factor = 1u + select(firstLeadingBit(factors.x), 32u + firstLeadingBit(factors.y), factors.y != 0u);
-            factors &= bits_up_to(factor - 1u);
+            let own = bits_up_to(factor) & ~bits_up_to(factor - 1u);
+            factors &= ~own;
+            tried |= own;
             if !uniform_suffices(&seen, params.tolerance, params.partitioning, f32(factor)) && lane == 0u {
-                dont_take(bits_up_to(factor) & ~bits_up_to(factor - 1u));
+                dont_take(own);
             }
         }
         // Some software drivers end the loops of an invocation after 65,535 turns of all of them. What hasn't been looked at may
-        // not be enough.
-        if lane == 0u && any(factors != vec2<u32>(0u)) {
-            dont_take(factors);
+        // not be enough, nor what was looked at last. Of `factors` compilers know that none is left after the loop.
+        if lane == 0u && any(tried != wanted) {
+            dont_take(wanted);
         }
         index += invocation.workgroups.x;
         factors = factors_left();

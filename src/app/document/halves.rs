@@ -13,6 +13,18 @@ use inspect::render::LeftPose;
 use inspect::settings::Settings;
 use load::{MorphWeights, Source};
 
+impl LeftMesh {
+    /// What it is called beside the mesh that is open.
+    pub(in crate::app) fn title(&self, open: &Document) -> String {
+        match &self.from {
+            LeftChoice::Kept(kept) if kept.loaded.source != open.loaded.source => self.content.source.title(),
+            LeftChoice::Kept(kept) if kept.version < open.version => "before the change".to_owned(),
+            LeftChoice::Kept(_) => "as kept".to_owned(),
+            LeftChoice::Read(..) => self.content.source.title(),
+        }
+    }
+}
+
 /// What both halves show is exchanged.
 impl App {
     /// Exchanges what both halves show: settings, poses, weights of morph targets, and meshes of two files. A mesh as it was before a

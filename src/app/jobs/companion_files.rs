@@ -7,7 +7,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::job_list::{LeftChoice, Work};
 use crate::app::App;
-use crate::app::document::Document;
 use crate::app::text::file_name;
 use crate::commands::CompanionFile;
 use geometry::names::shown_path;
@@ -55,18 +54,6 @@ impl<S, T> Opened<S, T> {
 impl<T> OpenFile<T> {
     pub(crate) fn name(&self) -> String {
         file_name(&self.from)
-    }
-}
-
-impl LeftMesh {
-    /// What it is called beside the mesh that is open.
-    pub(crate) fn title(&self, open: &Document) -> String {
-        match &self.from {
-            LeftChoice::Kept(kept) if kept.loaded.source != open.loaded.source => self.content.source.title(),
-            LeftChoice::Kept(kept) if kept.version < open.version => "before the change".to_owned(),
-            LeftChoice::Kept(_) => "as kept".to_owned(),
-            LeftChoice::Read(..) => self.content.source.title(),
-        }
     }
 }
 

@@ -7,7 +7,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::background_job::{BackgroundJob, Stopped, spawn};
-use super::file_watch::Patience;
+use super::patience::Patience;
 use crate::app::App;
 use crate::commands::CompanionFile;
 use geometry::progress::Progress;

@@ -14,6 +14,7 @@ pub(super) mod job_list;
 pub(super) mod leak_job;
 pub(super) mod measure_job;
 pub(super) mod mesh_checks;
+mod patience;
 pub(super) mod picture_job;
 pub(super) mod scenes;
 pub(super) mod silhouette_job;

@@ -6,8 +6,9 @@ use std::sync::Arc;
 
 use super::background_job::caught;
 use super::companion_files::{absolute_path, new_generation};
-use super::file_watch::{Patience, Stamped, watch};
+use super::file_watch::{Stamped, watch};
 use super::job_list::Work;
+use super::patience::Patience;
 use crate::app::App;
 use crate::app::text::file_name;
 use crate::commands::CompanionFile;

@@ -267,7 +267,8 @@ impl MeshLod<'_> {
         let requested = |patch: u32, side: usize| {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| self.least_edge_factor(factor));
-            self.fewest(&seen, least, 0.0, SearchGoal::Requests).edges[(side + 2) % 3]
+            let own = self.fewest(&seen, least, 0.0, SearchGoal::Requests);
+            own.requests(self.inputs.tessellation.partitioning)[(side + 2) % 3]
         };
         let own_side = topology.sides[topology.patches[patch as usize].sides[side] as usize];
         let sides = topology.edge_sides(&topology.edges[own_side.edge as usize]).iter();

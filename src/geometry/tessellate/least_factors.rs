@@ -208,6 +208,14 @@ pub(super) struct ChosenFactors {
     pub inner: f32,
 }
 
+impl ChosenFactors {
+    /// What the patch requests for its edges. If nothing is within the tolerance, it comes as close as it can.
+    pub(super) fn requests(&self, partitioning: Partitioning) -> [f32; 3] {
+        let least = if self.inside == BEYOND_LAST { last_factor(partitioning) } else { 1.0 };
+        self.edges.map(|edge| edge.max(least))
+    }
+}
+
 /// What the factors of a patch's edges are that are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum SearchGoal {

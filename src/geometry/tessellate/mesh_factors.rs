@@ -94,8 +94,8 @@ impl<'a> MeshLod<'a> {
         let edges = 0..self.nets.curves.factor_curves.len() as u32 - 1;
         let least: Vec<f32> = edges.map(|factor| self.least_edge_factor(factor)).collect();
         let mut requested = vec![whole_segments(partitioning, 1.0); least.len()];
-        let request = |patch: u32, edges: [f32; 3], requested: &mut [f32]| {
-            for (k, own) in [1, 2, 0].into_iter().zip(edges) {
+        let request = |patch: u32, own: &ChosenFactors, requested: &mut [f32]| {
+            for (k, own) in [1, 2, 0].into_iter().zip(own.requests(partitioning)) {
                 let factor = self.nets.patch_factor(patch, k) as usize;
                 requested[factor] = requested[factor].max(own);
             }
@@ -105,7 +105,7 @@ impl<'a> MeshLod<'a> {
             let seen = self.seen_patch(patch);
             let least = self.first_least(patch, &seen, |factor| least[factor as usize]);
             let own = self.fewest(&seen, least, 0.0, SearchGoal::Requests);
-            request(patch, own.edges, &mut requested);
+            request(patch, &own, &mut requested);
             chosen.push(own);
         }
         let rounds = rounds(partitioning.has_rows());
@@ -126,7 +126,7 @@ impl<'a> MeshLod<'a> {
                 if requests {
                     let seen = self.seen_patch(patch);
                     let own = self.fewest(&seen, edges, chosen.inner, SearchGoal::Requests);
-                    request(patch, own.edges, &mut requested);
+                    request(patch, &own, &mut requested);
                     if own.inside != BEYOND_LAST {
                         *chosen = own;
                     }
