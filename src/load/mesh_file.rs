@@ -19,6 +19,7 @@ use crate::files::{FileError, Limits, Stamp, read_file};
 use geometry::mesh::rig::LARGEST_COORDINATE;
 use geometry::names::{shown, shown_path};
 use geometry::progress::{Cancelled, Progress};
+use glam::Vec3;
 
 /// Why a file could not be loaded as a mesh.
 #[derive(Debug, thiserror::Error)]
@@ -280,8 +281,8 @@ pub fn read(
     }?;
     selected.import.place(&mut loaded.mesh);
     let bounds = loaded.mesh.bounds();
-    // What isn't a number isn't within.
-    if !(bounds.min.abs().max(bounds.max.abs()).max_element() <= LARGEST_COORDINATE) {
+    let is_within = |corner: Vec3| corner.abs().cmple(Vec3::splat(LARGEST_COORDINATE)).all();
+    if !(is_within(bounds.min) && is_within(bounds.max)) {
         let reason =
             format!("has coordinates beyond {LARGEST_COORDINATE:e} in this unit; choose a smaller one with --unit");
         return Err(not_read(path, reason));

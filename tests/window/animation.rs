@@ -360,3 +360,26 @@ fn the_joint_under_the_resting_pointer_is_named() {
     let [joint, number] = ["Joint Tip", "Factors 8.00, 8.00, 8.00"].map(|line| harness.get_by_label(line).rect());
     assert!(joint.bottom() <= number.top(), "{joint} {number}");
 }
+
+#[test]
+fn a_moment_goes_with_its_mesh_when_the_meshes_of_two_files_are_exchanged() {
+    let (mut harness, folder) = moving_window();
+    let other = folder.path().join("other.obj");
+    std::fs::write(&other, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a writable folder");
+    choose(&mut harness, "Clip", CLIPS[3]);
+    harness.get_by_role_and_label(Role::Slider, "Time").set_value_accesskit(0.5);
+    press(&mut harness, Key::S);
+    let context = harness.ctx.clone();
+    harness.state_mut().open_reference_shape(&context, Source::File(other));
+    settle(&mut harness);
+    choose(&mut harness, "Left mesh", "Reference surface: other.obj");
+    let before = harness.state_mut().read_picture().expect("a device");
+    scroll_to(&mut harness, "Swap");
+    click(&mut harness, "Swap");
+    harness.get_by_label_contains("Left: moving.glb, All at 0.5 s");
+    assert_eq!(harness.state().moment(), None, "the other mesh has no clips");
+    scroll_to(&mut harness, "Swap");
+    click(&mut harness, "Swap");
+    assert_eq!(time(&harness), 0.5);
+    assert!(harness.state_mut().read_picture().expect("a device") == before, "as it was");
+}
