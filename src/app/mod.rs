@@ -184,6 +184,15 @@ impl App {
     }
 }
 
+impl Drop for App {
+    /// A software driver that still compiles or draws while the process ends would crash.
+    fn drop(&mut self) {
+        if self.engine.gpu.is_software() {
+            self.engine.gpu.wait();
+        }
+    }
+}
+
 impl eframe::App for App {
     fn raw_input_hook(&mut self, context: &egui::Context, input: &mut egui::RawInput) {
         input.events = self.window.events.pace(std::mem::take(&mut input.events));
