@@ -173,6 +173,27 @@ fn the_meshes_of_a_folder_are_stepped_through() {
 }
 
 #[test]
+fn the_number_of_a_mesh_stays_while_it_is_loaded_again_by_a_relative_path() {
+    // Tests run in the package's folder; beside the vase there is glass.
+    let mut harness = uniform(Some(Source::File("assets/vase.glb".into())));
+    wait_for_label(&mut harness, "2/2");
+    let context = harness.ctx.clone();
+    let before = harness.state().pictures();
+    harness.state_mut().reload(&context);
+    until_always(&mut harness, "2/2", |app| app.pictures() > before);
+}
+
+/// Goes on until something holds, while a label must be there in every frame.
+fn until_always(harness: &mut Harness<App>, label: &str, holds: impl Fn(&App) -> bool) {
+    let start = Instant::now();
+    while !holds(harness.state()) {
+        assert!(start.elapsed() < PATIENCE, "the window is still busy");
+        harness.step();
+        harness.get_by_label(label);
+    }
+}
+
+#[test]
 fn steps_through_a_folder_go_past_meshes_that_cannot_be_loaded_and_none_is_lost() {
     let folder = tempfile::tempdir().expect("a writable temporary folder");
     let write = |name: &str, text: &str| {

@@ -9,6 +9,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use load::Source;
 use pnaen::app::App;
+use tempfile::TempDir;
 
 use crate::driver::PATIENCE;
 use crate::editing::{assert_draws, copied};
@@ -106,15 +107,21 @@ fn the_left_half_has_weights_of_its_own_which_are_undone_and_copied() {
     assert!(!copied(&mut harness).contains("--split-morph"));
 }
 
-#[test]
-fn swap_exchanges_the_weights_of_both_halves() {
-    let (_folder, mut harness) = uniform_of("moving.glb", moving());
+/// A window whose left half alone has a weight of 1, while that half is edited, and the folder of its file.
+fn swollen_on_the_left() -> (TempDir, Harness<'static, App>) {
+    let (folder, mut harness) = uniform_of("moving.glb", moving());
     press(&mut harness, Key::S);
     scroll_to(&mut harness, "Edit left (A)");
     click(&mut harness, "Edit left (A)");
     scroll_to(&mut harness, "Reset morph targets");
     harness.get_by_role_and_label(Role::Slider, "Swell").set_value_accesskit(1.0);
     settle(&mut harness);
+    (folder, harness)
+}
+
+#[test]
+fn swap_exchanges_the_weights_of_both_halves() {
+    let (_folder, mut harness) = swollen_on_the_left();
     for (swell, of_left) in [(-0.6, "Swell 1"), (-0.9, "Swell 0.25"), (-0.6, "Swell 1")] {
         assert!((least(&harness) - swell).abs() < 1e-5, "{}", least(&harness));
         harness.get_by_label_contains(&format!("Left: {of_left}, "));
@@ -130,13 +137,7 @@ fn swap_exchanges_the_weights_of_both_halves() {
 
 #[test]
 fn weights_of_the_left_half_that_the_file_no_longer_has_are_dropped_with_a_sentence() {
-    let (folder, mut harness) = uniform_of("moving.glb", moving());
-    press(&mut harness, Key::S);
-    scroll_to(&mut harness, "Edit left (A)");
-    click(&mut harness, "Edit left (A)");
-    scroll_to(&mut harness, "Reset morph targets");
-    harness.get_by_role_and_label(Role::Slider, "Swell").set_value_accesskit(1.0);
-    settle(&mut harness);
+    let (folder, mut harness) = swollen_on_the_left();
     harness.get_by_label_contains("Left: Swell 1, untessellated\n");
     let mut changed = moving();
     // A clip is called Swell, too.

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::Document;
 use crate::app::App;
 use crate::app::jobs::background_job::Stopped;
+use crate::app::jobs::companion_files::absolute_path;
 use crate::app::jobs::file_watch::{Stamped, sources};
 use crate::app::jobs::job_list::{LeftChoice, Load, Work};
 use crate::app::jobs::scenes::scene_of;
@@ -233,7 +234,7 @@ impl App {
         if let (Some(document), Some(neighbours)) = (&mut self.document, neighbours)
             && let Source::File(path) = &document.loaded.source
         {
-            document.neighbours = neighbours.of(path);
+            document.neighbours = neighbours.of(&absolute_path(path.clone()));
         }
         if let (true, Some(document), Some(before)) = (keep_view, &mut self.document, &mut before) {
             let is_prepared_alike = document.loaded.preparation == before.loaded.preparation;
