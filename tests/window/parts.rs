@@ -6,11 +6,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 use geometry::mesh::PartStyle;
 use geometry::tessellate::Surface;
-use load::{NormalSource, ShownParts};
+use load::{NormalSource, ShownParts, Source};
 use pnaen::app::App;
 
-use crate::editing::copied;
-use crate::{click, press, scroll_to, settle, switch, uniform_of};
+use crate::editing::{copied, press_with};
+use crate::{choose, click, press, scroll_to, settle, switch, uniform_of};
 
 /// A file of eleven parts, each a square of its own.
 fn eleven_parts() -> String {
@@ -206,4 +206,29 @@ fn materials_are_listed_after_the_parts_and_found_by_their_prefix() {
     assert_eq!(harness.state().loaded().expect("a mesh").preparation.parts.hidden, ["material:red"]);
     click(&mut harness, "Show only material:blue");
     assert_eq!(triangles(&harness), 4);
+}
+
+#[test]
+fn parts_are_listed_while_the_left_half_is_edited_unless_it_has_another_file() {
+    let (folder, mut harness) = uniform_of("parts.obj", eleven_parts());
+    let other = folder.path().join("other.obj");
+    std::fs::write(&other, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("a writable folder");
+    press_with(&mut harness, egui::Modifiers::SHIFT, egui::Key::J);
+    click(&mut harness, "Edit left (A)");
+    let is_listed = |harness: &Harness<App>| harness.query_by_label("Parts").is_some();
+    assert!(is_listed(&harness), "both halves have the same mesh");
+    let context = harness.ctx.clone();
+    harness.state_mut().prepare(&context, |own| own.crease_band = 0.1);
+    settle(&mut harness);
+    harness.get_by_label_contains("Left: as kept");
+    assert!(is_listed(&harness), "the same file, prepared otherwise");
+    harness.state_mut().open_reference_shape(&context, Source::File(other));
+    settle(&mut harness);
+    scroll_to(&mut harness, "Edit right (B)");
+    click(&mut harness, "Edit right (B)");
+    choose(&mut harness, "Left mesh", "Reference surface: other.obj");
+    assert!(is_listed(&harness));
+    scroll_to(&mut harness, "Edit left (A)");
+    click(&mut harness, "Edit left (A)");
+    assert!(!is_listed(&harness), "they are those of the right half's file");
 }

@@ -36,8 +36,9 @@ impl App {
                     app.part_heights(ui);
                     grid("displacement").show(ui, |ui| app.displacement_rows(ui));
                 }
-                // Those of another mesh on the left aren't listed.
-                if !is_left || app.other_left().is_none() {
+                // Those of another file on the left aren't listed.
+                let own = app.other_left().filter(|_| is_left).map(|left| &left.content.source);
+                if own.is_none_or(|own| Some(own) == app.source()) {
                     app.parts_section(ui);
                 }
                 app.morphs_section(ui, is_left);
